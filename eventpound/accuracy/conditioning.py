@@ -19,11 +19,9 @@ from typing import Any
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.hysteresis import z_bound
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python
 from eventpound.scene.check import starts_of_supports
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.parameters import Place, places_of, value_at, with_values
@@ -140,7 +138,7 @@ def _within_bound(law: Law) -> Law:
     """A law with its initial z, if it has one, within its bound."""
     if not isinstance(law, BoucWen):
         return law
-    bound = float(in_python(z_bound)(law.exponent, law.beta, law.gamma))
+    bound = law.bound
     return replace(law, initial_z=float(np.clip(law.initial_z, -bound, bound)))
 
 

@@ -116,6 +116,7 @@ _CONTACT = "eventpound.contact"
 SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     ("eventpound.motion.forcing", "the ground acceleration and its breakpoints", _ALL),
     (f"{_MECHANICS}.model", "the scene as arrays", _ALL),
+    (f"{_MECHANICS}.elements", "the laws of springs", _ALL),
     ("eventpound.scene.elastic_laws", "elastic laws in series condensed to one", _ALL),
     (f"{_MECHANICS}.impact", "the impact law over all closed contacts", _ALL),
     (f"{_MECHANICS}.contact_problem", "accelerations over resting contacts", _ALL),
@@ -132,6 +133,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     ("eventpound.tolerances", "what is rounding, and what one instant", _ALL),
     (f"{_EVENTS}.scales", "scales of the motion, tolerances of each body", _ALL),
     (f"{_EVENTS}.event_bounds", "what counts as a new extreme", _ALL),
+    (f"{_MECHANICS}.monitored", "which extremes are recorded", _ALL),
     (f"{_EVENTS}.loop", "the loop over segments and instants", _LOOP),
     (f"{_EVENTS}.instant", "steps by series from instant to instant", _LOOP),
     (f"{_EVENTS}.short_series", "the series that carry the motion after events", _LOOP),
@@ -160,7 +162,6 @@ SHARED_WITH_LOADS = {
 SHARED_BY_METHODS = {
     f"{_MECHANICS}.reduced": "the equations of motion",
     f"{_MECHANICS}.observables": "forces and accelerations of a state",
-    f"{_MECHANICS}.hysteresis": "rates of hysteretic variables",
     f"{_EVENTS}.reversals": "reversals at which steps end",
     "eventpound.solvers.sundials.stepping": "the loop over the steps of CVODE",
 }

@@ -15,7 +15,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.contact_problem import parts, solve_contacts
-from eventpound.mechanics.model import LinkLaw
+from eventpound.mechanics.elements import LinkLaw, memory_stiffness, pull_per_z
 from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce, state_vector
 from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
@@ -252,8 +252,7 @@ def links_held(system: Reduced) -> tuple[Floats, Floats]:
     """Initial stiffness (N/m) and dashpot (N s/m) of each link, shape (A,)."""
     stiffness = system.stiffness.copy()
     for a in range(stiffness.size):
-        if system.iz[a] >= 0:
-            stiffness[a] += system.strength[a] / system.yield_displacement[a]
+        stiffness[a] += memory_stiffness(a, system.memory)
     return stiffness, system.damping
 
 
@@ -285,7 +284,8 @@ def clusters_pulled(system: Reduced) -> Bools:
     """Clusters (C,) on which a link acts."""
     pulled = np.zeros(system.mass.size, np.bool_)
     for a in range(system.stiffness.size):
-        if system.stiffness[a] != 0.0 or system.damping[a] != 0.0 or system.strength[a] != 0.0:
+        pulls = system.stiffness[a] != 0.0 or system.damping[a] != 0.0
+        if pulls or pull_per_z(a, system.memory) != 0.0:
             for c in system.ends[a]:
                 if c >= 0:
                     pulled[c] = True

@@ -18,11 +18,15 @@ axis (``∫_0^∞ dy / (1 - y^n)`` along its rays), which sets the width of a ce
 
 from __future__ import annotations
 
+from functools import lru_cache
+from typing import NamedTuple
+
 import numpy as np
 
-from eventpound.mechanics.hysteresis import power_coefficient
-from eventpound.numerics.arrays import Floats
+from eventpound.mechanics.elements import BETA, EXPONENT, GAMMA, YIELD, z_bound
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python, scalar_kernel
+from eventpound.numerics.power_series import integer_power, power_coefficient
 from eventpound.tolerances import BESIDE_ONE, BEYOND_TABLE, FEW_TERMS, ITERATED, OF_BACKBONE, STEEP
 
 TERMS = 14
@@ -34,10 +38,29 @@ NEAR = 0.15
 CELLS_PER_RADIUS = 8.0
 _ROOM = (256, 4096, 100_000)
 """Cells for which there is room, more where these do not do; the last are all there can be."""
+TABLES_KEPT = 64
+"""Backbones kept between runs."""
 _EXPONENT, _RHO, _BOUND, _NEAR_UP, _SCALE_UP, _CELLS_UP, _END_UP = 0, 1, 2, 3, 4, 5, 6
 _NEAR_DOWN, _SCALE_DOWN, _CELLS_DOWN = 7, 8, 9
 _WIDTH_UP, _WIDTH_DOWN = 10, 11
 _HEADER = 12
+
+
+class Hysteresis(NamedTuple):
+    """Hysteretic links (H,): their backbones and the borders between its parts, in ξ.
+
+    `core`: |ξ| up to which Φ is a line both ways. `down`: ξ < 0 down to which
+    it is a line. `saturated`: ξ from which Φ is 1. `scale`: ``u_y b`` (m).
+    """
+
+    link: Ints
+    tables: Floats
+    at: Ints
+    core: Floats
+    down: Floats
+    saturated: Floats
+    scale: Floats
+    bound: Floats
 
 
 def _near_series(n: float, g: Floats, h: Floats) -> None:
@@ -152,21 +175,6 @@ def backbone_table(n: float, beta: float, gamma: float) -> Floats:
 
 
 @scalar_kernel
-def integer_power(x: float, n: float) -> float:
-    """``x^n`` for x >= 0, by squaring where n is a small integer."""
-    m = int(n)
-    if m != n or m > 64:
-        return float(x**n)
-    result = 1.0
-    while m > 0:
-        if m & 1:
-            result *= x
-        x *= x
-        m >>= 1
-    return result
-
-
-@scalar_kernel
 def backbone(table: Floats, at: int, xi: float) -> float:
     """``y = Φ(ξ)``.
 
@@ -220,6 +228,12 @@ def _cell_value(
 
 
 @scalar_kernel
+def shape_of(table: Floats, at: int) -> tuple[float, float]:
+    """N and ρ of a law."""
+    return table[at + _EXPONENT], table[at + _RHO]
+
+
+@scalar_kernel
 def backbone_inverse(table: Floats, at: int, y: float) -> float:
     """ξ with ``Φ(ξ) = y``, for ``-1 <= y <= 1``; the end of the table where y is 1.
 
@@ -257,3 +271,86 @@ def backbone_inverse(table: Floats, at: int, y: float) -> float:
             return sign * following
         xi = following
     return sign * xi
+
+
+def hysteresis_of(memory: Floats, link: Ints, small: Floats | float) -> Hysteresis:
+    """Backbones of the hysteretic links of a scene, or with a leading axis of many.
+
+    Parameters
+    ----------
+    memory : ndarray, shape (..., L, constants)
+        Of the links.
+    link : ndarray of int, shape (H,)
+        The hysteretic links.
+    small : float or ndarray, shape (...)
+        The difference of Φ that does not count.
+    """
+    memory = memory.take(link, axis=-2)
+    n, beta, gamma = (memory[..., i] for i in (EXPONENT, BETA, GAMMA))
+    table, places = _tables_of(n, beta, gamma)
+    share = np.asarray(small)[..., None] + np.zeros(n.shape)
+    core, down = backbone_borders(n, beta, gamma, share)
+    bound, saturated = z_bound(memory), np.empty(n.shape)
+    _saturations(table, places.reshape(-1), share.reshape(-1), saturated.reshape(-1))
+    return Hysteresis(
+        link,
+        table,
+        places,
+        core,
+        down,
+        saturated,
+        memory[..., YIELD] * bound,
+        bound,
+    )
+
+
+def _tables_of(n: Floats, beta: Floats, gamma: Floats) -> tuple[Floats, Ints]:
+    """Backbones of all laws that differ, one after the other, and where that of each begins."""
+    if n.size <= 1:
+        tables = [_table_of(n.item(), beta.item(), gamma.item())] if n.size else [np.empty(0)]
+        return tables[0], np.zeros(n.shape, np.int64)
+    rows = np.column_stack((n.ravel(), beta.ravel(), gamma.ravel()))
+    laws, which = rows[:1], np.zeros(rows.shape[0], np.int64)
+    if not (rows == laws).all():
+        laws, which = np.unique(rows, axis=0, return_inverse=True)
+    tables = [_table_of(*law) for law in laws.tolist()]
+    starts = np.cumsum([0, *(each.size for each in tables)])
+    return np.concatenate(tables), starts[which.reshape(n.shape)].astype(np.int64)
+
+
+@lru_cache(TABLES_KEPT)
+def _table_of(n: float, beta: float, gamma: float) -> Floats:
+    """The backbone of a law, which the runs of a suite have in common; not to be written to."""
+    return backbone_table(n, beta, gamma)
+
+
+@scalar_kernel
+def _saturations(table: Floats, at: Ints, small: Floats, out: Floats) -> None:
+    """Where Φ comes within a small difference of 1, into `out`; seldom different in a row."""
+    for i in range(out.size):
+        if i > 0 and at[i] == at[i - 1] and small[i] == small[i - 1]:
+            out[i] = out[i - 1]
+        else:
+            out[i] = backbone_inverse(table, at[i], 1.0 - small[i])
+
+
+def backbone_borders(
+    exponent: Floats, beta: Floats, gamma: Floats, small: Floats
+) -> tuple[Floats, Floats]:
+    """Borders of the parts of backbones.
+
+    Parameters
+    ----------
+    exponent, beta, gamma, small : ndarray
+        Constants of the laws and the difference from a line that does not count, of one shape.
+
+    Returns
+    -------
+    tuple of ndarray
+        `core` and `down` as in `Hysteresis`.
+    """
+    rho = (beta - gamma) / (beta + gamma)
+    up = ((exponent + 1.0) * small) ** (1.0 / (exponent + 1.0))
+    with np.errstate(divide="ignore"):
+        down = ((exponent + 1.0) * small / np.abs(rho)) ** (1.0 / (exponent + 1.0))
+    return np.minimum(up, down), -down

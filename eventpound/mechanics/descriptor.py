@@ -3,8 +3,8 @@
     y = [u (N), v (N), z (H), λ (R), ledger]
 
     u' = v                                                          (free bodies)
-    M v' + Σ_l B_l F_l - W λ + M 1 a_g = 0,  F = k x + f + c x' + Q z,  x = B_lᵀ u
-    z' by eq. 3 of the founding paper
+    M v' + Σ_l B_l F_l - W λ + M 1 a_g = 0,   x = B_lᵀ u
+    F and z' by `eventpound.mechanics.elements`
     g = δ + Wᵀ u = 0,   γ = Wᵀ v = 0                               (a dependent body each)
     γ' = Wᵀ M⁻¹ (-Σ_l B_l F_l + W λ) - Wᵀ 1 a_g = 0                (λ)
 
@@ -26,7 +26,8 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
-from eventpound.mechanics.model import LinkLaw, Model
+from eventpound.mechanics.elements import LinkLaw
+from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats, Ints
 
 

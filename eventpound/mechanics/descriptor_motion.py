@@ -13,8 +13,8 @@ import numpy as np
 
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor import Descriptor
+from eventpound.mechanics.elements import link_force, pull_per_z, z_rate, z_slopes
 from eventpound.mechanics.ground_frame import frame_motion
-from eventpound.mechanics.hysteresis import z_rate, z_rate_slopes
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
@@ -92,14 +92,12 @@ def link_states(
     N, law = d.mass.size, d.law
     for link in range(forces.size):
         x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
-        force = d.stiffness[link] * x + d.preload[link] + law.damping[link] * x_rate
-        h = d.z_of_link[link]
+        h, k, c = d.z_of_link[link], d.stiffness[link], law.damping[link]
+        z = y[2 * N + h] if h >= 0 else 0.0
         if h >= 0:
-            z = y[2 * N + h]
-            force += law.strength[link] * z
-            own = law.yield_displacement[link], law.exponent[link], law.beta[link], law.gamma[link]
-            z_rates[h] = z_rate(x_rate, x_rate, z, *own)
-        elongation[0, link], elongation[1, link], forces[link] = x, x_rate, force
+            z_rates[h] = z_rate(link, law.memory, x_rate, x_rate, z)
+        elongation[0, link], elongation[1, link] = x, x_rate
+        forces[link] = link_force(link, law.memory, k, d.preload[link], c, x, x_rate, z)
 
 
 @kernel
@@ -130,7 +128,7 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
         rates[1] += d.law.damping[link] * x_rate[link] * x_rate[link]
         h = d.z_of_link[link]
         if h >= 0:
-            rates[2] += d.law.strength[link] * y[2 * N + h] * x_rate[link]
+            rates[2] += pull_per_z(link, d.law.memory) * y[2 * N + h] * x_rate[link]
 
 
 @kernel
@@ -284,7 +282,7 @@ def _acceleration_slopes(d: Descriptor, slopes: Floats) -> None:
                 slopes[b, c] += pull * d.stiffness[link] * d.B[link, c]
                 slopes[b, N + c] += pull * d.law.damping[link] * d.B[link, c]
             if d.z_of_link[link] >= 0:
-                slopes[b, 2 * N + d.z_of_link[link]] += pull * d.law.strength[link]
+                slopes[b, 2 * N + d.z_of_link[link]] += pull * pull_per_z(link, d.law.memory)
     for b in range(N):
         for j in range(d.opening.size):
             slopes[b, 2 * N + H + j] = d.W[j, b] / d.mass[b]
@@ -301,13 +299,13 @@ def _ledger_slopes(d: Descriptor, y: Floats, x_rate: Floats, ground: float, J: F
     for b in range(N):
         J[first, N + b] = 0.0 if is_support(b, d.mass) else d.mass[b] * ground
     for link in range(d.stiffness.size):
-        h = d.z_of_link[link]
+        h, q = d.z_of_link[link], pull_per_z(link, d.law.memory)
         for b in range(N):
             J[first + 1, N + b] -= 2.0 * d.law.damping[link] * x_rate[link] * d.B[link, b]
             if h >= 0:
-                J[first + 2, N + b] -= d.law.strength[link] * y[2 * N + h] * d.B[link, b]
+                J[first + 2, N + b] -= q * y[2 * N + h] * d.B[link, b]
         if h >= 0:
-            J[first + 2, 2 * N + h] -= d.law.strength[link] * x_rate[link]
+            J[first + 2, 2 * N + h] -= q * x_rate[link]
 
 
 @kernel
@@ -329,13 +327,12 @@ def _constraint_slopes(d: Descriptor, slopes: Floats, J: Floats) -> None:
 @kernel
 def _z_slopes(d: Descriptor, y: Floats, x_rate: Floats, cj: float, J: Floats) -> None:
     """Rows of z."""
-    N, law = d.mass.size, d.law
+    N = d.mass.size
     for link in range(x_rate.size):
         h = d.z_of_link[link]
         if h < 0:
             continue
-        own = law.yield_displacement[link], law.exponent[link], law.beta[link], law.gamma[link]
-        by_rate, by_z = z_rate_slopes(x_rate[link], y[2 * N + h], *own)
+        by_rate, by_z = z_slopes(link, d.law.memory, x_rate[link], y[2 * N + h])
         J[2 * N + h, 2 * N + h] = cj - by_z
         for b in range(N):
             J[2 * N + h, N + b] = -by_rate * d.B[link, b]

@@ -16,6 +16,7 @@ from eventpound.mechanics.descriptor_motion import (
     link_states,
     loaded_powers,
 )
+from eventpound.mechanics.elements import link_force
 from eventpound.mechanics.observables import Observed
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
@@ -25,13 +26,14 @@ from eventpound.numerics.compiled import kernel
 
 @kernel
 def _link_rates(d: Descriptor, a: Floats, z_rates: Floats, out: Observed) -> None:
-    """Second rates of the elongations and ``F' = k x' + c x'' + Q z'``."""
+    """Second rates of the elongations, and the rates of the forces."""
+    memory = d.law.memory
     for link in range(d.stiffness.size):
         x_rate, x_second = out.elongation[1, link], dot(d.B[link], a)
-        force_rate = d.stiffness[link] * x_rate + d.law.damping[link] * x_second
-        if d.z_of_link[link] >= 0:
-            force_rate += d.law.strength[link] * z_rates[d.z_of_link[link]]
-        out.elongation[2, link], out.force[1, link] = x_second, force_rate
+        h, k, c = d.z_of_link[link], d.stiffness[link], d.law.damping[link]
+        z_rate = z_rates[h] if h >= 0 else 0.0
+        out.elongation[2, link] = x_second
+        out.force[1, link] = link_force(link, memory, k, 0.0, c, x_rate, x_second, z_rate)
 
 
 @kernel

@@ -6,7 +6,7 @@ Equation of motion, coordinates u relative to the ground:
 
 A *link* joins two bodies, or a body and the ground (index -1), and carries a
 spring, a dashpot or both: its elongation is ``x = u_second - u_first`` and its
-force ``F = k x + f + c x' + Q z`` pulls the ends together. Springs come first,
+force (`eventpound.mechanics.elements`) pulls the ends together. Springs come first,
 in the order of the scene, then dashpots that stand alone.
 """
 
@@ -15,32 +15,21 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements, elements_of
+from eventpound.mechanics.elements import LinkLaw, contact_law, link_law
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, reduced
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear
+from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen
 from eventpound.tolerances import EPS
 
 WORK_OF_SUPPORTS = 3
 """Entries of the energy ledger before those of supports: input, viscous and hysteretic work."""
-
-
-class LinkLaw(NamedTuple):
-    """Constants of the links, one entry a link; strength 0 means no hysteresis."""
-
-    damping: Floats
-    strength: Floats
-    yield_displacement: Floats
-    exponent: Floats
-    beta: Floats
-    gamma: Floats
 
 
 @dataclass(frozen=True)
@@ -56,7 +45,7 @@ class Model:
     link_ends : ndarray of int, shape (L, 2)
         First and second end of each link; -1 is the ground.
     law : LinkLaw
-        Constants of the links.
+        Laws of the links beside their elastic parts.
     elastic : ElasticLaws
         Elastic parts of the links.
     hysteretic : ndarray of int, shape (H,)
@@ -165,9 +154,8 @@ class Model:
 def with_elements(model: Model) -> Model:
     """The model with every contact element as a link with a kink at the closing of its gap.
 
-    Below the kink it is closed; then its law of contact acts, of which its exponent, negative,
-    is the code (`eventpound.mechanics.contact_laws`), its damping the number. Above it there
-    is no force.
+    Below the kink it is closed; then its law of contact acts, whose number is its damping
+    (`eventpound.mechanics.contact_laws`). Above it there is no force.
     """
     elements = model.elements
     laws = np.flatnonzero(elements.kind != NO_LAW)
@@ -175,14 +163,12 @@ def with_elements(model: Model) -> Model:
         return model
     kind = np.where(elements.cut[laws] != 0, CUT, elements.kind[laws])
     nothing = np.zeros(laws.size)
-    added = LinkLaw(
-        elements.damping[laws], nothing, nothing + 1.0, FIRST_CODE - kind * 1.0, nothing, nothing
-    )
+    added = contact_law(FIRST_CODE - kind * 1.0, elements.damping[laws])
     ends = np.column_stack((model.left[laws], model.right[laws]))
     return replace(
         model,
         link_ends=np.vstack((model.link_ends, ends)),
-        law=LinkLaw(*map(np.append, model.law, added)),
+        law=LinkLaw(*map(np.concatenate, zip(model.law, added, strict=True))),
         elastic=ElasticLaws(
             *map(np.append, model.elastic, (elements.stiffness[laws], nothing, -model.gap[laws]))
         ),
@@ -238,10 +224,7 @@ def assemble(scene: Scene) -> Model:
         ends += [(load.body, -1) for load in motion.loads]
         damping += [0.0] * len(motion.loads)
     laws = [spring.law for spring in scene.springs]
-    loops = [law if isinstance(law, BoucWen) else None for law in laws]
-    loops += [None] * (len(ends) - len(laws))
-    none = BoucWen(stiffness=0.0, strength=0.0, yield_displacement=1.0)
-    hysteretic = [i for i, law in enumerate(loops) if law is not None]
+    loops = {i: law for i, law in enumerate(laws) if isinstance(law, BoucWen)}
 
     def column(values: list[float]) -> Floats:
         return np.array(values, dtype=np.float64)
@@ -255,16 +238,12 @@ def assemble(scene: Scene) -> Model:
         u0=column([b.displacement for b in scene.bodies]),
         v0=column([b.velocity for b in scene.bodies]),
         link_ends=np.array(ends, np.int64).reshape(-1, 2),
-        law=LinkLaw(
-            column(damping),
-            *(column([getattr(law or none, key) for law in loops]) for key in LinkLaw._fields[1:]),
-        ),
+        law=link_law(laws, damping),
         elastic=as_arrays(
-            [reduced(Linear(law.stiffness) if isinstance(law, BoucWen) else law) for law in laws]
-            + [BilinearElastic(0.0, 0.0)] * (len(ends) - len(laws))
+            [*map(reduced, laws)] + [BilinearElastic(0.0, 0.0)] * (len(ends) - len(laws))
         ),
-        hysteretic=np.array(hysteretic, np.int64),
-        z0=column([law.initial_z for law in loops if law is not None]),
+        hysteretic=np.array([*loops], np.int64),
+        z0=column([law.initial_z for law in loops.values()]),
         springs=len(laws),
         left=left,
         right=right,

@@ -1,10 +1,9 @@
 """Everything a user or an event asks of a state: forces, accelerations, contact forces.
 
-With ``F_l = k x + f + c x' + Q z`` the force of a link and
+With F_l the force of a link (`eventpound.mechanics.elements`) and
 ``f_b = -Σ_l B_bl F_l`` what the links put on a body, the absolute
 acceleration of a cluster is ``Σ f_b / Σ m_b`` and its contact forces balance
-``W λ = m (u'' + a_g) - f`` body by body. The rates of all of these follow
-from ``F' = k x' + c x'' + Q z'``, so that each is known with its slope.
+``W λ = m (u'' + a_g) - f`` body by body. Each of these is known with its rate.
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, is_support
 from eventpound.mechanics.contact_laws import element_pull
+from eventpound.mechanics.elements import contact_code, link_force
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.points import add_points, hold_beside_ground
 from eventpound.mechanics.reduced import Forcing, Reduced, rate_on_ground
@@ -22,7 +22,7 @@ from eventpound.mechanics.reduced_loads import placed
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import in_python, kernel
 
 
 class Bodies(NamedTuple):
@@ -38,7 +38,7 @@ class Bodies(NamedTuple):
     stiffness: Floats
     preload: Floats
     damping: Floats
-    strength: Floats
+    memory: Floats
     z_of_link: Ints
     of_body: Ints
     offset: Floats
@@ -97,7 +97,7 @@ def view(
     damping = model.law.damping.copy()
     for link in range(model.plain, model.links):
         if stiffness[link] != 0.0:
-            z_of_link[link] = int(model.law.exponent[link])
+            z_of_link[link] = in_python(contact_code)(link, model.law.memory)
         else:
             damping[link] = 0.0
     return Bodies(
@@ -106,7 +106,7 @@ def view(
         stiffness,
         preload,
         damping,
-        model.law.strength,
+        model.law.memory,
         z_of_link,
         clusters.of_body,
         clusters.offset,
@@ -198,14 +198,12 @@ def _link_forces(bodies: Bodies, out: Observed) -> None:
         k, preload, c = bodies.stiffness[link], bodies.preload[link], bodies.damping[link]
         force, force_rate, h = 0.0, 0.0, bodies.z_of_link[link]
         if link < plain:
-            force = k * x + preload + c * x_rate
-            force_rate = k * x_rate + c * x_second
+            z, z_rate = (out.z[0, h], out.z[1, h]) if h >= 0 else (0.0, 0.0)
+            force = link_force(link, bodies.memory, k, preload, c, x, x_rate, z)
+            force_rate = link_force(link, bodies.memory, k, 0.0, c, x_rate, x_second, z_rate)
         elif h < -1:
             force, by_x, by_rate = element_pull(h, k, preload, c, x, x_rate, 0.0)
             force_rate = by_x * x_rate + by_rate * x_second
-        if h >= 0:
-            force += bodies.strength[link] * out.z[0, h]
-            force_rate += bodies.strength[link] * out.z[1, h]
         out.force[0, link], out.force[1, link] = force, force_rate
         for end, sign in ((first, 1.0), (second, -1.0)):
             if end >= 0:

@@ -4,8 +4,7 @@ With the contacts at rest in a mode fixed, the state is
 
     y = [q (clusters), v (clusters), z (links that move), ledger]
 
-    q' = v,   m v' = -Σ_l B_l F_l - m a_g,   F = k x + f + c x' + Q z,
-    z' by eq. 3 of the founding paper
+    q' = v,   m v' = -Σ_l B_l F_l - m a_g,   F and z' by `eventpound.mechanics.elements`
 
 of a cluster with a support q, v and v' are what they are said to be (`placed`),
 and bodies at rest on each other share a row, so their gaps cannot drift. The
@@ -21,8 +20,14 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, is_support
 from eventpound.mechanics.contact_laws import element_pull
-from eventpound.mechanics.hysteresis import z_rate
-from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw
+from eventpound.mechanics.elements import (
+    LinkLaw,
+    contact_code,
+    link_force,
+    pull_per_z,
+    z_rate,
+)
+from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced_loads import (
     add_load_coefficients,
@@ -72,11 +77,7 @@ class Reduced(NamedTuple):
     stiffness: Floats
     preload: Floats
     damping: Floats
-    strength: Floats
-    yield_displacement: Floats
-    exponent: Floats
-    beta: Floats
-    gamma: Floats
+    memory: Floats
     direction: Floats
     iq: Ints
     iv: Ints
@@ -164,11 +165,12 @@ def _fields(
         ends[a, 0], ends[a, 1] = link_clusters[i, 0], link_clusters[i, 1]
         z_of_active[a], damping[a] = z_of_link[i], law.damping[i]
         shifted[a] = preload[i] + stiffness[i] * shift[i]
-        if law.exponent[i] > 0.0:
+        code = contact_code(i, law.memory)
+        if code >= 0:
             plain += 1
         elif stiffness[i] != 0.0:
             # A contact element: its law acts where it is closed.
-            z_of_active[a] = int(law.exponent[i])
+            z_of_active[a] = code
         else:
             damping[a] = 0.0
     iq, iv, iz, z_of, size = _layout(clusters.count, ends, z_of_active, hysteretic.size)
@@ -177,14 +179,10 @@ def _fields(
         cluster_mass,
         own_mass,
         ends,
-        _taken(stiffness, active),
+        stiffness[active],
         shifted,
         damping,
-        _taken(law.strength, active),
-        _taken(law.yield_displacement, active),
-        _taken(law.exponent, active),
-        _taken(law.beta, active),
-        _taken(law.gamma, active),
+        law.memory[active],
         np.zeros(active.size),
         iq,
         iv,
@@ -195,15 +193,6 @@ def _fields(
         plain,
         np.zeros((0, 0)),
     )
-
-
-@kernel
-def _taken(values: Floats, places: Ints) -> Floats:
-    """The values at these places."""
-    result = np.empty(places.size)
-    for i in range(places.size):
-        result[i] = values[places[i]]
-    return result
 
 
 @kernel
@@ -346,7 +335,8 @@ def rate_on_ground(
         k, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
         place, direction = system.iz[a], system.direction[a]
         if a < system.plain:
-            force = k * x + preload + c * x_rate
+            z = y[place] if place >= 0 else 0.0
+            force = link_force(a, system.memory, k, preload, c, x, x_rate, z)
             viscous += c * x_rate * x_rate
         elif place < -1:
             # What a closed contact element loses is counted with its contact.
@@ -354,18 +344,9 @@ def rate_on_ground(
         else:
             continue
         if place >= 0:
-            z = y[place]
-            force += system.strength[a] * z
-            hysteretic += system.strength[a] * z * x_rate
-            rate[place] = z_rate(
-                x_rate,
-                direction if direction != 0.0 else x_rate,
-                z,
-                system.yield_displacement[a],
-                system.exponent[a],
-                system.beta[a],
-                system.gamma[a],
-            )
+            hysteretic += pull_per_z(a, system.memory) * z * x_rate
+            way = direction if direction != 0.0 else x_rate
+            rate[place] = z_rate(a, system.memory, x_rate, way, z)
         if first >= 0:
             rate[iv[first]] += force
         if second >= 0:

@@ -1,9 +1,8 @@
 """Taylor coefficients of the motion in one contact mode.
 
-``y(τ) = Σ_k Y_k τ^k`` by recurrence: the forces are linear in q, v and z but
-for ``z' = (x'/u_y)(1 - κ |z|^n)`` (eq. 3), whose power series is built term by
-term. σ = sgn x' and s = sgn z are those just after τ = 0, so the series holds
-up to the next reversal of x' or zero of z.
+``y(τ) = Σ_k Y_k τ^k`` by recurrence: the forces are linear in q, v and z, and the power
+series of z' is built term by term (`eventpound.mechanics.elements`). The signs of x' and z are
+those just after τ = 0, so the series holds up to the next reversal of x' or zero of z.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ import numpy as np
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents
-from eventpound.mechanics.hysteresis import power_coefficient
+from eventpound.mechanics.elements import link_force, pull_per_z, z_coefficient
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
@@ -29,35 +28,7 @@ from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel
-from eventpound.tolerances import NO_Z
-
-
-@kernel
-def _sign_after(series: Floats, known: int, noise: float) -> float:
-    """Sign just after zero: that of the first coefficient that does not vanish.
-
-    The value itself counts as vanished up to `noise`.
-    """
-    for k in range(known):
-        if abs(series[k]) > (noise if k == 0 else 0.0):
-            return 1.0 if series[k] > 0.0 else -1.0
-    return 0.0
-
-
-@kernel
-def _z_coefficient(
-    a: int, k: int, system: Reduced, x_rate: Floats, z: Floats, power: Floats, sigma: float
-) -> float:
-    """Coefficient k of z' = (x'/u_y)(1 - κ |z|^n)."""
-    sign_z = _sign_after(z, k + 1, NO_Z)
-    if sign_z == 0.0:
-        sign_z = sigma
-    kappa = system.beta[a] + system.gamma[a] * sigma * sign_z
-    power[k] = power_coefficient(z, power, system.exponent[a], k)
-    product = 0.0
-    for j in range(k + 1):
-        product += x_rate[j] * power[k - j]
-    return (x_rate[k] - kappa * product) / system.yield_displacement[a]
+from eventpound.numerics.power_series import power_coefficient, sign_after
 
 
 @deferred_kernel
@@ -72,7 +43,7 @@ def _element_coefficient(
     kind = FIRST_CODE - system.iz[a]
     stiffness, damping = system.stiffness[a], system.damping[a]
     overlap[k] = -x[k] - (system.preload[a] / stiffness if k == 0 else 0.0)
-    approaching = _sign_after(x_rate, k + 1, 0.0) < 0.0
+    approaching = sign_after(x_rate, k + 1, 0.0) < 0.0
     if kind == CUT and stiffness * overlap[0] <= damping * x_rate[0]:
         return 0.0
     for i in range(2):
@@ -104,7 +75,8 @@ def _add_ledger(
             if system.iz[a] >= -1:
                 out[1] += system.damping[a] * x_rate[a, j] * x_rate[a, k - j]
             if system.iz[a] >= 0:
-                out[2] += system.strength[a] * Y[j, system.iz[a]] * x_rate[a, k - j]
+                z = Y[j, system.iz[a]]
+                out[2] += pull_per_z(a, system.memory) * z * x_rate[a, k - j]
 
 
 @deferred_kernel
@@ -168,18 +140,18 @@ def _set_forces(
         first, second = system.ends[a, 0], system.ends[a, 1]
         x_rate = terms.x_rate[a]
         x, x_rate[k] = link_motion(a, Y[k], system)
-        term = system.stiffness[a] * x + system.damping[a] * x_rate[k]
-        if k == 0:
-            term += system.preload[a]
+        z = Y[k, iz[a]] if iz[a] >= 0 else 0.0
+        preload, c = system.preload[a] if k == 0 else 0.0, system.damping[a]
+        term = link_force(a, system.memory, system.stiffness[a], preload, c, x, x_rate[k], z)
         if iz[a] < -1:
             terms.x[a, k] = x
             d = terms.overlap[a]
             term = _element_coefficient(a, k, system, terms.x[a], x_rate, d[0], d[1:])
         elif iz[a] >= 0:
-            term += system.strength[a] * Y[k, iz[a]]
             if sigma[a] == 0.0:
-                sigma[a] = _sign_after(x_rate, k + 1, speed_noise)
-            rate = _z_coefficient(a, k, system, x_rate, Y[:, iz[a]], terms.power[a], sigma[a])
+                sigma[a] = sign_after(x_rate, k + 1, speed_noise)
+            zs, power = Y[:, iz[a]], terms.power[a]
+            rate = z_coefficient(a, k, system.memory, x_rate, zs, power, sigma[a])
             Y[k + 1, iz[a]] = rate / (k + 1)
         if first >= 0:
             force[first] += term

@@ -18,6 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
+from eventpound.mechanics.elements import link_law, yielding
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.loops import z_by_x
 from eventpound.quantities.owners import owners
@@ -163,9 +164,11 @@ def works_of(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:
         if isinstance(law, BoucWen):
             z = h.z[:, scene.hysteretic_springs.index(spring.name)]
             rate, second = _elongating(spring.between, motions)
-            slope = z_by_x(law, z, rate) * rate**2 + z * second
-            cells = law.strength * _cells(h.t, z * rate, slope)
-            stored = 0.5 * law.strength * law.yield_displacement * (z[-1] ** 2 - z[0] ** 2)
+            own = link_law([law], [0.0]).memory
+            slope = z_by_x(own, z, rate) * rate**2 + z * second
+            (force,), (yields,) = yielding(own).force, yielding(own).displacement
+            cells = force * _cells(h.t, z * rate, slope)
+            stored = 0.5 * force * yields * (z[-1] ** 2 - z[0] ** 2)
             found[f"springs.{spring.name}.dissipated_energy"] = cells, stored
     for name, dashpot in zip(owners(scene, "dashpot"), scene.dashpots, strict=True):
         rate, second = _elongating(dashpot.between, motions)

@@ -7,9 +7,13 @@ which is of the order of the rows' distance, is spread along the way.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from eventpound.mechanics.elements import link_law, yielding, z_rate
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
 
@@ -45,34 +49,35 @@ def loop_of(
     left = (1.0 + 2.0 * part) * x[:-1, None] + part * h * rate[:-1, None]
     right = (1.0 + 2.0 * rest) * x[1:, None] - rest * h * rate[1:, None]
     fine = rest**2 * left + part**2 * right
+    elastic = reduced(law)
     if not isinstance(law, BoucWen):
         # An elastic law is a line with one corner, gone along from end to end.
-        elastic = reduced(law)
         low, high = fine.min(), fine.max()
         ends = np.array([low, np.clip(elastic.offset, low, high), high])
         return ends, elastic_force(elastic, ends)[0]
     assert z is not None
-    force = law.stiffness * fine + law.strength * _along(law, fine, z)
+    memory = link_law([law], [0.0]).memory
+    force = elastic_force(elastic, fine)[0] + yielding(memory).force * _along(memory, fine, z)
     # The last of a cell is the first of the next.
     return np.append(fine[:, :-1], fine[-1, -1]), np.append(force[:, :-1], force[-1, -1])
 
 
-def _along(law: BoucWen, x: Floats, z: Floats) -> Floats:
+def _along(memory: Floats, x: Floats, z: Floats) -> Floats:
     """The variable z at parts of every cell, of the shape (n - 1, _PARTS + 1) of x."""
     found = np.empty_like(x)
     found[:, 0] = z[:-1]
     for part, dx in enumerate(np.diff(x).T):
         y = found[:, part]
-        k1 = z_by_x(law, y, dx)
-        k2 = z_by_x(law, y + 0.5 * dx * k1, dx)
-        k3 = z_by_x(law, y + 0.5 * dx * k2, dx)
-        k4 = z_by_x(law, y + dx * k3, dx)
+        k1 = z_by_x(memory, y, dx)
+        k2 = z_by_x(memory, y + 0.5 * dx * k1, dx)
+        k3 = z_by_x(memory, y + 0.5 * dx * k2, dx)
+        k4 = z_by_x(memory, y + dx * k3, dx)
         found[:, part + 1] = y + dx * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
     missed = z[1:] - found[:, -1]
     return found + missed[:, None] * np.linspace(0.0, 1.0, _PARTS + 1)
 
 
-def z_by_x(law: BoucWen, z: Floats, way: Floats | float) -> Floats:
-    """Slope dz/dx (1/m) where x goes a way: grows where that is positive."""
-    kappa = law.beta + law.gamma * np.sign(way * z)
-    return np.asarray((1.0 - kappa * np.abs(z) ** law.exponent) / law.yield_displacement)
+def z_by_x(memory: Floats, z: Floats, way: Floats | float) -> Floats:
+    """Slope dz/dx (1/m) of the one law where x goes a way: grows where that is positive."""
+    rate: Any = in_python(z_rate)
+    return np.asarray(rate(0, memory, 1.0, way, z))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from eventpound.mechanics.elements import link_law
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.loops import z_by_x
 from eventpound.report.style import PALETTE, force_unit, length_unit, literal, say, zero_lines
@@ -119,9 +120,9 @@ def _loop(law: BoucWen) -> tuple[Floats, Floats]:
     step = law.yield_displacement / _STEPS
     away = round(_REACH * _STEPS)
     steps = np.repeat([step, -step, step], [away, 2 * away, 2 * away])
-    z = np.zeros(steps.size + 1)
+    z, memory = np.zeros(steps.size + 1), link_law([law], [0.0]).memory
     for i, dx in enumerate(steps.tolist()):
-        z[i + 1] = z[i] + dx * z_by_x(law, z[i], dx)
+        z[i + 1] = z[i] + dx * z_by_x(memory, z[i], dx)
     x = np.concatenate([[0.0], np.cumsum(steps)])
     return x, law.stiffness * x + law.strength * z
 

@@ -220,7 +220,7 @@ def _bouc_wen_problems(element: _Element, law: BoucWen) -> Iterator[Problem]:
     yield from shape
     if not shape:
         # A bound reached to rounding is a spring that has yielded.
-        bound = (law.beta + law.gamma) ** (-1.0 / law.exponent)
+        bound = law.bound
         yield from number(
             "initial_z",
             law.initial_z,

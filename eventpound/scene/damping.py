@@ -33,7 +33,7 @@ def initial_stiffness(law: Linear | BilinearElastic | Series | BoucWen) -> float
     if isinstance(law, Linear):
         return law.stiffness
     if isinstance(law, BoucWen):
-        return law.stiffness + law.strength / law.yield_displacement
+        return law.initial_stiffness
     return None
 
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.scene.spring import BilinearElastic, Linear, Series
+from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
 
 
 class ElasticLaws(NamedTuple):
@@ -45,20 +45,20 @@ def as_arrays(laws: Iterable[BilinearElastic]) -> ElasticLaws:
     return ElasticLaws(*columns.reshape(-1, 3).T.copy())
 
 
-def reduced(law: Linear | BilinearElastic | Series) -> BilinearElastic:
-    """The law as two stiffnesses and an offset.
+def reduced(law: Linear | BilinearElastic | Series | BoucWen) -> BilinearElastic:
+    """The law as two stiffnesses and an offset; of one with a memory what is elastic.
 
     Parameters
     ----------
-    law : Linear, BilinearElastic or Series
-        Any elastic law.
+    law : Linear, BilinearElastic, Series or BoucWen
+        Any law.
 
     Returns
     -------
     BilinearElastic
         The same force for every elongation.
     """
-    if isinstance(law, Linear):
+    if isinstance(law, Linear | BoucWen):
         return BilinearElastic(law.stiffness, law.stiffness, 0.0)
     if isinstance(law, BilinearElastic):
         return law

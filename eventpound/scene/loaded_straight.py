@@ -41,7 +41,7 @@ class Loops(NamedTuple):
                 law.strength,
                 law.yield_displacement,
                 law.exponent,
-                (law.beta + law.gamma) ** (-1.0 / law.exponent),
+                law.bound,
                 (law.beta - law.gamma) / (law.beta + law.gamma),
                 law.initial_z,
             )

@@ -113,7 +113,7 @@ def _spring_doubts(scene: Scene) -> Iterator[Doubt]:
         if not isinstance(law, BoucWen):
             continue
         mass = max(masses.get(end, 0.0) for end in spring.between)
-        yield_force = law.strength + law.stiffness * law.yield_displacement
+        yield_force = law.yield_force
         part = yield_force / (mass * STANDARD_GRAVITY)
         if part > LARGEST_YIELD_FORCE:
             yield (

@@ -114,6 +114,21 @@ class BoucWen:
     def __post_init__(self) -> None:
         read_fields(self)
 
+    @property
+    def initial_stiffness(self) -> float:
+        """K0 (N/m), that at z = 0."""
+        return self.stiffness + self.strength / self.yield_displacement
+
+    @property
+    def yield_force(self) -> float:
+        """F_y (N), where the bilinear backbone has its knee."""
+        return self.strength + self.stiffness * self.yield_displacement
+
+    @property
+    def bound(self) -> float:
+        """Largest |z| that loading can reach, (β + γ)^(-1/n)."""
+        return float((self.beta + self.gamma) ** (-1.0 / self.exponent))
+
     @classmethod
     @checked
     def from_yield(

@@ -19,7 +19,7 @@ from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, elastic_force,
 from eventpound.scene.equilibrium import NoEquilibriumError, Potential, equilibrium
 from eventpound.scene.loaded_straight import Loops
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen, Linear
+from eventpound.scene.spring import BoucWen
 
 
 def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
@@ -96,8 +96,11 @@ class _Springs:
         """Those of a scene."""
         laws = [spring.law for spring in scene.springs]
         loops = {i: law for i, law in enumerate(laws) if isinstance(law, BoucWen)}
-        elastic = [reduced(Linear(x.stiffness) if isinstance(x, BoucWen) else x) for x in laws]
-        return cls(as_arrays(elastic), np.array([*loops], np.int64), Loops.of(list(loops.values())))
+        return cls(
+            as_arrays(map(reduced, laws)),
+            np.array([*loops], np.int64),
+            Loops.of(list(loops.values())),
+        )
 
     def answer(self, x: Floats, x_0: Floats) -> tuple[Floats, Floats]:
         """Forces (N) and slopes (N/m) at elongations, loaded from others (m), all (S,)."""

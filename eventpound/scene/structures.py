@@ -129,7 +129,7 @@ def isolated(scene: Scene) -> set[str]:
         law = spring.law
         if isinstance(law, BoucWen) and law.strength > 0.0:
             ends = frozenset(spring.between)
-            force = law.strength + law.stiffness * law.yield_displacement
+            force = law.yield_force
             strength[ends] = strength.get(ends, 0.0) + force
     names = [GROUND, *(body.name for body in scene.bodies)]
     joints = [spring.between for spring in scene.springs]

@@ -13,9 +13,9 @@ from dataclasses import fields
 
 import numpy as np
 
+from eventpound.mechanics.elements import spring_forces
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import Event, Extremes, History, Recording, Task, Work
 from eventpound.solvers.inferred_impacts import differences, inferred_impacts, openings
 from eventpound.tolerances import SAME_SAMPLE
@@ -92,28 +92,26 @@ def _rows(
 def _history(task: Task, model: Model, rows: tuple[Floats, Floats, Floats, Floats]) -> History:
     """All rows with what follows from them."""
     t, u, v, z = rows
-    force = link_forces(model, u, v, z)
-    viscous = differences(v, *model.link_ends.T) * model.law.damping
+    springs, total = link_forces(model, u, v, z)
     return History(
         t,
         task.scene.motion.acceleration(t),
         u,
         v,
         # The forces of contacts are not known; while one rests they are missing here.
-        pulled(model, force) / model.mass,
+        pulled(model, total) / model.mass,
         z,
-        (force - viscous)[:, : model.springs],
+        springs[:, : model.springs],
         model.gap + openings(model, u),
         np.full((t.size, model.contacts), np.nan),
     )
 
 
-def link_forces(model: Model, u: Floats, v: Floats, z: Floats) -> Floats:
-    """``F = k x + f + c x' + Q z`` of every link (N), shape (n, L); u, v (n, N), z (n, H)."""
+def link_forces(model: Model, u: Floats, v: Floats, z: Floats) -> tuple[Floats, Floats]:
+    """Force of every link without and with its dashpot (N), shape (n, L); u, v (n, N), z (n, H)."""
     x, x_rate = (differences(values, *model.link_ends.T) for values in (u, v))
-    force = elastic_force(model.elastic, x)[0] + model.law.damping * x_rate
-    force[:, model.hysteretic] += model.law.strength[model.hysteretic] * z
-    return force
+    springs = spring_forces(model.elastic, model.law, model.hysteretic, x, z)
+    return springs, springs + model.law.damping * x_rate
 
 
 def pulled(model: Model, force: Floats) -> Floats:
@@ -127,7 +125,7 @@ def pulled(model: Model, force: Floats) -> Floats:
 
 def _base_shear(model: Model, full: History) -> Floats:
     """Sum of the forces of springs and dashpots on the ground (N), shape (n, 1)."""
-    force = link_forces(model, full.u, full.v, full.z)
+    force = link_forces(model, full.u, full.v, full.z)[1]
     first, second = (model.link_ends[:, end] == -1 for end in (0, 1))
     shear: Floats = force[:, first].sum(axis=1) - force[:, second].sum(axis=1)
     return shear[:, None]

@@ -71,7 +71,6 @@ NEITHER = {
     # Types, arrays, names and the means by which kernels are compiled and called.
     "mechanics.descriptor",
     "mechanics.ground_frame",
-    "mechanics.hysteresis",
     "mechanics.observables",
     "mechanics.pressures",
     "mechanics.reduced",

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eventpound.mechanics.elements import link_law
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -28,6 +29,11 @@ def spring_force(law: Linear | BilinearElastic | BoucWen, x: float, z: float = 0
     if isinstance(law, BilinearElastic):
         return (law.compression if x < law.offset else law.extension) * (x - law.offset)
     return law.stiffness * x + law.strength * z
+
+
+def memory_of(n: float, beta: float, gamma: float, yield_displacement: float = 1.0) -> np.ndarray:
+    """Constants of one Bouc-Wen law of unit strength, as solvers hold them."""
+    return link_law([BoucWen(0.0, 1.0, yield_displacement, n, beta, gamma)], [0.0]).memory
 
 
 def literal_z_rate(law: BoucWen, x_rate: float, z: float) -> float:

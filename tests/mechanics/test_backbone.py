@@ -8,8 +8,9 @@ from scipy.integrate import solve_ivp
 from scipy.special import hyp2f1
 
 from eventpound.mechanics.backbone import backbone, backbone_inverse, backbone_table
-from eventpound.mechanics.hysteresis import z_bound, z_rate
+from eventpound.mechanics.elements import z_bound, z_rate
 from eventpound.tolerances import BEYOND_TABLE
+from tests.mechanics.dense import memory_of
 
 EPS = np.finfo(float).eps
 EXPONENTS = (1.0, 1.5, 2.0, 5.0, 20.0, 20.5, 100.0, 1e4)
@@ -68,14 +69,15 @@ def test_against_the_hypergeometric_function(n: float, beta: float, gamma: float
 def test_against_the_rate_law(n: float, beta: float, gamma: float, sign: float) -> None:
     # From z = 0 with x' = 1 both ways: loading is Φ(ξ > 0); unloading is found on the way
     # from Φ(ξ < 0) = y up to zero.
-    u_y, bound = 0.3, z_bound(n, beta, gamma)
+    u_y, memory = 0.3, memory_of(n, beta, gamma, 0.3)
+    (bound,) = z_bound(memory)
     table = backbone_table(n, beta, gamma)
     y = 0.999 if sign > 0.0 else -0.9
     first, last = (0.0, y) if sign > 0.0 else (y, 0.0)
     xi = np.sort([backbone_inverse(table, 0, first), backbone_inverse(table, 0, last)])
     ends = np.linspace(xi[0], xi[1], 40)
     path = solve_ivp(
-        lambda _, z: [z_rate(1.0, 1.0, z[0], u_y, n, beta, gamma)],
+        lambda _, z: [z_rate(0, memory, 1.0, 1.0, z[0])],
         (0.0, (xi[1] - xi[0]) * u_y * bound),
         [first * bound],
         method="DOP853",

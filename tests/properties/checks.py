@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from eventpound.contact.cascade import TIRED
+from eventpound.mechanics.elements import STRENGTH
 from eventpound.mechanics.model import Model, assemble
 from eventpound.scene import GROUND, Scene
 from eventpound.solvers.base import Event, EventKind, Recording
@@ -151,7 +152,7 @@ def _spring_forces(case: Case) -> np.ndarray:
         x = np.array([model.elongations(u)[i] for u in history.u]) - law.offset
         forces[:, i] = np.where(x < 0.0, law.compression, law.extension) * x
         if i in z_of:
-            forces[:, i] += model.law.strength[i] * history.z[:, z_of[i]]
+            forces[:, i] += model.law.memory[i, STRENGTH] * history.z[:, z_of[i]]
     return forces
 
 

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound.mechanics.model import LinkLaw, assemble
+from eventpound.mechanics.elements import LinkLaw
+from eventpound.mechanics.model import assemble
 from eventpound.motion.harmonic import Harmonic
 from eventpound.motion.pulses import Sine
 from eventpound.motion.record import Record
@@ -163,7 +164,8 @@ def test_rows_of_many_are_what_each_is_alone() -> None:
         key: np.tile(getattr(law, key), (9, 1)) for key in ("compression", "extension", "offset")
     }
     columns["compression"][:, 0] = columns["extension"][:, 0] = stiffness
-    links = Attached(law.ends, LinkLaw(*(np.tile(x, (9, 1)) for x in law.law)), **columns)
+    laws = LinkLaw(*(np.repeat(x[None], 9, axis=0) for x in law.law))
+    links = Attached(law.ends, laws, **columns)
     masses = np.column_stack((mass, np.ones(9)))
     still = np.zeros((9, 2))
     start = Start(still, still, np.zeros((9, 0)), model.hysteretic)

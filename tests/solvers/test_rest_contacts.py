@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import nnls
 
 from eventpound.contact.rest import Touching, rest_contacts
-from eventpound.mechanics.model import LinkLaw
+from eventpound.mechanics.elements import link_law
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from tests.numerics.problems import Contacts, graph
@@ -25,7 +25,7 @@ def _rest(
     """Each body pushed by a constant force (N), all at rest and in touch."""
     bodies, nothing = contacts.mass.size, np.zeros(contacts.mass.size)
     ends = np.column_stack((np.full(bodies, -1), np.arange(bodies)))
-    law = LinkLaw(nothing, nothing, nothing + 1.0, nothing + 1.0, nothing, nothing)
+    law = link_law([], nothing)
     touching = Touching(
         undecided,
         released,
@@ -131,7 +131,7 @@ def test_rounding_of_an_acceleration_does_not_open_a_stiff_body(way: float) -> N
         np.zeros(1),
         one,
         np.array([[-1, 0], [-1, 1]]),
-        LinkLaw(nothing, nothing, one, one, nothing, nothing),
+        link_law([], nothing),
         np.empty(0, np.int64),
         np.array([1.0, 1e9]),
         nothing,

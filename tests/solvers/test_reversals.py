@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
+from eventpound.mechanics.elements import z_rate
 from eventpound.mechanics.ground_frame import NO_FRAME, frame_motion, moving_frame
-from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.reduced import Reduced
 from eventpound.motion.base import Family
@@ -26,6 +26,7 @@ from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.reversals import first_reversal, may_reverse, take_directions
 from eventpound.solvers.sundials.python_cvode import WrappedCvode
 from eventpound.tolerances import HELD_BELOW, REVERSAL_WITHIN
+from tests.mechanics.dense import memory_of
 from tests.mechanics.scenes import clusters_of, reduced
 
 LAW = BoucWen(0.0, 1.0, 1e-2, 5.0, 0.7, 0.3)
@@ -58,9 +59,10 @@ def _crossing(*roots: float) -> Polynomial:
 @pytest.mark.parametrize(("z", "sign"), [(0.8, 1.0), (0.8, -1.0), (-0.8, 1.0), (-0.8, -1.0)])
 def test_beyond_a_reversal_the_rate_of_z_goes_on(z: float, sign: float) -> None:
     """With a direction it is linear in x', and that of the law where x' has the direction."""
-    rates = [z_rate(x_rate, sign, z, 1e-2, 5.0, 0.7, 0.3) for x_rate in (-1.0, 1.0, 2.0)]
+    law = memory_of(5.0, 0.7, 0.3, 1e-2)
+    rates = [z_rate(0, law, x_rate, sign, z) for x_rate in (-1.0, 1.0, 2.0)]
     np.testing.assert_allclose(rates, rates[1] * np.array([-1.0, 1.0, 2.0]), rtol=1e-14)
-    assert rates[1] * sign == pytest.approx(z_rate(sign, sign, z, 1e-2, 5.0, 0.7, 0.3))
+    assert rates[1] * sign == pytest.approx(z_rate(0, law, sign, sign, z))
 
 
 @pytest.mark.usefixtures("interpreted")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from eventpound.mechanics.elements import BETA, GAMMA
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import only_root
@@ -49,7 +50,8 @@ def stepper(u: float, v: float, z: float, rtol: float = 1e-10) -> Stepper:
 
 def integrated(at: Stepper, z: float, h: float) -> Floats:
     """u, v and z of the scene after h (s) by DOP853, the hysteresis in rate form."""
-    law, mass = at.model.law, at.model.mass
+    mass = at.model.mass
+    beta, gamma = at.model.law.memory[at.model.hysteretic][:, [BETA, GAMMA]].T
 
     def rates(t: float, y: Floats) -> Floats:
         u, v, zs = y[:2], y[2:4], y[4:]
@@ -60,7 +62,6 @@ def integrated(at: Stepper, z: float, h: float) -> Floats:
         total = forces + damped
         pull = np.array([-total[0] + total[2], -total[1] - total[2]])
         a = pull / mass - GROUND_NOW - SLOPE * t
-        beta, gamma = law.beta[at.model.hysteretic], law.gamma[at.model.hysteretic]
         size = np.abs(zs) ** 20
         flow = 1.0 - size * (beta + gamma * np.sign(rate[:2] * zs))
         return np.concatenate([v, a, rate[:2] * flow / YIELDING])

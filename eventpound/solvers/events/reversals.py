@@ -1,6 +1,6 @@
 """Reversals of links within a step, at which its integrator begins anew.
 
-At a reversal the rate of z has a kink (`eventpound.mechanics.hysteresis`). A multistep
+At a reversal the rate of z has a kink (`eventpound.mechanics.elements`). A multistep
 method that passes it corrects with a rate of the other branch, and does not see the error.
 So each link keeps its *direction*, the sign of x', in the equations that the integrator
 is given: they stay smooth beyond the reversal. It is located on the polynomial of the
@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.contact_elements import APPROACH_CODE, CUT_CODE
+from eventpound.mechanics.elements import reversal_jump
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.reduced import Reduced, link_motion
 from eventpound.numerics.arrays import Floats
@@ -93,8 +94,9 @@ def may_reverse(
     """Whether a link may reverse within a step in a way that matters.
 
     Where none does, those that reverse change their directions. By how much z errs,
-    ``2 γ |z|^n |x'| h / u_y`` bounds. x' is bounded by the end of the step and, for one that
-    reverses twice, by the Bernstein coefficient in the middle of the parabola through both ends.
+    the jump of dz/dx times ``|x'| h`` bounds. x' is bounded by the end of the step and, for one
+    that reverses twice, by the Bernstein coefficient in the middle of the parabola through both
+    ends.
 
     Parameters
     ----------
@@ -121,8 +123,7 @@ def may_reverse(
             # A dashpot ends or begins.
             return True
         z = max(abs(before[system.iz[a]]), abs(after[system.iz[a]]))
-        jump = 2.0 * abs(system.gamma[a]) * z ** system.exponent[a] / system.yield_displacement[a]
-        if -lowest * h * jump > allowed:
+        if -lowest * h * reversal_jump(a, system.memory, z) > allowed:
             # The other directions wait: the step may end before their links reverse.
             return True
     for a in range(direction.size):

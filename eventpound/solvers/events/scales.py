@@ -24,13 +24,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.hysteresis import z_bound
-from eventpound.mechanics.model import LinkLaw, Model
+from eventpound.mechanics.elements import LinkLaw, yielding, z_bound
+from eventpound.mechanics.model import Model
 from eventpound.mechanics.supported import peak_of
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import in_python
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Task
 
@@ -61,13 +60,13 @@ class Start(NamedTuple):
 class _Held(NamedTuple):
     """What the links of each body add up to, shape (..., N).
 
-    Stiffness before and after yielding (N/m), strength (N), dashpots (N s/m), and the energy
-    at which its springs yield (J).
+    Stiffness before and after yielding (N/m), force of memory (N), dashpots (N s/m), and the
+    energy at which its springs yield (J).
     """
 
     stiffness: Floats
     yielded: Floats
-    strength: Floats
+    force: Floats
     damping: Floats
     yield_energy: Floats
 
@@ -132,11 +131,11 @@ def own_scales(
 
 def _held(links: Attached, mass: Floats) -> _Held:
     """What holds each body, were its neighbours held."""
-    law = links.law
+    memory = yielding(links.law.memory)
     # As stiff as the link gets: a stop or a cable holds on one side alone.
     after = np.maximum(links.compression, links.extension)
-    strength, yielding = law.strength, law.yield_displacement
-    of_link = (after + strength / yielding, after, strength, law.damping, 0.5 * strength * yielding)
+    energy = 0.5 * memory.force * memory.displacement
+    of_link = (after + memory.stiffness, after, memory.force, links.law.damping, energy)
     held = np.zeros((len(of_link), *mass.shape))
     each = np.empty((len(of_link), *of_link[0].shape))
     each[:] = of_link
@@ -150,7 +149,7 @@ def _held(links: Attached, mass: Floats) -> _Held:
 def _reach(load: Floats, held: _Held) -> Floats:
     """Displacement at which the springs carry a load, inf where they cannot (m)."""
     elastic = np.where(held.stiffness > 0.0, load / held.stiffness, np.inf)
-    beyond = np.maximum(load - held.strength, 0.0)
+    beyond = np.maximum(load - held.force, 0.0)
     yielded = np.where(
         beyond > 0.0, np.where(held.yielded > 0.0, beyond / held.yielded, np.inf), 0.0
     )
@@ -176,9 +175,9 @@ def _energy(links: Attached, mass: Floats, start: Start) -> Floats:
         x = far - near - links.offset[..., i]
         k = np.where(x < 0.0, links.compression[..., i], links.extension[..., i])
         total = total + 0.5 * k * x * x
+    memory = yielding(links.law.memory)
     for h, i in enumerate(start.hysteretic.tolist()):
-        law = links.law
-        stored = law.strength[..., i] * law.yield_displacement[..., i]
+        stored = memory.force[..., i] * memory.displacement[..., i]
         total = total + stored * np.abs(start.z[..., h])
     return np.asarray(total)
 
@@ -230,9 +229,8 @@ def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
     duration : float
         Length of the run (s), the last resort for a time scale.
     """
-    law = model.law
     h = model.hysteretic
-    bounds = np.array([in_python(z_bound)(law.exponent[i], law.beta[i], law.gamma[i]) for i in h])
+    bounds = z_bound(model.law.memory[h])
     mass = float(model.mass[model.supports :].max())
     motion, push = scene.motion.scales(), push_of(scene.motion)
     if motion is not None:
@@ -247,8 +245,8 @@ def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
 
 def _free_scales(model: Model, duration: float) -> tuple[float, float]:
     """L (m), zero where nothing gives one, and T (s) of a scene without motion of the ground."""
-    yielding = model.law.yield_displacement[model.hysteretic]
-    lengths = np.concatenate((np.abs(model.u0), yielding, model.gap))
+    yields = yielding(model.law.memory[model.hysteretic]).displacement
+    lengths = np.concatenate((np.abs(model.u0), yields, model.gap))
     length = float(lengths.max(initial=0.0))
     speed = float(np.abs(model.v0).max())
     time = _elastic_time(model)
@@ -281,10 +279,10 @@ def scales_without(model: Model, duration: float, push: float) -> tuple[float, f
 def _elastic_time(model: Model) -> float:
     """Smallest sqrt(m/k) over the links, inf where nothing is stiff."""
     masses = np.append(model.mass, np.inf)
-    smallest = np.inf
+    smallest, memory = np.inf, yielding(model.law.memory).stiffness
     for i in range(model.plain):
         k = max(model.elastic.compression[i], model.elastic.extension[i])
-        k += model.law.strength[i] / model.law.yield_displacement[i]
+        k += memory[i]
         if k > 0.0:
             smallest = min(smallest, np.sqrt(masses[model.link_ends[i]].min() / k))
     return float(smallest)

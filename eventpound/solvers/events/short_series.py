@@ -15,6 +15,7 @@ import numpy as np
 from eventpound.contact.rest import is_none
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents, element_pull
+from eventpound.mechanics.elements import bends_at_zero, z_bend
 from eventpound.mechanics.observables import Bodies
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
@@ -156,7 +157,7 @@ def _closing_radius(y: Floats, system: Reduced, weight: Floats, radius: float) -
     """`radius`, halved until contact elements that have only just closed do nothing within it.
 
     Their forces are no power series in time from there on, and the local series has none
-    (`eventpound.mechanics.hysteresis.power_coefficient`).
+    (`eventpound.numerics.power_series.power_coefficient`).
     """
     for a in range(system.plain, system.stiffness.size):
         k, preload, damping = system.stiffness[a], system.preload[a], system.damping[a]
@@ -217,12 +218,10 @@ def _knot(Y: Floats, system: Reduced, weight: Floats, limit: float) -> float:
         travel = 0.0
         for k in range(order):
             travel = max(travel, abs(x_rate[k]) * first ** (k + 1))
-        reach = abs(Y[0, iz]) + travel / system.yield_displacement[a]
-        bend = travel / system.yield_displacement[a] * reach ** system.exponent[a]
-        if bend <= SERIES_SHARE * weight[iz]:
+        if z_bend(a, system.memory, Y[0, iz], travel) <= SERIES_SHARE * weight[iz]:
             continue
         first = min(first, _sign_change(x_rate, first))
-        if system.gamma[a] != 0.0:
+        if bends_at_zero(a, system.memory):
             first = min(first, _sign_change(Y[:, iz].copy(), first))
     return first
 

@@ -21,6 +21,7 @@ from eventpound.mechanics.clusters import unique_forces
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.descriptor import contact_rows
+from eventpound.mechanics.elements import spring_forces
 from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.observables import Observed, blank
@@ -33,7 +34,6 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
 from eventpound.scene.contact_law import Element
-from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import (
     Event,
     History,
@@ -95,10 +95,8 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
     gap, rate = model.initial_gaps(scales.length), model.rates(model.v0)
     if not ((model.elements.kind == NO_LAW) & (gap == 0.0) & (rate < 0.0)).any():
         return np.empty((0, row_width(model)))
-    z_of_link = np.zeros(model.links)
-    z_of_link[model.hysteretic] = model.z0
-    elastic = elastic_force(model.elastic, model.elongations(model.u0))[0]
-    elastic += model.law.strength * z_of_link
+    x, links = model.elongations(model.u0), (model.elastic, model.law, model.hysteretic)
+    elastic = spring_forces(*links, x, model.z0)
     total = elastic + model.law.damping * model.elongations(model.v0)
     force = contact_forces(model.elements, gap, rate, np.zeros(gap.size))
     elastic[model.plain :] = total[model.plain :] = -force[model.laws]

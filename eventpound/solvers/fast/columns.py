@@ -14,7 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.model import LinkLaw, Model, assemble
+from eventpound.mechanics.backbone import hysteresis_of
+from eventpound.mechanics.elements import CONSTANTS, LinkLaw
+from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.monitored import blank_extremes, places_in
 from eventpound.motion.base import GroundMotion, Scales
 from eventpound.motion.record import Record
@@ -35,7 +37,6 @@ from eventpound.solvers.events.scales import (
 from eventpound.solvers.fast.constants import (
     blank_state,
     ground_of,
-    hysteresis_of,
     links_of,
     order_for,
     small_difference,
@@ -118,7 +119,7 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
     of_variant = of_variant.reshape(-1)
     scales = _scales(variants, model, numbers, low, of_motions, pushes, of_variant)
     mass: Any = numbers["mass"].max(axis=1)
-    small: Any = small_difference(task.rtol, law.strength, numbers["mass"], scales.acceleration)
+    small: Any = small_difference(task.rtol, law.memory, numbers["mass"], scales.acceleration)
     contacts = Contacts(model.left, model.right, numbers["gap"], numbers["restitution"])
     motions = _motions(used_motions, of_variant)
     ends: Any = variants.ends[part].copy()
@@ -135,7 +136,7 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         small,
         False,
     )
-    hysteresis = hysteresis_of(law, model.hysteretic, small)
+    hysteresis = hysteresis_of(law.memory, model.hysteretic, small)
     plan = Plan(
         numbers["mass"],
         links,
@@ -157,13 +158,16 @@ def _numbers(
     """Arrays of the model with a leading axis (count,), by their names."""
     own = {key: getattr(model, key) for key in ("mass", "u0", "v0", "z0", "gap", "restitution")}
     laws = model.elastic._asdict() | model.law._asdict()
-    rows = {key: np.tile(row, (count, 1)) for key, row in (own | laws).items()}
+    rows = {key: np.repeat(row[None], count, axis=0) for key, row in (own | laws).items()}
     for place, column in values.items():
         for key in _keys(scene, place):
             index = place.index
             if key == "z0":
                 index = int(np.flatnonzero(model.hysteretic == index)[0])
-            rows[key][:, index] = column
+            if key in CONSTANTS:
+                rows["memory"][:, index, CONSTANTS.index(key)] = column
+            else:
+                rows[key][:, index] = column
     _put_series(scene, values, rows)
     _put_dashpots(scene, model, values, rows)
     return rows

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from itertools import accumulate
 
 import numpy as np
 
 from eventpound.contact.cascade import INTERVAL, RESTED_AT, SETTLED_AT, SINCE_IMPACT, T
-from eventpound.mechanics.backbone import backbone_inverse, backbone_table
-from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw, Model, without_rounding
+from eventpound.mechanics.backbone import hysteresis_of
+from eventpound.mechanics.elements import CURVE_PLACES, yielding
+from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model, without_rounding
 from eventpound.mechanics.monitored import places_of
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import in_python, scalar_kernel
+from eventpound.numerics.compiled import in_python
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
 from eventpound.solvers.fast.run import (
     CLOCK_SIZE,
     COUNT_SIZE,
-    CURVE_PLACES,
     DUE,
     GUESS,
     MORE_TERMS,
@@ -30,7 +29,6 @@ from eventpound.solvers.fast.run import (
     Each,
     Ground,
     Happened,
-    Hysteresis,
     Limits,
     Links,
     Plan,
@@ -44,8 +42,6 @@ from eventpound.tolerances import OF_BACKBONE
 
 HYSTERESIS_SHARE = 0.01
 """Part of the tolerance by which Φ may differ from a line, or from saturation, unseen."""
-TABLES_KEPT = 64
-"""Backbones kept between runs."""
 
 
 def links_of(model: Model) -> Links:
@@ -65,94 +61,8 @@ def links_of(model: Model) -> Links:
     )
 
 
-def hysteresis_of(law: LinkLaw, link: Ints, small: Floats | float) -> Hysteresis:
-    """Backbones of the hysteretic links of a scene, or with a leading axis of many.
-
-    Parameters
-    ----------
-    law : LinkLaw
-        Arrays of shape (..., L).
-    link : ndarray of int, shape (H,)
-        The hysteretic links.
-    small : float or ndarray, shape (...)
-        The difference of Φ that does not count.
-    """
-    n, beta, gamma, yielding = (
-        column.take(link, axis=-1)
-        for column in (law.exponent, law.beta, law.gamma, law.yield_displacement)
-    )
-    table, places = _tables_of(n, beta, gamma)
-    share = np.asarray(small)[..., None] + np.zeros(n.shape)
-    core, down, bound = backbone_borders(n, beta, gamma, share)
-    saturated = np.empty(n.shape)
-    _saturations(table, places.reshape(-1), share.reshape(-1), saturated.reshape(-1))
-    return Hysteresis(
-        link,
-        table,
-        places,
-        core,
-        down,
-        saturated,
-        yielding * bound,
-        bound,
-    )
-
-
-def _tables_of(n: Floats, beta: Floats, gamma: Floats) -> tuple[Floats, Ints]:
-    """Backbones of all laws that differ, one after the other, and where that of each begins."""
-    if n.size <= 1:
-        tables = [_table_of(n.item(), beta.item(), gamma.item())] if n.size else [np.empty(0)]
-        return tables[0], np.zeros(n.shape, np.int64)
-    rows = np.column_stack((n.ravel(), beta.ravel(), gamma.ravel()))
-    laws, which = rows[:1], np.zeros(rows.shape[0], np.int64)
-    if not (rows == laws).all():
-        laws, which = np.unique(rows, axis=0, return_inverse=True)
-    tables = [_table_of(*law) for law in laws.tolist()]
-    starts = np.cumsum([0, *(each.size for each in tables)])
-    return np.concatenate(tables), starts[which.reshape(n.shape)].astype(np.int64)
-
-
-@lru_cache(TABLES_KEPT)
-def _table_of(n: float, beta: float, gamma: float) -> Floats:
-    """The backbone of a law, which the runs of a suite have in common; not to be written to."""
-    return backbone_table(n, beta, gamma)
-
-
-@scalar_kernel
-def _saturations(table: Floats, at: Ints, small: Floats, out: Floats) -> None:
-    """Where Φ comes within a small difference of 1, into `out`; seldom different in a row."""
-    for i in range(out.size):
-        if i > 0 and at[i] == at[i - 1] and small[i] == small[i - 1]:
-            out[i] = out[i - 1]
-        else:
-            out[i] = backbone_inverse(table, at[i], 1.0 - small[i])
-
-
-def backbone_borders(
-    exponent: Floats, beta: Floats, gamma: Floats, small: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """Borders of the parts of backbones, and bounds of z.
-
-    Parameters
-    ----------
-    exponent, beta, gamma, small : ndarray
-        Constants of the laws and the difference from a line that does not count, of one shape.
-
-    Returns
-    -------
-    tuple of ndarray
-        `core`, `down` and `bound` as in `Hysteresis`.
-    """
-    rho = (beta - gamma) / (beta + gamma)
-    up = ((exponent + 1.0) * small) ** (1.0 / (exponent + 1.0))
-    with np.errstate(divide="ignore"):
-        down = ((exponent + 1.0) * small / np.abs(rho)) ** (1.0 / (exponent + 1.0))
-    bound: Floats = (beta + gamma) ** (-1.0 / exponent)
-    return np.minimum(up, down), -down, bound
-
-
 def small_difference(
-    rtol: float, strength: Floats, mass: Floats, acceleration: Floats | float
+    rtol: float, memory: Floats, mass: Floats, acceleration: Floats | float
 ) -> Floats:
     """Difference of Φ from a line, or from saturation, that does not count.
 
@@ -160,13 +70,16 @@ def small_difference(
     ----------
     rtol : float
         Relative tolerance.
-    strength, mass : ndarray, shape (..., L) and (..., N)
-        Of the links (N) and the bodies (kg); with leading axes, of many variants.
+    memory : ndarray, shape (..., L, constants)
+        Of the links; with leading axes, of many variants.
+    mass : ndarray, shape (..., N)
+        Of the bodies (kg).
     acceleration : float or ndarray
         The scene's own, L/T² (m/s²).
     """
     # A strong spring turns a small error of z into a large acceleration.
-    strongest = (strength / mass.min(axis=-1, keepdims=True)).max(axis=-1, initial=0.0)
+    force = yielding(memory).force
+    strongest = (force / mass.min(axis=-1, keepdims=True)).max(axis=-1, initial=0.0)
     with np.errstate(divide="ignore"):
         weak = np.minimum(1.0, acceleration / strongest)
     return np.maximum(HYSTERESIS_SHARE * rtol * weak, OF_BACKBONE)
@@ -202,8 +115,9 @@ def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:
         The scene's own.
     """
     atol = tolerances(task, scales)
-    small = float(small_difference(task.rtol, model.law.strength, model.mass, scales.acceleration))
-    links, hysteresis = links_of(model), hysteresis_of(model.law, model.hysteretic, small)
+    memory = model.law.memory
+    small = float(small_difference(task.rtol, memory, model.mass, scales.acceleration))
+    links, hysteresis = links_of(model), hysteresis_of(memory, model.hysteretic, small)
     return Plan(
         model.mass,
         links,

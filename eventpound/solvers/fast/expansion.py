@@ -16,24 +16,23 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.clusters import is_support
+from eventpound.mechanics.elements import INVERSE, pull_per_z
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.alone import (
     CONVERGED,
     FEWEST,
-    INVERSE,
-    begin_curve,
     begin_link,
+    curve_begins,
+    curve_coefficient,
     expand_alone,
     gather,
-    next_z,
+    on_curve,
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.links import (
     CORE,
-    DOWN,
-    UP,
     reverse,
     saturate,
 )
@@ -107,8 +106,8 @@ def _expand_together(h: float, most: int, run: Run) -> tuple[int, float]:
     for i in range(active):
         a = series.active[i]
         h_of_a = links.z_of_link[a]
-        if h_of_a >= 0 and DOWN <= state.part[h_of_a] <= UP:
-            begin_curve(a, h_of_a, links, state, series)
+        if h_of_a >= 0 and on_curve(h_of_a, state.part):
+            curve_begins(a, h_of_a, run)
     order, error, power, over = most, np.inf, h, 1.0 / h
     for k in range(most - 1):
         acceleration[:clusters] = 0.0
@@ -120,8 +119,8 @@ def _expand_together(h: float, most: int, run: Run) -> tuple[int, float]:
                 rate_k = distance_coefficient(first, second, k + 1, series)
                 force = series.stiffness[a] * x_k + law.damping[a] * (k + 1) * rate_k
                 j = links.z_of_link[a]
-                if j >= 0 and DOWN <= state.part[j] <= UP:
-                    force += law.strength[a] * next_z(j, k, x_k, series)
+                if j >= 0 and on_curve(j, state.part):
+                    force += pull_per_z(a, law.memory) * curve_coefficient(j, k, x_k, series)
                 F[a, k] = force
             if first >= 0:
                 acceleration[first] += F[a, k]

@@ -16,7 +16,8 @@ both directions are the same line, so a link that only swings there costs no eve
 
 from __future__ import annotations
 
-from eventpound.mechanics.backbone import backbone, backbone_inverse
+from eventpound.mechanics.backbone import Hysteresis, backbone, backbone_inverse
+from eventpound.mechanics.elements import memory_stiffness, pull_per_z
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import (
@@ -24,7 +25,7 @@ from eventpound.solvers.fast.compiled import (
     compiled_apart,
     compiled_whole,
 )
-from eventpound.solvers.fast.run import Contacts, Hysteresis, Run, State
+from eventpound.solvers.fast.run import Contacts, Links, Run, State
 
 
 @compiled
@@ -81,8 +82,18 @@ def link_force(a: int, x: float, run: Run) -> tuple[float, float]:
     h = links.z_of_link[a]
     if h >= 0:
         z = hysteretic_variable(h, x, run.plan.hysteresis, run.state)
-        force += links.law.strength[a] * z
+        force += pull_per_z(a, links.law.memory) * z
     return force, z
+
+
+@compiled
+def tangent(a: int, links: Links, state: State) -> float:
+    """Stiffness of a link (N/m), on a curved part of its backbone without its z."""
+    k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
+    h = links.z_of_link[a]
+    if h >= 0 and state.part[h] <= UNLOADING:
+        k += memory_stiffness(a, links.law.memory)
+    return float(k)
 
 
 @compiled

@@ -13,6 +13,7 @@ import numpy as np
 from eventpound.contact.cascade import T, is_fleeting
 from eventpound.contact.event_rows import events_wanted
 from eventpound.mechanics.clusters import is_support
+from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import (
@@ -129,7 +130,7 @@ def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
             state.ledger[1] += weight * law.damping[a] * x_rate * x_rate
             h = links.z_of_link[a]
             if h >= 0:
-                state.ledger[2] += weight * law.strength[a] * seen.z[h] * x_rate
+                state.ledger[2] += weight * pull_per_z(a, law.memory) * seen.z[h] * x_rate
 
 
 @compiled_apart

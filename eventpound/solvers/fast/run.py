@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 from eventpound.contact.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.contact.impacts import ENDLESS, NO_FORCES, NO_IMPACT
-from eventpound.mechanics.model import LinkLaw
+from eventpound.mechanics.backbone import Hysteresis
+from eventpound.mechanics.elements import LinkLaw
 from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.fast.compiled import compiled
@@ -57,23 +58,6 @@ class Links(NamedTuple):
     springs: int
     kinked: bool
     grounded: Ints
-
-
-class Hysteresis(NamedTuple):
-    """Hysteretic links (H,): their backbones and the borders between its parts, in ξ.
-
-    `core`: |ξ| up to which Φ is a line both ways. `down`: ξ < 0 down to which
-    it is a line. `saturated`: ξ from which Φ is 1. `scale`: ``u_y b`` (m).
-    """
-
-    link: Ints
-    tables: Floats
-    at: Ints
-    core: Floats
-    down: Floats
-    saturated: Floats
-    scale: Floats
-    bound: Floats
 
 
 class Contacts(NamedTuple):
@@ -359,8 +343,6 @@ none, and whether the run has begun."""
 COUNT_SIZE = STARTED + 1
 LINEAR, TIED = -1, -2
 """In `Apart.hysteretic`: no such link, and not by itself."""
-CURVE_PLACES = 5
-"""Constants of a link on a curved part of its backbone."""
 MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
 REST_TERMS = 16

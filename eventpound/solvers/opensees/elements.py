@@ -116,7 +116,7 @@ def _law_problems(scene: Scene, model: Model) -> list[str]:
 def _spring_material(spring: Spring) -> Material:
     law = spring.law
     if isinstance(law, BoucWen):
-        initial = law.stiffness + law.strength / law.yield_displacement
+        initial = law.initial_stiffness
         size = law.yield_displacement**law.exponent
         alpha = law.stiffness / initial
         return (

@@ -102,7 +102,8 @@ def _build(ops: Any, model: Model, elements: list[Element]) -> None:
 
 def _start(ops: Any, task: Task, model: Model) -> None:
     """Give every node its initial motion, the acceleration included."""
-    force = pulled(model, link_forces(model, *np.atleast_2d(model.u0, model.v0, model.z0)))[0]
+    _, total = link_forces(model, *np.atleast_2d(model.u0, model.v0, model.z0))
+    force = pulled(model, total)[0]
     ground = float(task.scene.motion.acceleration(np.array([task.start]))[0])
     for b in range(model.bodies):
         ops.setNodeDisp(b + 2, 1, float(model.u0[b]), "-commit")

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.errors import ComputationError, InputError
+from eventpound.mechanics.elements import yielding
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact_law import BY_WORD
@@ -107,10 +108,10 @@ def _opensees() -> Any:
 def _z(model: Model, rows: Rows) -> Floats:
     """``z = (F - k x)/Q`` of the Bouc-Wen springs, shape (n, H); NaN where F was not asked for."""
     z = np.zeros((rows.t.size, model.hysteretic.size))
+    force = yielding(model.law.memory).force
     for h, link in enumerate(model.hysteretic):
-        strength = float(model.law.strength[link])
-        if strength > 0.0:
+        if force[link] > 0.0:
             x = differences(rows.u, *model.link_ends[[link]].T)[:, 0]
-            z[:, h] = (rows.force[:, link] - model.elastic.extension[link] * x) / strength
+            z[:, h] = (rows.force[:, link] - model.elastic.extension[link] * x) / force[link]
             z[0, h] = model.z0[h]
     return z

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from eventpound.mechanics.elements import link_force, pull_per_z
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
@@ -80,21 +81,15 @@ def end_of_step(h: float, run: Stepping) -> None:
         x = difference(trial.u, first, second) - elastic.offset[link]
         rate = difference(trial.v, first, second)
         k = elastic.compression[link] if x < 0.0 else elastic.extension[link]
-        force, slope = k * x, k
-        place = structure.z_of_link[link]
+        z, slope, place = 0.0, k, structure.z_of_link[link]
         if place >= 0:
             before = difference(state.v, first, second)
-            trial.z[place], z_x = z_after(
-                state.z[place],
-                h * ((1.0 - theta) * before + theta * rate),
-                law.yield_displacement[link],
-                law.exponent[link],
-                law.beta[link],
-                law.gamma[link],
-                structure.bound[link],
-            )
-            force += law.strength[link] * trial.z[place]
-            slope += law.strength[link] * z_x
+            change = h * ((1.0 - theta) * before + theta * rate)
+            bound = structure.bound[link]
+            z, z_x = z_after(link, law.memory, state.z[place], change, bound)
+            trial.z[place] = z
+            slope += pull_per_z(link, law.memory) * z_x
+        force = link_force(link, law.memory, k, 0.0, 0.0, x, rate, z)
         trial.link[link], equations.slope[link] = force, slope
         force += law.damping[link] * rate
         pull_together(trial.f, first, second, force)
@@ -167,7 +162,7 @@ def _add_work(step: Step, run: Stepping) -> None:
         place = structure.z_of_link[link]
         if place >= 0:
             z = (1.0 - theta) * state.z[place] + theta * trial.z[place]
-            work[HYSTERETIC] += law.strength[link] * z * path
+            work[HYSTERETIC] += pull_per_z(link, law.memory) * z * path
 
 
 @step_kernel

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.errors import InputError
+from eventpound.mechanics.elements import yielding
 from eventpound.mechanics.model import Model
 from eventpound.motion.base import Family, Piece
 from eventpound.motion.forcing import next_sample
@@ -93,9 +94,8 @@ def time_step(task: Task, model: Model, scales: SceneScales, contact_period: flo
 
 def largest_stiffness(model: Model) -> Floats:
     """Largest stiffness each link can have (N/m), shape (L,); of a Bouc–Wen spring the first."""
-    law = model.law
     elastic = np.maximum(model.elastic.compression, model.elastic.extension)
-    return np.asarray(elastic + law.strength / law.yield_displacement)
+    return np.asarray(elastic + yielding(model.law.memory).stiffness)
 
 
 def _elastic_period(model: Model) -> float:

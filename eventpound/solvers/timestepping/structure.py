@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.model import LinkLaw, Model
+from eventpound.mechanics.elements import LinkLaw
+from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import F, compile_with
 from eventpound.numerics.compiled.recipe import SMALL
@@ -30,7 +31,7 @@ def step_loop(function: F) -> F:
 class Structure(NamedTuple):
     """N bodies, L links (S of them springs), H hysteretic ones, K contacts.
 
-    A link has ``F = k (x - o) + c x' + Q z`` by the constants of `elastic` and `law`; `z_of_link`
+    The links pull as `elastic` and `law` have it; `z_of_link`
     is -1 without hysteresis, `bound` (L,) the largest |z| that loading can reach. `theta` is
     that of the time-stepping rule; `bandwidth` the number of sub-diagonals of the coupling;
     `speed` the scene's own (m/s).

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from eventpound.mechanics.hysteresis import z_bound
+from eventpound.mechanics.elements import z_bound
 from eventpound.scene import BoucWen
 from eventpound.solvers.timestepping.hysteresis import z_after
-from tests.mechanics.dense import literal_z_rate
+from tests.mechanics.dense import literal_z_rate, memory_of
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -18,10 +18,9 @@ LAWS = [(20.0, 0.5, 0.5), (2.0, 0.3, 0.7), (1.0, 0.5, 0.5), (5.0, -0.1, 0.6), (3
 
 def _steps(z: float, change: float, steps: int, law: tuple[float, float, float]) -> np.ndarray:
     """Z at eight equal parts of a change made in so many steps."""
-    n, beta, gamma = law
-    path = []
+    memory, path = memory_of(*law, 0.1), []
     for i in range(1, steps + 1):
-        z = z_after(z, change / steps, 0.1, n, beta, gamma, z_bound(n, beta, gamma))[0]
+        z = z_after(0, memory, z, change / steps, z_bound(memory)[0])[0]
         if i % (steps // 8) == 0:
             path.append(z)
     return np.array(path)
@@ -62,25 +61,25 @@ def test_order_two_along_the_elongation(law, z, change):
 def test_a_long_step_ends_at_the_bound(law):
     # L-stable: where the bound is b and the length l = |Δx|/u_y is great, the two stages leave
     # γ l g = -√2 (b - z), so z exceeds b by √2 b²/(γ n l) with γ = 0.293.
-    n, beta, gamma = law
-    bound = z_bound(n, beta, gamma)
+    n, memory = law[0], memory_of(*law, 0.1)
+    (bound,) = z_bound(memory)
     for length in (1e2, 1e4):
-        z, z_x = z_after(0.0, 0.1 * length, 0.1, n, beta, gamma, bound)
+        z, z_x = z_after(0, memory, 0.0, 0.1 * length, bound)
         assert abs(z - bound) < 5.0 * bound**2 / (n * length)
         assert abs(z_x) * 0.1 * length < 1.0
-        assert z_after(0.0, -0.1 * length, 0.1, n, beta, gamma, bound)[0] == -z
+        assert z_after(0, memory, 0.0, -0.1 * length, bound)[0] == -z
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_derivative_is_that_of_the_step(law):
-    n, beta, gamma = law
-    bound = z_bound(n, beta, gamma)
+    n, memory = law[0], memory_of(*law, 0.1)
+    (bound,) = z_bound(memory)
     rng = np.random.default_rng(5)
     for _ in range(200):
         z, change = rng.uniform(-bound, bound), rng.choice([-1, 1]) * 10.0 ** rng.uniform(-3, 0)
         small = 1e-6 * abs(change)
-        ends = [z_after(z, change + s, 0.1, n, beta, gamma, bound)[0] for s in (-small, small)]
-        slope = z_after(z, change, 0.1, n, beta, gamma, bound)[1]
+        ends = [z_after(0, memory, z, change + s, bound)[0] for s in (-small, small)]
+        slope = z_after(0, memory, z, change, bound)[1]
         # Central differences: rounding over the interval, and its square times a third derivative,
         # which is of order (n/u_y)³; a kink at z = 0 within the interval is rare enough to skip.
         allowed = 4e-16 / small + (n / 0.1) ** 3 * small**2 + 1e-7 / 0.1
@@ -88,4 +87,4 @@ def test_derivative_is_that_of_the_step(law):
 
 
 def test_no_step_changes_nothing():
-    assert z_after(0.3, 0.0, 0.1, 20.0, 0.5, 0.5, 1.0)[0] == 0.3
+    assert z_after(0, memory_of(20.0, 0.5, 0.5, 0.1), 0.3, 0.0, 1.0)[0] == 0.3

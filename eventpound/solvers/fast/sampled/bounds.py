@@ -16,12 +16,13 @@ extremes or goes one way.
 
 from __future__ import annotations
 
+from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import CORE, DOWN, UP, place
-from eventpound.solvers.fast.run import Hysteresis, Plan, Run, State
+from eventpound.solvers.fast.run import Plan, Run, State
 from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.solvers.fast.search import bound_of_pair
 from eventpound.tolerances import LENGTH, OWN_GAP, SPEED

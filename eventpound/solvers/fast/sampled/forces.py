@@ -14,17 +14,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.elements import pull_per_z
 from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_stepwise
 from eventpound.solvers.fast.links import (
     DOWN,
     SATURATED,
-    UNLOADING,
     UP,
     elongations,
     hysteretic_variable,
     place,
+    tangent,
 )
 from eventpound.solvers.fast.run import Piece, Run
 from eventpound.solvers.fast.sampled.exact import SampleTables, table_of
@@ -83,11 +84,7 @@ def begin(dt: float, run: Run) -> int:
     links, along = plan.links, series.tables.along
     elongations(links.ends, state.u, state.v, along.x, along.x_rate)
     for a in range(links.offset.size):
-        k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
-        h = links.z_of_link[a]
-        if h >= 0 and state.part[h] <= UNLOADING:
-            k += links.law.strength[a] / links.law.yield_displacement[a]
-        series.stiffness[a] = k
+        series.stiffness[a] = tangent(a, links, state)
     tables, damping = series.tables, links.law.damping
     i = table_of(dt, series.stiffness, links.ends, damping, plan.mass, tables)
     accelerations_now(i, run)
@@ -117,7 +114,8 @@ def _set_unmoved(run: Run) -> None:
         force, h = -k * links.offset[a], links.z_of_link[a]
         if h >= 0 and not DOWN <= state.part[h] <= UP:
             xi = 1.0 if state.part[h] == SATURATED else place(h, 0.0, hysteresis, state)
-            force += links.law.strength[a] * (state.sigma[h] * hysteresis.bound[h] * xi)
+            z = state.sigma[h] * hysteresis.bound[h] * xi
+            force += pull_per_z(a, links.law.memory) * z
         _pull(a, force, links.ends, series.inverse_mass, unmoved)
 
 
@@ -146,7 +144,8 @@ def accelerations(n: int, i: int, x: Floats, u: Floats, v: Floats, out: Floats, 
             a = hysteresis.link[h]
             z = hysteretic_variable(h, x[a], hysteresis, state)
             series.z[h, 0] = z
-            _pull(a, links.law.strength[a] * z, links.ends, series.inverse_mass, out)
+            force = pull_per_z(a, links.law.memory) * z
+            _pull(a, force, links.ends, series.inverse_mass, out)
 
 
 @compiled_stepwise

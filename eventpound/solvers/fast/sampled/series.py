@@ -14,10 +14,15 @@ and, since the ground moves on a straight line, the second derivative of the abs
 
 from __future__ import annotations
 
-from eventpound.solvers.fast.alone import CONVERGED, INVERSE, begin_curve, next_z
+from eventpound.mechanics.elements import INVERSE, pull_per_z
+from eventpound.solvers.fast.alone import (
+    CONVERGED,
+    curve_begins,
+    curve_coefficient,
+    on_curve,
+)
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import last_terms, set_weights
-from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.run import Run, Series, State
 from eventpound.solvers.fast.search import distance_coefficient
 
@@ -89,8 +94,8 @@ def _start(n: int, run: Run) -> bool:
         X[b, 1], X[b, 2] = state.v[b], 0.5 * tables.bodies.pulled[b]
     hysteresis, curved = plan.hysteresis, False
     for j in range(hysteresis.link.size):
-        if DOWN <= state.part[j] <= UP:
-            begin_curve(hysteresis.link[j], j, plan.links, state, series)
+        if on_curve(j, state.part):
+            curve_begins(hysteresis.link[j], j, run)
             curved = True
     return curved
 
@@ -113,11 +118,11 @@ def _curved_part(k: int, run: Run) -> None:
     plan, state, series = run.plan, run.state, run.series
     links, acceleration = plan.links, series.tables.work[0]
     for j in range(plan.hysteresis.link.size):
-        if DOWN <= state.part[j] <= UP:
+        if on_curve(j, state.part):
             a = plan.hysteresis.link[j]
             first, second = links.ends[a, 0], links.ends[a, 1]
             x = distance_coefficient(first, second, k, series)
-            force = links.law.strength[a] * next_z(j, k, x, series)
+            force = pull_per_z(a, links.law.memory) * curve_coefficient(j, k, x, series)
             if first >= 0:
                 acceleration[first] += force * series.inverse_mass[first]
             if second >= 0:

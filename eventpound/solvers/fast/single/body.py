@@ -17,7 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.contact.rest import acceleration_noise
-from eventpound.mechanics.backbone import backbone, backbone_inverse
+from eventpound.mechanics.backbone import backbone, backbone_inverse, shape_of
+from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats, Ints
@@ -314,15 +315,14 @@ def set_constants(b: int, plan: Plan, body: Body) -> None:
 @compiled
 def _set_backbone(h: int, plan: Plan, body: Body) -> None:
     """What of the hysteretic link h a body wants to know."""
-    hysteresis, law = plan.hysteresis, plan.links.law
-    link = hysteresis.link[h]
-    body.strength = law.strength[link] * hysteresis.bound[h] / body.mass
+    hysteresis = plan.hysteresis
+    force = pull_per_z(hysteresis.link[h], plan.links.law.memory)
+    body.strength = force * hysteresis.bound[h] / body.mass
     body.scale, body.whole = hysteresis.scale[h], body.side * hysteresis.bound[h]
     body.standing = plan.limits.hysteresis * body.scale
     body.core_end, body.down_end = hysteresis.core[h], hysteresis.down[h]
-    body.saturation, body.exponent = hysteresis.saturated[h], law.exponent[link]
-    beta, gamma = law.beta[link], law.gamma[link]
-    body.kappa_down = (beta - gamma) / (beta + gamma)
+    body.saturation = hysteresis.saturated[h]
+    body.exponent, body.kappa_down = shape_of(hysteresis.tables, hysteresis.at[h])
 
 
 @compiled

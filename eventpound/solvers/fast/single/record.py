@@ -8,6 +8,7 @@ looked at within each step.
 
 from __future__ import annotations
 
+from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.monitored import (
     update_beyond,
     update_extreme,
@@ -56,7 +57,7 @@ def write_single_row(
         x = u if run.links.ends[s, 1] >= 0 else -u
         row[at.force + s] = run.links.extension[s] * (x - run.links.offset[s])
         if run.links.z_of_link[s] >= 0:
-            row[at.force + s] += run.links.law.strength[s] * row[at.z]
+            row[at.force + s] += pull_per_z(s, run.links.law.memory) * row[at.z]
     right, left = run.oscillator.right, run.oscillator.left
     if right >= 0:
         row[at.gap + right] = body.right - change

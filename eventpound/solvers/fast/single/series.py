@@ -16,12 +16,12 @@ import math
 
 import numpy as np
 
-from eventpound.mechanics.backbone import integer_power
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_taylor, next_sample, sample_time
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, only_root
+from eventpound.numerics.power_series import integer_power
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Piece
 from eventpound.solvers.fast.search import stays_above

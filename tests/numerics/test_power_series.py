@@ -1,4 +1,4 @@
-"""The Bouc–Wen law: eq. 3 as printed, its bound, its power series, its backbone."""
+"""Powers of power series against rational numbers and the binomial series."""
 
 from __future__ import annotations
 
@@ -6,62 +6,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-from scipy.special import binom, hyp2f1
+from scipy.special import binom
 
-from eventpound.mechanics.hysteresis import power_coefficient, z_bound, z_rate
-from eventpound.scene import BoucWen
-from tests.mechanics.dense import literal_z_rate
-
-EPS = np.finfo(float).eps
-
-
-def test_rate_is_the_printed_one() -> None:
-    rng = np.random.default_rng(41)
-    for _ in range(1000):
-        n, beta = rng.choice([1.0, 1.5, 2.0, 7.3, 20.0]), rng.uniform(-1.0, 1.0)
-        gamma = rng.uniform(0.0, 1.0) - min(beta, 0.0)
-        u_y = 10.0 ** rng.uniform(-3, 1)
-        z = rng.choice([0.0, rng.uniform(-1.2, 1.2)])
-        x_rate = rng.choice([0.0, rng.normal()])
-        law = BoucWen(0.0, 1.0, u_y, n, beta, gamma)
-        terms = abs(x_rate) / u_y * (1.0 + (abs(beta) + gamma) * abs(z) ** n)
-        assert z_rate(x_rate, x_rate, z, u_y, n, beta, gamma) == pytest.approx(
-            literal_z_rate(law, x_rate, z), abs=32 * EPS * terms
-        )
-
-
-@pytest.mark.parametrize(("beta", "gamma"), [(0.5, 0.5), (0.1, 0.9), (-0.2, 1.0), (2.0, 3.0)])
-@pytest.mark.parametrize("n", [1.0, 2.0, 20.0])
-def test_loading_ends_at_the_bound(beta: float, gamma: float, n: float) -> None:
-    bound = z_bound(n, beta, gamma)
-    # Terms of size one cancel there; n of the roundings of |z|^n come on top.
-    assert abs(z_rate(1.0, 1.0, bound, 1.0, n, beta, gamma)) < 8 * (n + 2) * EPS
-    assert z_rate(1.0, 1.0, 0.999 * bound, 1.0, n, beta, gamma) > 0.0
-    assert z_rate(-1.0, -1.0, -0.999 * bound, 1.0, n, beta, gamma) < 0.0
-    assert z_rate(-1.0, -1.0, bound, 1.0, n, beta, gamma) < 0.0
-
-
-def test_default_bound_is_one() -> None:
-    assert z_bound(20.0, 0.5, 0.5) == 1.0
-
-
-@pytest.mark.parametrize("n", [1.0, 2.0, 5.0, 20.0])
-def test_backbone(n: float) -> None:
-    # Loading from zero: x/u_y = z 2F1(1, 1/n; 1 + 1/n; z^n), and z_rate integrated.
-    u_y = 0.3
-    ends = np.array([0.2, 0.6, 0.9, 0.99])
-    x = u_y * ends * hyp2f1(1.0, 1.0 / n, 1.0 + 1.0 / n, ends**n)
-    path = solve_ivp(
-        lambda _, z: [z_rate(1.0, 1.0, z[0], u_y, n, 0.5, 0.5)],
-        (0.0, x[-1]),
-        [0.0],
-        method="DOP853",
-        t_eval=x,
-        rtol=1e-13,
-        atol=1e-14,
-    )
-    np.testing.assert_allclose(path.y[0], ends, rtol=0.0, atol=1e-11)
+from eventpound.numerics.power_series import power_coefficient
 
 
 def _series(z: np.ndarray, n: float, order: int) -> np.ndarray:

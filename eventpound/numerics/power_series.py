@@ -1,11 +1,4 @@
-"""The Bouc–Wen law in rate form, its bound, and its Taylor coefficients.
-
-``z' = (1/u_y) [x' - γ |x'| z |z|^(n-1) - β x' |z|^n]``  (founding paper, eq. 3)
-
-With σ the sign of x' and s that of z this is
-``z' = (x'/u_y) [1 - (β + γ σ s) |z|^n]``; the second form is used throughout.
-x: elongation (m), u_y: yield displacement (m), z, β, γ, n: dimensionless.
-"""
+"""Powers of a power series, coefficient by coefficient, and signs just after its start."""
 
 from __future__ import annotations
 
@@ -15,41 +8,30 @@ from eventpound.tolerances import NO_POWER, NO_Z
 
 
 @scalar_kernel
-def z_rate(
-    x_rate: float,
-    direction: float,
-    z: float,
-    yield_displacement: float,
-    n: float,
-    beta: float,
-    gamma: float,
-) -> float:
-    """Z' of eq. 3 (1/s) at the elongation rate `x_rate` (m/s).
+def integer_power(x: float, n: float) -> float:
+    """``x^n`` for x >= 0, by squaring where n is a small integer."""
+    m = int(n)
+    if m != n or m > 64:
+        return float(x**n)
+    result = 1.0
+    while m > 0:
+        if m & 1:
+            result *= x
+        x *= x
+        m >>= 1
+    return result
 
-    The sign σ is that of `direction`: x' itself, or what it was before a reversal.
+
+@kernel
+def sign_after(series: Floats, known: int, noise: float) -> float:
+    """Sign just after zero: that of the first of `known` coefficients that does not vanish.
+
+    The value itself counts as vanished up to `noise`.
     """
-    same_sign = (direction > 0.0) == (z > 0.0)
-    kappa = beta + gamma if same_sign else beta - gamma
-    return x_rate / yield_displacement * (1.0 - kappa * abs(z) ** n)
-
-
-@scalar_kernel
-def z_rate_slopes(
-    x_rate: float, z: float, yield_displacement: float, n: float, beta: float, gamma: float
-) -> tuple[float, float]:
-    """Derivatives of `z_rate` by the elongation rate (1/m) and by z (1/s)."""
-    same_sign = (x_rate > 0.0) == (z > 0.0)
-    kappa = beta + gamma if same_sign else beta - gamma
-    size = abs(z)
-    by_rate = (1.0 - kappa * size**n) / yield_displacement
-    by_size = -x_rate / yield_displacement * kappa * n * size ** (n - 1.0)
-    return by_rate, by_size if z > 0.0 else -by_size
-
-
-@scalar_kernel
-def z_bound(n: float, beta: float, gamma: float) -> float:
-    """Largest |z| that loading can reach, (β + γ)^(-1/n)."""
-    return float((beta + gamma) ** (-1.0 / n))
+    for k in range(known):
+        if abs(series[k]) > (noise if k == 0 else 0.0):
+            return 1.0 if series[k] > 0.0 else -1.0
+    return 0.0
 
 
 @kernel

@@ -1,0 +1,268 @@
+"""The laws of springs: all that a solver asks of one.
+
+A link pulls its ends together with ``F = k x + f + c x' + Q z``. The elastic part has one k
+(N/m) and f (N) on each side of its kink (`eventpound.scene.elastic_laws`). A law with a memory
+has an internal variable z, which adds Q z and moves by a rate of its own, here eq. 3 of the
+founding paper,
+
+    z' = (1/u_y) [x' - γ |x'| z |z|^(n-1) - β x' |z|^n]
+       = (x'/u_y) [1 - (β + γ σ s) |z|^n],    σ = sgn x',  s = sgn z.
+
+x: elongation (m), u_y: yield displacement (m), Q: strength (N), z, β, γ, n: dimensionless. Such a
+law does not know time: with x' = 1 and σ = 1 everything below is by the elongation.
+
+The constants of a law with a memory are a row of `LinkLaw.memory`. What stands in it is known
+here and in `eventpound.mechanics.backbone`, which solves eq. 3 with time eliminated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import F, compile_with, kernel
+from eventpound.numerics.power_series import (
+    integer_power,
+    power_coefficient,
+    sign_after,
+)
+from eventpound.scene.elastic_laws import ElasticLaws, elastic_force
+from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
+from eventpound.tolerances import NO_Z
+
+CONSTANTS = ("kind", "strength", "yield_displacement", "exponent", "beta", "gamma")
+"""Columns of `LinkLaw.memory`; but for the first, fields of `BoucWen`."""
+KIND, STRENGTH, YIELD, EXPONENT, BETA, GAMMA = range(len(CONSTANTS))
+ELASTIC, BOUC_WEN = 0.0, 1.0
+"""Kinds of links; that of a contact element is its code, which is negative."""
+CURVE_PLACES = 5
+"""Numbers of a law that `next_z` wants to know."""
+(OVER_UY, OVER_Z, LIFT, KAPPA, WEIGHT) = range(CURVE_PLACES)
+"""Their places: 1/u_y, 1/z_0, n P_0/z_0, κ and n + 1."""
+MOST_TERMS = 32
+"""More than the highest order of a series, and two."""
+INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MOST_TERMS)])
+"""1/k."""
+
+
+class LinkLaw(NamedTuple):
+    """Laws of L links beside their elastic parts; arrays of variants have axes before these.
+
+    damping (L,): c (N s/m). memory (L, constants): of z, Q = 0 where there is none.
+    """
+
+    damping: Floats
+    memory: Floats
+
+
+class Yielding(NamedTuple):
+    """What memory adds to links, of one shape: stiffness (N/m), force (N), and where it yields (m).
+
+    The stiffness is that at z = 0, the force that at z = 1.
+    """
+
+    stiffness: Floats
+    force: Floats
+    displacement: Floats
+
+
+def link_law(laws: Sequence[Linear | BilinearElastic | Series | BoucWen], damping: Any) -> LinkLaw:
+    """Laws of links as arrays; those of which `damping` (N s/m) is longer are dashpots alone."""
+    rows = np.tile(np.array((ELASTIC, 0.0, 1.0, 20.0, 0.5, 0.5)), (len(damping), 1))
+    for row, law in zip(rows, laws, strict=False):
+        if isinstance(law, BoucWen):
+            row[:] = (BOUC_WEN, *(getattr(law, name) for name in CONSTANTS[1:]))
+    return LinkLaw(np.array(damping, np.float64), rows)
+
+
+def contact_law(codes: Floats, damping: Floats) -> LinkLaw:
+    """Contact elements of these codes as links (`eventpound.mechanics.contact_laws`)."""
+    rows = np.zeros((codes.size, len(CONSTANTS)))
+    rows[:, KIND], rows[:, YIELD] = codes, 1.0
+    return LinkLaw(damping, rows)
+
+
+def yielding(memory: Floats) -> Yielding:
+    """What memory adds to links; `memory` of shape (..., L, constants)."""
+    strength, yields = memory[..., STRENGTH], memory[..., YIELD]
+    return Yielding(strength / yields, strength, yields)
+
+
+def z_bound(memory: Floats) -> Floats:
+    """Largest |z| that loading can reach, (β + γ)^(-1/n), for constants of shape (..., L, ·)."""
+    found: Floats = (memory[..., BETA] + memory[..., GAMMA]) ** (-1.0 / memory[..., EXPONENT])
+    return found
+
+
+def spring_forces(
+    elastic: ElasticLaws, law: LinkLaw, hysteretic: Ints, x: Floats, z: Floats
+) -> Floats:
+    """Forces of links without their dashpots (N), shape (..., L).
+
+    Parameters
+    ----------
+    elastic, law : ElasticLaws, LinkLaw
+        The links.
+    hysteretic : ndarray of int, shape (H,)
+        Which of them have a memory.
+    x, z : ndarray, shape (..., L) and (..., H)
+        Elongations (m) and internal variables, perhaps of many instants.
+    """
+    force = elastic_force(elastic, x)[0]
+    force[..., hysteretic] += yielding(law.memory[hysteretic]).force * z
+    return force
+
+
+def _part(function: F) -> F:
+    """Compile into whoever calls it."""
+    return compile_with(function, counted=False, inlined=True)
+
+
+def _fused_part(function: F) -> F:
+    """As `_part`, a product and a sum perhaps one rounding."""
+    return compile_with(function, counted=False, inlined=True, fused=True)
+
+
+@_part
+def link_force(
+    a: int, memory: Floats, k: float, f: float, c: float, x: float, x_rate: float, z: float
+) -> float:
+    """``F = k x + f + c x' + Q z`` of link a (N).
+
+    As F is linear in them, also its rate from f = 0 and the rates of x, x' and z, and its Taylor
+    coefficients from those.
+    """
+    return float(k * x + f + c * x_rate + memory[a, STRENGTH] * z)
+
+
+@_part
+def pull_per_z(a: int, memory: Floats) -> float:
+    """∂F/∂z of link a (N), 0 without a memory."""
+    return float(memory[a, STRENGTH])
+
+
+@_part
+def memory_stiffness(a: int, memory: Floats) -> float:
+    """What memory adds to the stiffness of link a at z = 0 (N/m)."""
+    return float(memory[a, STRENGTH] / memory[a, YIELD])
+
+
+@_part
+def contact_code(a: int, memory: Floats) -> int:
+    """Code of link a, where it is a contact element, else not negative."""
+    return int(memory[a, KIND])
+
+
+@_part
+def z_rate(a: int, memory: Floats, x_rate: float, direction: float, z: float) -> float:
+    """Rate of the internal variable of link a (1/s) at the elongation rate `x_rate` (m/s).
+
+    The sign σ is that of `direction`: x' itself, or what it was before a reversal. In Python x',
+    σ and z may be arrays.
+    """
+    same_sign = (direction > 0.0) == (z > 0.0)
+    kappa = memory[a, BETA] + memory[a, GAMMA] * (2.0 * same_sign - 1.0)
+    rate: float = x_rate / memory[a, YIELD] * (1.0 - kappa * abs(z) ** memory[a, EXPONENT])
+    return rate
+
+
+@_part
+def z_slopes(a: int, memory: Floats, x_rate: float, z: float) -> tuple[float, float]:
+    """Derivatives of `z_rate` by the elongation rate (1/m) and by z (1/s)."""
+    n, kappa = memory[a, EXPONENT], memory[a, BETA] - memory[a, GAMMA]
+    if (x_rate > 0.0) == (z > 0.0):
+        kappa = memory[a, BETA] + memory[a, GAMMA]
+    size = abs(z)
+    power = size ** (n - 1.0)
+    by_size = -x_rate / memory[a, YIELD] * kappa * n * power
+    return (1.0 - kappa * power * size) / memory[a, YIELD], by_size if z > 0.0 else -by_size
+
+
+@_part
+def z_bend(a: int, memory: Floats, z: float, travel: float) -> float:
+    """By how much z departs from a line over a `travel` of the elongation (m), at most."""
+    linear = travel / memory[a, YIELD]
+    return float(linear * (abs(z) + linear) ** memory[a, EXPONENT])
+
+
+@_part
+def reversal_jump(a: int, memory: Floats, z: float) -> float:
+    """By how much dz/dx jumps where the elongation of link a reverses (1/m), z >= 0."""
+    return float(2.0 * abs(memory[a, GAMMA]) * z ** memory[a, EXPONENT] / memory[a, YIELD])
+
+
+@_part
+def bends_at_zero(a: int, memory: Floats) -> bool:
+    """Whether the rate of z of link a has another formula on the other side of z = 0."""
+    return bool(memory[a, GAMMA] != 0.0)
+
+
+@kernel
+def z_coefficient(
+    a: int, k: int, memory: Floats, x_rate: Floats, z: Floats, power: Floats, sigma: float
+) -> float:
+    """Taylor coefficient k of z', from those of x' and z up to k; `power` is brought up to k.
+
+    `sigma` is the sign of x' just after the start, `power` holds the coefficients of |z|^n.
+    """
+    sign_z = sign_after(z, k + 1, NO_Z)
+    if sign_z == 0.0:
+        sign_z = sigma
+    kappa = memory[a, BETA] + memory[a, GAMMA] * sigma * sign_z
+    power[k] = power_coefficient(z, power, memory[a, EXPONENT], k)
+    product = 0.0
+    for j in range(k + 1):
+        product += x_rate[j] * power[k - j]
+    return float((x_rate[k] - kappa * product) / memory[a, YIELD])
+
+
+@_fused_part
+def begin_curve(
+    a: int, memory: Floats, sign: float, z: float, power: Floats, curve: Floats
+) -> None:
+    """Make `next_z` ready for link a at z, not zero; `sign` is that of z x'."""
+    n = memory[a, EXPONENT]
+    power[0] = integer_power(abs(z), n)
+    curve[OVER_UY], curve[OVER_Z] = 1.0 / memory[a, YIELD], 1.0 / z
+    curve[LIFT] = n * power[0] * curve[OVER_Z]
+    curve[KAPPA] = memory[a, BETA] + sign * memory[a, GAMMA]
+    curve[WEIGHT] = n + 1.0
+
+
+@_fused_part
+def next_z(
+    k: int, x: float, z: Floats, power: Floats, speed: Floats, weighted: Floats, curve: Floats
+) -> float:
+    """Coefficient k of z where z_0 is not zero, `x` that of the elongation; those before stand.
+
+    ``k z_k = s_{k-1} - κ Σ s_i P_{k-1-i}`` with ``s = x'/u_y``, and of P, from ``n z' P = z P'``,
+    ``z_0 m P_m = Σ ((n + 1) i - m) z_i P_{m-i}``. What came last is waited for, so its terms
+    are added last, and each sum is made in two halves. The rate of x/u_y goes to `speed`,
+    ``(n + 1) k z_k`` to `weighted`.
+    """
+    m = k - 1
+    kappa, first = curve[KAPPA], speed[0]
+    latest = k * curve[OVER_UY] * x
+    speed[m] = latest
+    if m == 0:
+        value = latest * (1.0 - kappa * power[0])
+    else:
+        low, high, flow, later = 0.0, 0.0, 0.0, 0.0
+        if m % 2 == 0:
+            i = m // 2
+            low = speed[i] * power[i]
+            flow = (weighted[i] - m * z[i]) * power[i]
+        for i in range((m - 1) // 2, 0, -1):
+            j = m - i
+            low += speed[i] * power[j]
+            high += speed[j] * power[i]
+            flow += (weighted[i] - m * z[i]) * power[j]
+            later += (weighted[j] - m * z[j]) * power[i]
+        power[m] = (flow + later) * (curve[OVER_Z] * INVERSE[m]) + curve[LIFT] * z[m]
+        product = latest * power[0] + (low + high)
+        value = ((latest - kappa * product) - kappa * first * power[m]) * INVERSE[k]
+    z[k], weighted[k] = value, curve[WEIGHT] * k * value
+    return float(value)

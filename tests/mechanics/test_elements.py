@@ -1,0 +1,126 @@
+"""The laws of springs: eq. 3 as printed, its bound, its series, in each form that is used."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import hyp2f1
+
+from eventpound.mechanics.elements import (
+    CURVE_PLACES,
+    begin_curve,
+    next_z,
+    z_bound,
+    z_coefficient,
+    z_rate,
+    z_slopes,
+)
+from eventpound.scene import BoucWen
+from eventpound.solvers.fast.single.body import BODY
+from eventpound.solvers.fast.single.series import curved_series
+from tests.mechanics.dense import literal_z_rate, memory_of
+
+EPS = np.finfo(float).eps
+
+
+def test_rate_is_the_printed_one() -> None:
+    rng = np.random.default_rng(41)
+    for _ in range(1000):
+        n, beta = rng.choice([1.0, 1.5, 2.0, 7.3, 20.0]), rng.uniform(-1.0, 1.0)
+        gamma = rng.uniform(0.0, 1.0) - min(beta, 0.0)
+        u_y = 10.0 ** rng.uniform(-3, 1)
+        z = rng.choice([0.0, rng.uniform(-1.2, 1.2)])
+        x_rate = rng.choice([0.0, rng.normal()])
+        law = BoucWen(0.0, 1.0, u_y, n, beta, gamma)
+        terms = abs(x_rate) / u_y * (1.0 + (abs(beta) + gamma) * abs(z) ** n)
+        assert z_rate(0, memory_of(n, beta, gamma, u_y), x_rate, x_rate, z) == pytest.approx(
+            literal_z_rate(law, x_rate, z), abs=32 * EPS * terms
+        )
+
+
+@pytest.mark.parametrize(("beta", "gamma"), [(0.5, 0.5), (0.1, 0.9), (-0.2, 1.0), (2.0, 3.0)])
+@pytest.mark.parametrize("n", [1.0, 2.0, 20.0])
+def test_loading_ends_at_the_bound(beta: float, gamma: float, n: float) -> None:
+    law = memory_of(n, beta, gamma)
+    (bound,) = z_bound(law)
+    # Terms of size one cancel there; n of the roundings of |z|^n come on top.
+    assert abs(z_rate(0, law, 1.0, 1.0, bound)) < 8 * (n + 2) * EPS
+    assert z_rate(0, law, 1.0, 1.0, 0.999 * bound) > 0.0
+    assert z_rate(0, law, -1.0, -1.0, -0.999 * bound) < 0.0
+    assert z_rate(0, law, -1.0, -1.0, bound) < 0.0
+
+
+def test_default_bound_is_one() -> None:
+    assert z_bound(memory_of(20.0, 0.5, 0.5)) == 1.0
+
+
+@pytest.mark.parametrize("n", [1.0, 2.0, 5.0, 20.0])
+def test_backbone(n: float) -> None:
+    # Loading from zero: x/u_y = z 2F1(1, 1/n; 1 + 1/n; z^n), and z_rate integrated.
+    u_y = 0.3
+    ends = np.array([0.2, 0.6, 0.9, 0.99])
+    x = u_y * ends * hyp2f1(1.0, 1.0 / n, 1.0 + 1.0 / n, ends**n)
+    path = solve_ivp(
+        lambda _, z: [z_rate(0, memory_of(n, 0.5, 0.5, u_y), 1.0, 1.0, z[0])],
+        (0.0, x[-1]),
+        [0.0],
+        method="DOP853",
+        t_eval=x,
+        rtol=1e-13,
+        atol=1e-14,
+    )
+    np.testing.assert_allclose(path.y[0], ends, rtol=0.0, atol=1e-11)
+
+
+@pytest.mark.parametrize("n", [1.0, 1.5, 20.0])
+@pytest.mark.parametrize("z", [-0.8, -0.3, 0.4, 0.9])
+@pytest.mark.parametrize("x_rate", [-0.7, 1.3])
+def test_slopes_are_those_of_the_rate(n: float, z: float, x_rate: float) -> None:
+    law, small = memory_of(n, 0.3, 0.6, 0.1), 1e-6
+    by_rate, by_z = z_slopes(0, law, x_rate, z)
+    assert by_rate == pytest.approx(z_rate(0, law, x_rate, x_rate, z) / x_rate, rel=1e-13)
+    ends = [z_rate(0, law, x_rate, x_rate, z + s) for s in (-small, small)]
+    assert by_z == pytest.approx((ends[1] - ends[0]) / (2.0 * small), rel=1e-6, abs=1e-6)
+
+
+def _series_of_z(law: np.ndarray, x: np.ndarray, z_0: float, sigma: float) -> np.ndarray:
+    """Taylor coefficients of z, from those of the elongation, by the general recurrence."""
+    z, power = np.zeros(x.size), np.zeros(x.size)
+    z[0], rate = z_0, np.arange(1, x.size) * x[1:]
+    for k in range(x.size - 1):
+        z[k + 1] = z_coefficient(0, k, law, rate, z, power, sigma) / (k + 1)
+    return z
+
+
+@pytest.mark.parametrize("n", [1.0, 2.5, 20.0])
+@pytest.mark.parametrize(("z_0", "sigma"), [(0.7, 1.0), (-0.6, 1.0), (0.6, -1.0), (-0.8, -1.0)])
+def test_series_on_a_curve_is_the_general_one(n: float, z_0: float, sigma: float) -> None:
+    rng = np.random.default_rng(7)
+    law, x = memory_of(n, 0.3, 0.6, 0.5), rng.normal(size=20) * 0.3 ** np.arange(20)
+    x[1] = sigma * 0.2
+    wanted = _series_of_z(law, x, z_0, sigma)
+    z, power, speed, weighted = np.zeros((4, x.size))
+    curve = np.zeros(CURVE_PLACES)
+    z[0] = z_0
+    begin_curve(0, law, np.sign(z_0 * sigma), z_0, power, curve)
+    for k in range(1, x.size):
+        next_z(k, x[k], z, power, speed, weighted, curve)
+    np.testing.assert_allclose(z, wanted, rtol=1e-9, atol=1e-12 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("kappa", [1.0, 0.2])
+def test_series_of_one_body_is_the_general_one(kappa: float) -> None:
+    """The recurrence that the kernel of one body has for itself, κ > 0 for y of either sign."""
+    body = np.zeros(1, BODY).view(np.recarray)[0]
+    body.step, body.z, body.exponent, body.per_scale = 0.2, 0.7 if kappa == 1.0 else -0.7, 5.0, 2.0
+    body.stiffness, body.damping, body.strength = 3.0, 0.1, 1.5
+    body.x[1], body.x[2] = 0.3, -0.4
+    body.of_u, body.odd, body.even = 1e-30, 1.0, 1.0
+    order = abs(curved_series(kappa, 20, body))
+    assert order > 10
+    # β + γ = 1 where y > 0 and β - γ = κ where y < 0: one direction of loading.
+    law = memory_of(5.0, 0.5 * (1.0 + kappa), 0.5 * (1.0 - kappa), 0.5)
+    x = np.array(body.x[:order])
+    wanted = _series_of_z(law, x, float(body.z), 1.0)
+    np.testing.assert_allclose(body.z_terms[: order - 1], wanted[: order - 1], rtol=1e-10)
