@@ -45,7 +45,7 @@ from eventpound.solvers import knows_laws, solver_named, takes_loads, takes_poin
 from eventpound.solvers.events.roots import EVENTS
 from eventpound.study.many import simulate_many
 
-_LAW = BoucWen(stiffness=1.0, strength=0.3, yield_displacement=0.05)
+_LAW = BoucWen(1.0, 0.3, 0.05)
 _EVENT_DRIVEN, _FIXED_STEP = ("cvode", "ida", "fast"), ("moreau", "penalty")
 
 

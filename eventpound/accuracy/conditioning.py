@@ -26,11 +26,11 @@ from eventpound.scene.check import starts_of_supports
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.parameters import Place, places_of, value_at, with_values
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series
+from eventpound.scene.spring import GROUND, Hysteretic, Law
 
 LARGE, SMALL = 1e-10, 1e-13
 """Relative changes of the inputs."""
-Law = Linear | BilinearElastic | BoucWen | Series
+Law = Law
 DRAWS = 8
 """Scenes at each of them."""
 ROUNDING = 2.0**-53
@@ -136,7 +136,7 @@ def _admissible(before: Scene, after: Scene) -> Scene:
 
 def _within_bound(law: Law) -> Law:
     """A law with its initial z, if it has one, within its bound."""
-    if not isinstance(law, BoucWen):
+    if not isinstance(law, Hysteretic):
         return law
     bound = law.bound
     return replace(law, initial_z=float(np.clip(law.initial_z, -bound, bound)))

@@ -14,14 +14,14 @@ from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
 from eventpound.scene.grounded import ends_on_ground
-from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
+from eventpound.scene.spring import BilinearElastic, BoucWen, Law, LawName, Linear, Series, Spring
 from eventpound.units import Dimension
 
 _DIMENSIONS = {
     Parameter.YIELD_DISPLACEMENT: Dimension.LENGTH,
     Parameter.HARDENING: Dimension.NUMBER,
 }
-_LAWS = ("linear", "bilinear-elastic", "bouc-wen", "series")
+_LAWS = tuple(name.value for name in LawName)
 _YIELDING = "bilinear", "bilinearhysteretic", "elastoplastic", "elasticplastic", "hysteretic"
 _YIELDS = dict.fromkeys(
     _YIELDING,
@@ -66,10 +66,8 @@ def read_springs(
     )
 
 
-def _read_law(
-    table: Table, between: tuple[str, str], masses: Mapping[str, float]
-) -> Linear | BilinearElastic | Series | BoucWen:
-    law: Linear | BilinearElastic | Series | BoucWen
+def _read_law(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> Law:
+    law: Law
     match table.choice("law", _LAWS, _YIELDS):
         case "linear":
             law = _read_linear(table, between, masses)

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from eventpound.case.case import DEFAULTS, RunOptions, SolverOptions
 from eventpound.scene.contact import Contact, written
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
+from eventpound.scene.spring import law_keys
 
 
 def understood_case(
@@ -52,7 +52,7 @@ def understood_case(
                 "between": list(spring.between),
                 "name": spring.name,
                 **({} if spring.height is None else {"height": spring.height}),
-                **_law(spring.law),
+                **law_keys(spring.law),
             }
             for spring in scene.springs
         ],
@@ -97,29 +97,3 @@ def _run(run: RunOptions) -> dict[str, object]:
     options = {key: v for key, v in given.items() if v == v}
     usual = asdict(DEFAULTS)
     return options | {key: v for key, v in asdict(run.stated).items() if v != usual[key]}
-
-
-def _law(law: Linear | BilinearElastic | Series | BoucWen) -> dict[str, object]:
-    match law:
-        case Linear():
-            return {"law": "linear", "stiffness": law.stiffness}
-        case BilinearElastic():
-            return {
-                "law": "bilinear-elastic",
-                "compression": law.compression,
-                "extension": law.extension,
-                "offset": law.offset,
-            }
-        case Series():
-            return {"law": "series", "parts": [_law(part) for part in law.parts]}
-        case BoucWen():
-            return {
-                "law": "bouc-wen",
-                "stiffness": law.stiffness,
-                "strength": law.strength,
-                "yield_displacement": law.yield_displacement,
-                "exponent": law.exponent,
-                "beta": law.beta,
-                "gamma": law.gamma,
-                "initial_z": law.initial_z,
-            }

@@ -25,7 +25,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, reduced
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen
+from eventpound.scene.spring import GROUND, BilinearElastic, Hysteretic
 from eventpound.tolerances import EPS
 
 WORK_OF_SUPPORTS = 3
@@ -224,7 +224,7 @@ def assemble(scene: Scene) -> Model:
         ends += [(load.body, -1) for load in motion.loads]
         damping += [0.0] * len(motion.loads)
     laws = [spring.law for spring in scene.springs]
-    loops = {i: law for i, law in enumerate(laws) if isinstance(law, BoucWen)}
+    loops = {i: law for i, law in enumerate(laws) if isinstance(law, Hysteretic)}
 
     def column(values: list[float]) -> Floats:
         return np.array(values, dtype=np.float64)

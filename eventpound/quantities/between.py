@@ -30,7 +30,7 @@ from eventpound.quantities.rows import (
     warn_unsettled,
 )
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BoucWen
+from eventpound.scene.spring import GROUND, Hysteretic
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes, Recording, Task
 from eventpound.solvers.supported import link_force_on
@@ -143,7 +143,7 @@ def signals_of(scene: Scene, run: Recording) -> dict[str, Floats]:
     h = run.history
     found = {f"velocity.{body.name}.*": h.v[:, i] for i, body in enumerate(scene.bodies)}
     for i, spring in enumerate(scene.springs):
-        if isinstance(spring.law, BoucWen):
+        if isinstance(spring.law, Hysteretic):
             found[f"springs.{spring.name}.*_force"] = h.force[:, i]
     rate = {end: v for end, (v, _) in _motions(scene, run).items()}
     ground = {GROUND} | {support.name for support in scene.supports if not support.moves_apart}
@@ -161,7 +161,7 @@ def works_of(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:
     found, motions, h = {}, _motions(scene, run), run.history
     for spring in scene.springs:
         law = spring.law
-        if isinstance(law, BoucWen):
+        if isinstance(law, Hysteretic):
             z = h.z[:, scene.hysteretic_springs.index(spring.name)]
             rate, second = _elongating(spring.between, motions)
             own = link_law([law], [0.0]).memory

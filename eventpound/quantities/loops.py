@@ -15,14 +15,14 @@ from eventpound.mechanics.elements import link_law, yielding, z_rate
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.scene.elastic_laws import elastic_force, reduced
-from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
+from eventpound.scene.spring import Hysteretic, Law
 
 _PARTS = 16
 """Of the way from one row to the next."""
 
 
 def loop_of(
-    law: Linear | BilinearElastic | Series | BoucWen,
+    law: Law,
     t: Floats,
     x: Floats,
     rate: Floats,
@@ -32,7 +32,7 @@ def loop_of(
 
     Parameters
     ----------
-    law : Linear, BilinearElastic, Series or BoucWen
+    law : Law
         Its law.
     t, x, rate : ndarray, shape (n,)
         Times of the rows (s), elongation (m) and the rate of that (m/s).
@@ -50,7 +50,7 @@ def loop_of(
     right = (1.0 + 2.0 * rest) * x[1:, None] - rest * h * rate[1:, None]
     fine = rest**2 * left + part**2 * right
     elastic = reduced(law)
-    if not isinstance(law, BoucWen):
+    if not isinstance(law, Hysteretic):
         # An elastic law is a line with one corner, gone along from end to end.
         low, high = fine.min(), fine.max()
         ends = np.array([low, np.clip(elastic.offset, low, high), high])

@@ -9,14 +9,14 @@ from eventpound.quantities.base import SIX, Value, name_of
 from eventpound.quantities.runs import Runs
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BoucWen
+from eventpound.scene.spring import GROUND, Hysteretic
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes
 
 
 def is_hysteretic(scene: Scene, i: int) -> bool:
     """Whether spring i has a Bouc-Wen law."""
-    return isinstance(scene.springs[i].law, BoucWen)
+    return isinstance(scene.springs[i].law, Hysteretic)
 
 
 def is_elastic(scene: Scene, i: int) -> bool:
@@ -38,7 +38,7 @@ def ductility(many: Runs, i: int) -> Floats:
     """Largest elongation of a Bouc-Wen spring over its yield displacement."""
     spring = many.scene.springs[i]
     law = spring.law
-    assert isinstance(law, BoucWen)
+    assert isinstance(law, Hysteretic)
     limit = many.parameters.get(f"spring.{spring.name}.yield_displacement", law.yield_displacement)
     return _peak(many.elongation, i) / limit
 
@@ -118,7 +118,7 @@ def close_work(path: str) -> Value:
 def elastic_force_of(many: Runs, i: int) -> Extremes:
     """Extremes of a force that grows with the elongation, where that has its own."""
     law, x = many.scene.springs[i].law, many.elongation
-    assert not isinstance(law, BoucWen)
+    assert not isinstance(law, Hysteretic)
     own = reduced(law)
 
     def force(elongation: Floats) -> Floats:

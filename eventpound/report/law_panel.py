@@ -12,16 +12,13 @@ from eventpound.mechanics.elements import link_law
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.loops import z_by_x
 from eventpound.report.style import PALETTE, force_unit, length_unit, literal, say, zero_lines
-from eventpound.scene.damping import initial_stiffness
 from eventpound.scene.elastic_laws import elastic_force, reduced
-from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
+from eventpound.scene.spring import BoucWen, Hysteretic, Law, Linear, Spring
 
 _MOST = 4
 """Laws in one figure."""
 _REACH, _STEPS = 3.0, 200
 """Of a loop, in yield displacements, and steps a yield displacement."""
-
-Law = Linear | BilinearElastic | Series | BoucWen
 
 
 def laws_of(springs: Iterable[Spring]) -> list[tuple[str, Law]]:
@@ -71,7 +68,7 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
         Above it.
     """
     zero_lines(axes, upright=True)
-    if isinstance(law, BoucWen):
+    if isinstance(law, Hysteretic):
         x, force = _loop(law)
         said = _of_loop(axes, law)
     else:
@@ -82,7 +79,7 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
         said = f"k = {_stiffness(pair[0])}"
         if not isinstance(law, Linear):
             said = f"compression {_stiffness(pair[0])}\nextension {_stiffness(pair[1])}"
-    color = PALETTE[0] if isinstance(law, BoucWen) else PALETTE[1]
+    color = PALETTE[0] if isinstance(law, Hysteretic) else PALETTE[1]
     axes.plot(x, force, color="#333333" if isinstance(law, Linear) else color, linewidth=1.2)
     axes.set_title(literal(name), fontsize=8.0)
     axes.set_xlabel(f"elongation\n{said}", fontsize=7.0)
@@ -92,7 +89,7 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
 
 def _of_loop(axes: Axes, law: BoucWen) -> str:
     """Mark what is told of a loop; its parameters."""
-    first = initial_stiffness(law) or 0.0
+    first = law.initial_stiffness
     yields = law.yield_displacement, first * law.yield_displacement
     end = _REACH * law.yield_displacement
     back: Any = {"color": "#888888", "linewidth": 0.8, "linestyle": "--"}

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from eventpound.report.style import PALETTE, largest_size, new_figure, styled, zero_lines
 from eventpound.report.view import Beside, DrawnSpring, View, view_of
 from eventpound.results import StoredResults
-from eventpound.results.description import LawName
+from eventpound.scene.spring import LawName
 
 _COLUMNS = 4
 _WIDTH, _HEIGHT = 3.4, 2.7

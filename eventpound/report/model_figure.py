@@ -26,7 +26,7 @@ from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
 from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BoucWen, Spring
+from eventpound.scene.spring import GROUND, Hysteretic, Spring
 
 _MARGIN = WALL + 0.85
 """Beside the bodies."""
@@ -197,7 +197,7 @@ def _color(link: Spring | Dashpot) -> str:
     if isinstance(link, Dashpot):
         return "#777777"
     return _LAWS[
-        "bouc-wen" if isinstance(link.law, BoucWen) else _KINKED if kinked(link) else "linear"
+        "bouc-wen" if isinstance(link.law, Hysteretic) else _KINKED if kinked(link) else "linear"
     ]
 
 

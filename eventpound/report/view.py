@@ -13,12 +13,11 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.quantities.loops import loop_of
 from eventpound.report.style import Unit, force_unit, length_unit
 from eventpound.results import StoredResults
-from eventpound.results.description import LawName
 from eventpound.scene.contact import BARRIER, Contact, End
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND
+from eventpound.scene.spring import GROUND, LawName
 from eventpound.scene.structures import joined_groups
 from eventpound.solvers.base import EventKind
 from eventpound.units import STANDARD_GRAVITY
@@ -167,7 +166,7 @@ class View:
         x, columns = self.elongation(spring), set(self.results.history.columns)
         moving = [end for end in spring.between if end != GROUND]
         wanted = {f"sv.{end}" if end in self.supports else f"v.{end}" for end in moving}
-        z = f"z.{spring.name}" if spring.law is LawName.BOUC_WEN else None
+        z = f"z.{spring.name}" if spring.law.hysteretic else None
         if self.scene is None or x.size < 2 or not wanted | ({z} - {None}) <= columns:
             return x, self.column(f"force.{spring.name}")
         law = next(each.law for each in self.scene.springs if each.name == spring.name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from enum import StrEnum
 from hashlib import sha256
 
 import numpy as np
@@ -11,16 +10,7 @@ import numpy as np
 from eventpound.motion.base import GroundMotion
 from eventpound.scene.contact import Contact, written
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
-
-
-class LawName(StrEnum):
-    """What a spring law is called in a case and in results."""
-
-    LINEAR = "linear"
-    BILINEAR_ELASTIC = "bilinear-elastic"
-    SERIES = "series"
-    BOUC_WEN = "bouc-wen"
+from eventpound.scene.spring import Spring, law_keys
 
 
 def describe_scene(scene: Scene) -> dict[str, object]:
@@ -108,16 +98,4 @@ def describe_spring(spring: Spring) -> dict[str, object]:
         ``name``, ``between``, ``law`` and the parameters of the law (SI).
     """
     height = {} if spring.height is None else {"height": spring.height}
-    return {"name": spring.name, "between": spring.between, **height} | _law(spring.law)
-
-
-def _law(law: Linear | BilinearElastic | Series | BoucWen) -> dict[str, object]:
-    match law:
-        case Linear():
-            return {"law": LawName.LINEAR.value} | asdict(law)
-        case BilinearElastic():
-            return {"law": LawName.BILINEAR_ELASTIC.value} | asdict(law)
-        case BoucWen():
-            return {"law": LawName.BOUC_WEN.value} | asdict(law)
-        case Series():
-            return {"law": LawName.SERIES.value, "parts": [_law(part) for part in law.parts]}
+    return {"name": spring.name, "between": spring.between, **height} | law_keys(spring.law)

@@ -17,7 +17,7 @@ from eventpound.scene.contact import BARRIER, Contact, opening
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series
+from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Law, Linear
 
 _TINY = sys.float_info.min
 _Condition = Callable[[float], bool]
@@ -105,6 +105,10 @@ def scene_warnings(scene: Scene) -> tuple[str, ...]:
     )
 
 
+WITHIN_BOUND = ("exponent", "beta", "gamma", "initial_z")
+"""Numbers of a Bouc-Wen spring that decide together whether it may begin at its z."""
+
+
 @dataclass(frozen=True, slots=True)
 class _Element:
     """What is being checked."""
@@ -183,9 +187,7 @@ def _spring_problems(scene: Scene) -> Iterator[Problem]:
             yield from element.number("height", spring.height, "a positive length (m)", _positive)
 
 
-def _law_problems(
-    element: _Element, law: Linear | BilinearElastic | Series | BoucWen, prefix: str = ""
-) -> Iterator[Problem]:
+def _law_problems(element: _Element, law: Law, prefix: str = "") -> Iterator[Problem]:
     if isinstance(law, BoucWen):
         yield from _bouc_wen_problems(element, law)
     elif isinstance(law, Linear):

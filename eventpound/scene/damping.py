@@ -18,10 +18,10 @@ from collections.abc import Collection, Iterable
 
 from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot
-from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series, Spring
+from eventpound.scene.spring import GROUND, Hysteretic, Law, Linear, Spring
 
 
-def initial_stiffness(law: Linear | BilinearElastic | Series | BoucWen) -> float | None:
+def initial_stiffness(law: Law) -> float | None:
     """Stiffness of a law at its start (N/m).
 
     Returns
@@ -32,14 +32,14 @@ def initial_stiffness(law: Linear | BilinearElastic | Series | BoucWen) -> float
     """
     if isinstance(law, Linear):
         return law.stiffness
-    if isinstance(law, BoucWen):
+    if isinstance(law, Hysteretic):
         return law.initial_stiffness
     return None
 
 
-def post_yield_stiffness(law: Linear | BilinearElastic | Series | BoucWen) -> float | None:
+def post_yield_stiffness(law: Law) -> float | None:
     """Stiffness k of a linear or yielded Bouc-Wen law (N/m); None for a law with a kink."""
-    return law.stiffness if isinstance(law, Linear | BoucWen) else None
+    return law.stiffness if isinstance(law, Linear | Hysteretic) else None
 
 
 def ratio_coefficient(ratio: float, stiffness: float, mass: float) -> float:

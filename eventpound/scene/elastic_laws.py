@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
+from eventpound.scene.spring import BilinearElastic, Hysteretic, Law, Linear
 
 
 class ElasticLaws(NamedTuple):
@@ -45,12 +45,12 @@ def as_arrays(laws: Iterable[BilinearElastic]) -> ElasticLaws:
     return ElasticLaws(*columns.reshape(-1, 3).T.copy())
 
 
-def reduced(law: Linear | BilinearElastic | Series | BoucWen) -> BilinearElastic:
+def reduced(law: Law) -> BilinearElastic:
     """The law as two stiffnesses and an offset; of one with a memory what is elastic.
 
     Parameters
     ----------
-    law : Linear, BilinearElastic, Series or BoucWen
+    law : Law
         Any law.
 
     Returns
@@ -58,7 +58,7 @@ def reduced(law: Linear | BilinearElastic | Series | BoucWen) -> BilinearElastic
     BilinearElastic
         The same force for every elongation.
     """
-    if isinstance(law, Linear | BoucWen):
+    if isinstance(law, Linear | Hysteretic):
         return BilinearElastic(law.stiffness, law.stiffness, 0.0)
     if isinstance(law, BilinearElastic):
         return law

@@ -51,8 +51,23 @@ class Loops(NamedTuple):
 
     @property
     def steepest(self) -> Floats:
-        """The largest slope of each z (1/m)."""
-        return (1.0 + np.maximum(-self.before, 0.0)) / self.yield_displacement
+        """The largest stiffness that each adds (N/m)."""
+        return self.strength * ((1.0 + np.maximum(-self.before, 0.0)) / self.yield_displacement)
+
+    @property
+    def largest(self) -> Floats:
+        """The largest force of each (N)."""
+        return self.strength * self.bound
+
+    @property
+    def knee(self) -> Floats:
+        """Elongations at which they yield (m)."""
+        return self.yield_displacement
+
+    def pull(self, travel: Floats) -> tuple[Floats, Floats]:
+        """What each pulls with beside its elastic part (N), and the slope (N/m), as of `loaded`."""
+        z, slope = self.loaded(travel)
+        return self.strength * z, self.strength * slope
 
     def loaded(self, travel: Floats) -> tuple[Floats, Floats]:
         """The z of each after an elongation by `travel` (m) one way, and its slope (1/m).
@@ -71,6 +86,13 @@ class Loops(NamedTuple):
         y = _value(np.where(turned, back - xi, ahead), n, kappa)
         z = np.where(xi == 0.0, self.initial_z, way * b * np.where(turned, -y, y))
         return z, np.maximum(1.0 - kappa * y**n, 0.0) / self.yield_displacement
+
+
+def not_convex(law: BoucWen) -> tuple[str, str] | None:
+    """Why a law loaded straight has no convex potential, and what has; None where it has."""
+    if law.gamma >= 0.0:
+        return None
+    return f"unloads with a negative stiffness (gamma = {law.gamma!r})", "gamma >= 0"
 
 
 def _last(kappa: Floats) -> Floats:

@@ -12,7 +12,7 @@ from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.force import Force
-from eventpound.scene.spring import BoucWen, Spring
+from eventpound.scene.spring import Hysteretic, Spring
 from eventpound.scene.support import Support
 
 
@@ -48,4 +48,4 @@ class Scene:
     @property
     def hysteretic_springs(self) -> list[str]:
         """Names of the Bouc-Wen springs, in the order of z."""
-        return [spring.name for spring in self.springs if isinstance(spring.law, BoucWen)]
+        return [spring.name for spring in self.springs if isinstance(spring.law, Hysteretic)]

@@ -8,7 +8,9 @@ Every number may be given as a string with a unit, ``"1051 kN/m"``.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Annotated
+from dataclasses import asdict
+from enum import StrEnum
+from typing import Annotated, ClassVar
 
 from eventpound.given import (
     Given,
@@ -25,6 +27,20 @@ from eventpound.units import Dimension
 GROUND = "ground"
 
 
+class LawName(StrEnum):
+    """What a spring law is called in a case and in results."""
+
+    LINEAR = "linear"
+    BILINEAR_ELASTIC = "bilinear-elastic"
+    BOUC_WEN = "bouc-wen"
+    SERIES = "series"
+
+    @property
+    def hysteretic(self) -> bool:
+        """Whether it has a memory."""
+        return self is LawName.BOUC_WEN
+
+
 @converting
 class Linear:
     """``F = k x``.
@@ -35,6 +51,7 @@ class Linear:
         k (N/m), not negative.
     """
 
+    word: ClassVar[LawName] = LawName.LINEAR
     stiffness: Annotated[Number, Dimension.STIFFNESS]
 
     def __post_init__(self) -> None:
@@ -53,6 +70,7 @@ class BilinearElastic:
         o (m), the elongation at which the force vanishes.
     """
 
+    word: ClassVar[LawName] = LawName.BILINEAR_ELASTIC
     compression: Annotated[Number, Dimension.STIFFNESS]
     extension: Annotated[Number, Dimension.STIFFNESS]
     offset: Annotated[Number, Dimension.LENGTH] = default(0.0)
@@ -74,14 +92,43 @@ class Series:
         At least one; kept as a tuple.
     """
 
+    word: ClassVar[LawName] = LawName.SERIES
     parts: Given[tuple[Linear | BilinearElastic, ...], Iterable[Linear | BilinearElastic]]
 
     def __post_init__(self) -> None:
         read_fields(self)
 
 
+class Hysteretic:
+    """A law with a memory, ``F = k x + Q z``: what everyone may ask of it beside its solver.
+
+    Its z starts with the slope 1/u_y and stays within a bound of its own.
+    """
+
+    __slots__ = ()
+    stiffness: float
+    strength: float
+    yield_displacement: float
+    initial_z: float
+
+    @property
+    def initial_stiffness(self) -> float:
+        """K0 (N/m), that at z = 0."""
+        return self.stiffness + self.strength / self.yield_displacement
+
+    @property
+    def yield_force(self) -> float:
+        """F_y (N), where the bilinear backbone has its knee."""
+        return self.strength + self.stiffness * self.yield_displacement
+
+    @property
+    def yields(self) -> bool:
+        """Whether z has a part in the force."""
+        return self.strength > 0.0
+
+
 @converting
-class BoucWen:
+class BoucWen(Hysteretic):
     """``F = k x + Q z`` with the hysteretic variable z of eq. 3 of the founding paper.
 
     ``z' = (1/u_y) [x' - gamma |x'| z |z|^(n-1) - beta x' |z|^n]``, so that
@@ -103,6 +150,7 @@ class BoucWen:
         z at the start, within its bound.
     """
 
+    word: ClassVar[LawName] = LawName.BOUC_WEN
     stiffness: Annotated[Number, Dimension.STIFFNESS]
     strength: Annotated[Number, Dimension.FORCE]
     yield_displacement: Annotated[Number, Dimension.LENGTH]
@@ -113,16 +161,6 @@ class BoucWen:
 
     def __post_init__(self) -> None:
         read_fields(self)
-
-    @property
-    def initial_stiffness(self) -> float:
-        """K0 (N/m), that at z = 0."""
-        return self.stiffness + self.strength / self.yield_displacement
-
-    @property
-    def yield_force(self) -> float:
-        """F_y (N), where the bilinear backbone has its knee."""
-        return self.strength + self.stiffness * self.yield_displacement
 
     @property
     def bound(self) -> float:
@@ -181,6 +219,17 @@ class BoucWen:
         )
 
 
+Law = Linear | BilinearElastic | Series | BoucWen
+"""What a spring may have."""
+
+
+def law_keys(law: Law) -> dict[str, object]:
+    """A law by the keys of a case file (SI)."""
+    if isinstance(law, Series):
+        return {"law": law.word.value, "parts": [law_keys(part) for part in law.parts]}
+    return {"law": law.word.value} | asdict(law)
+
+
 @converting
 class Spring:
     """A law between two bodies or a body and the ground.
@@ -191,7 +240,7 @@ class Spring:
         Unique among the springs of the scene.
     between : tuple of str
         Names of the first and the second end; one may be ``"ground"``.
-    law : Linear, BilinearElastic, Series or BoucWen
+    law : Law
         Force as a function of the elongation (and, for Bouc-Wen, its history).
     height : float, optional
         Of the storey that it is (m): its drift ratio is elongation over height.
@@ -199,7 +248,7 @@ class Spring:
 
     name: str
     between: Given[tuple[str, str], Sequence[str]]
-    law: Linear | BilinearElastic | Series | BoucWen
+    law: Law
     height: Annotated[OptionalNumber, Dimension.LENGTH] = default(None)
 
     def __post_init__(self) -> None:

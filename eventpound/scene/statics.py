@@ -17,9 +17,9 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.check import starts_of_supports
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, elastic_force, reduced
 from eventpound.scene.equilibrium import NoEquilibriumError, Potential, equilibrium
-from eventpound.scene.loaded_straight import Loops
+from eventpound.scene.loaded_straight import Loops, not_convex
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen
+from eventpound.scene.spring import BoucWen, Hysteretic
 
 
 def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
@@ -75,12 +75,10 @@ def _check(scene: Scene) -> None:
             f"beside the contact {soft[0]!r}, which has a law of its own", "contacts that are rigid"
         )
     for spring in scene.springs:
-        if isinstance(spring.law, BoucWen) and spring.law.gamma < 0.0:
-            raise _refused(
-                f"with the spring {spring.name!r}, which unloads with a negative stiffness "
-                f"(gamma = {spring.law.gamma!r})",
-                "gamma >= 0",
-            )
+        if isinstance(spring.law, Hysteretic):
+            why = not_convex(spring.law)
+            if why:
+                raise _refused(f"with the spring {spring.name!r}, which {why[0]}", why[1])
 
 
 @dataclass(frozen=True)
@@ -95,7 +93,7 @@ class _Springs:
     def of(cls, scene: Scene) -> _Springs:
         """Those of a scene."""
         laws = [spring.law for spring in scene.springs]
-        loops = {i: law for i, law in enumerate(laws) if isinstance(law, BoucWen)}
+        loops = {i: law for i, law in enumerate(laws) if isinstance(law, Hysteretic)}
         return cls(
             as_arrays(map(reduced, laws)),
             np.array([*loops], np.int64),
@@ -105,16 +103,16 @@ class _Springs:
     def answer(self, x: Floats, x_0: Floats) -> tuple[Floats, Floats]:
         """Forces (N) and slopes (N/m) at elongations, loaded from others (m), all (S,)."""
         force, slope = elastic_force(self.elastic, x)
-        z, growth = self.loops.loaded((x - x_0)[self.hysteretic])
-        force[self.hysteretic] += self.loops.strength * z
-        slope[self.hysteretic] += self.loops.strength * growth
+        pull, growth = self.loops.pull((x - x_0)[self.hysteretic])
+        force[self.hysteretic] += pull
+        slope[self.hysteretic] += growth
         return force, slope
 
     @property
     def stiffness(self) -> Floats:
         """The largest of each (N/m)."""
         found = np.maximum(self.elastic.compression, self.elastic.extension)
-        found[self.hysteretic] += self.loops.strength * self.loops.steepest
+        found[self.hysteretic] += self.loops.steepest
         return found
 
     @property
@@ -122,7 +120,7 @@ class _Springs:
         """Forces far in compression and far in extension (N), shape (2, S)."""
         sides = np.array((self.elastic.compression, self.elastic.extension))
         found = np.where(sides > 0.0, np.inf, 0.0)
-        found[:, self.hysteretic] += self.loops.strength * self.loops.bound
+        found[:, self.hysteretic] += self.loops.largest
         return found * np.array([[-1.0], [1.0]])
 
     @property
@@ -135,7 +133,7 @@ class _Springs:
                 np.where(e.extension == 0.0, np.inf, e.offset),
             )
         )
-        found[:, self.hysteretic[self.loops.strength > 0.0]] = 0.0
+        found[:, self.hysteretic[self.loops.largest > 0.0]] = 0.0
         return found
 
 
@@ -166,7 +164,7 @@ def _potential(scene: Scene, springs: _Springs, given: Floats, start: float) -> 
         factor = scene.bodies[i].mass if force.per_mass else 1.0
         load[i] += factor * float(force.history.acceleration(np.array(start)))
     x_0 = moved + B @ given
-    lengths = (given, gap, x_0, springs.elastic.offset, springs.loops.yield_displacement)
+    lengths = (given, gap, x_0, springs.elastic.offset, springs.loops.knee)
     return Potential(
         B,
         W,

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 
 from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BoucWen, Spring
+from eventpound.scene.spring import GROUND, Hysteretic, Spring
 
 
 def mass_on(scene: Scene, spring: Spring) -> float | None:
@@ -124,26 +124,26 @@ def isolated(scene: Scene) -> set[str]:
         The storeys of a frame grow weaker upwards: there it is the first floor alone.
     """
     scene = grounded(scene)
-    strength: dict[frozenset[str], float] = {}
+    yields: dict[frozenset[str], float] = {}
     for spring in scene.springs:
         law = spring.law
-        if isinstance(law, BoucWen) and law.strength > 0.0:
+        if isinstance(law, Hysteretic) and law.yields:
             ends = frozenset(spring.between)
             force = law.yield_force
-            strength[ends] = strength.get(ends, 0.0) + force
+            yields[ends] = yields.get(ends, 0.0) + force
     names = [GROUND, *(body.name for body in scene.bodies)]
     joints = [spring.between for spring in scene.springs]
-    elastic = [ends for ends in joints if frozenset(ends) not in strength]
+    elastic = [ends for ends in joints if frozenset(ends) not in yields]
     # What the ground holds without a spring that yields: piers, abutments, footings.
     held = set(joined_groups(names, elastic)[0])
     below: dict[str, float] = {}
-    for ends, force in strength.items():
+    for ends, force in yields.items():
         if len(ends - held) == 1:
             (above,) = ends - held
             below[above] = below.get(above, 0.0) + force
     others = [name for name in names if name not in held]
     found: set[str] = set()
     for body, force in below.items():
-        stronger = [e for e in joints if strength.get(frozenset(e), math.inf) > force]
+        stronger = [e for e in joints if yields.get(frozenset(e), math.inf) > force]
         found.update(*(group for group in joined_groups(others, stronger) if body in group))
     return found

@@ -13,13 +13,11 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
+from eventpound.scene.check import WITHIN_BOUND
 from eventpound.scene.contact import BARRIER, opening
 from eventpound.scene.parameters import Place, value_at
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
-
-_SHAPE = ("exponent", "beta", "gamma", "initial_z")
-"""Numbers of a Bouc-Wen spring that decide together whether it may begin at its z."""
 
 
 def worst_variants(scene: Scene, values: Mapping[Place, Floats], count: int) -> Ints:
@@ -41,7 +39,7 @@ def worst_variants(scene: Scene, values: Mapping[Place, Floats], count: int) -> 
     rows += [np.array((np.argmin(each), np.argmax(each))) for each in values.values()]
     shapes: dict[int, list[Floats]] = {}
     for place, column in values.items():
-        if place.kind == "spring" and place.field in _SHAPE:
+        if place.kind == "spring" and place.field in WITHIN_BOUND:
             shapes.setdefault(place.index, []).append(column)
     rows += [distinct(columns, count)[0] for columns in shapes.values()]
     return np.unique(np.concatenate(rows))

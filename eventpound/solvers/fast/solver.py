@@ -28,7 +28,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
-from eventpound.scene.spring import BoucWen, Linear
+from eventpound.scene.spring import Hysteretic, Linear
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.recorder import (
     energy_ledger,
@@ -233,7 +233,7 @@ def kernels_kept(task: Task) -> bool:
     linear springs in the place of hysteretic ones, for which no backbone is made, and a kernel
     that has run in this process serves every scene.
     """
-    curved = [isinstance(spring.law, BoucWen) for spring in task.scene.springs]
+    curved = [isinstance(spring.law, Hysteretic) for spring in task.scene.springs]
     springs = tuple(
         replace(spring, law=Linear(1.0)) if bends else spring
         for spring, bends in zip(task.scene.springs, curved, strict=True)

@@ -1,0 +1,51 @@
+"""How many modules know the constants of a spring with a memory: what a new law would touch."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import eventpound
+
+ROOT = Path(eventpound.__file__).parent
+CONSTANTS = {"strength", "yield_displacement", "exponent", "beta", "gamma"}
+OTHERS = {
+    # Modules in which such a word means something else.
+    "accuracy/bound.py",
+    "accuracy/conditioning.py",
+    "accuracy/work_precision.py",
+    "case/excitation.py",
+    "cli/finished.py",
+    "mechanics/series.py",
+    "motion/mavroeidis_papageorgiou.py",
+    "motion/pulse_fit.py",
+    "motion/readers/header.py",
+    "numerics/polynomial.py",
+    "report/fragility_figure.py",
+    "report/suite_spectrum.py",
+    "results/pulses.py",
+    "solvers/events/short_series.py",
+    "study/fragility.py",
+    "study/suite_statistics.py",
+}
+MOST, MOST_IN_SOLVERS = 24, 8
+
+
+def _names(path: Path) -> set[str]:
+    """Names, arguments, attributes and texts of a module."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        own = [getattr(node, key, None) for key in ("id", "attr", "arg", "name", "value")]
+        found |= {name for name in own if isinstance(name, str)}
+    return found
+
+
+def test_few_modules_name_a_constant_of_a_law_with_a_memory() -> None:
+    naming = {
+        path.relative_to(ROOT).as_posix() for path in ROOT.rglob("*.py") if _names(path) & CONSTANTS
+    }
+    assert naming >= OTHERS
+    naming -= OTHERS
+    assert len(naming) <= MOST, sorted(naming)
+    inside = {name for name in naming if name.startswith(("solvers/", "mechanics/"))}
+    assert len(inside) <= MOST_IN_SOLVERS, sorted(inside)
