@@ -75,7 +75,7 @@ def near_misses(scene: Scene, recording: Recording) -> tuple[NearMiss, ...]:
         if moving & {*contact.ends}:
             # Its gap carries a motion that is not among these columns.
             continue
-        rate, second = (np.array([model.rates(row)[j] for row in x]) for x in (h.v, acceleration))
+        rate, second = (model.rates(x)[:, j] for x in (h.v, acceleration))
         turns = largest_turns(h.t, -h.gap[:, j], -rate, -second, -NEAR_GAP * largest)
         misses = [NearMiss(contact.name, turn.t, -turn.value) for turn in turns if turn.value < 0.0]
         found += sorted(misses, key=lambda miss: miss.gap)[:MOST]

@@ -30,7 +30,7 @@ from eventpound.numerics.power_series import (
     sign_after,
 )
 from eventpound.scene.elastic_laws import ElasticLaws, elastic_force
-from eventpound.scene.spring import BoucWen, Law
+from eventpound.scene.spring import BoucWen, Hysteretic, Law
 from eventpound.tolerances import NO_Z
 
 CONSTANTS = ("kind", "strength", "yield_displacement", "exponent", "beta", "gamma")
@@ -69,7 +69,7 @@ class Yielding(NamedTuple):
     displacement: Floats
 
 
-def link_law(laws: Sequence[Law], damping: Any) -> LinkLaw:
+def link_law(laws: Sequence[Law | Hysteretic], damping: Any) -> LinkLaw:
     """Laws of links as arrays; those of which `damping` (N s/m) is longer are dashpots alone."""
     rows = np.tile(np.array((ELASTIC, 0.0, 1.0, 20.0, 0.5, 0.5)), (len(damping), 1))
     for row, law in zip(rows, laws, strict=False):

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements, elements_of
-from eventpound.mechanics.elements import LinkLaw, contact_law, link_law
+from eventpound.mechanics.elements import LinkLaw, contact_law, link_law, spring_forces
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact import BARRIER
@@ -130,7 +130,7 @@ class Model:
         return places
 
     def gaps(self, u: Floats) -> Floats:
-        """Gaps ``g = δ + u_right - u_left`` (m), shape (K,), for u of shape (N,)."""
+        """Gaps ``g = δ + u_right - u_left`` (m), shape (..., K), for u of shape (..., N)."""
         return self.gap + self.rates(u)
 
     def initial_gaps(self, length: float) -> Floats:
@@ -138,17 +138,40 @@ class Model:
         return without_rounding(self.gaps(self.u0), self.gap, self.u0, length)
 
     def rates(self, v: Floats) -> Floats:
-        """``Wᵀ v``, shape (K,): rates of the gaps for velocities v of shape (N,)."""
-        extended = np.append(v, 0.0)
-        found = np.asarray(extended[self.right] - extended[self.left])
+        """``Wᵀ v``, shape (..., K): rates of the gaps for velocities v of shape (..., N)."""
+        found = differences(v, self.left, self.right)
         if self.points.size > 0:
-            found[self.points] = self.spread @ v
+            found[..., self.points] = (self.spread @ v[..., None])[..., 0]
         return found
 
     def elongations(self, u: Floats) -> Floats:
-        """Elongations of the links (m), shape (L,), for u of shape (N,)."""
-        extended = np.append(u, 0.0)
-        return np.asarray(extended[self.link_ends[:, 1]] - extended[self.link_ends[:, 0]])
+        """Elongations of the links (m), shape (..., L), for u of shape (..., N)."""
+        return differences(u, *self.link_ends.T)
+
+    def link_forces(self, u: Floats, v: Floats, z: Floats) -> tuple[Floats, Floats]:
+        """Forces of the links without and with their dashpots (N), shape (..., L) each.
+
+        `z` of shape (..., H).
+        """
+        springs = spring_forces(self.elastic, self.law, self.hysteretic, self.elongations(u), z)
+        return springs, springs + self.law.damping * self.elongations(v)
+
+    def pulled(self, force: Floats) -> Floats:
+        """Sum of the forces (..., L) of the links on each body (N), shape (..., N)."""
+        total = np.zeros((*force.shape[:-1], self.bodies + 1))
+        for link, (first, second) in enumerate(self.link_ends):
+            total[..., first] += force[..., link]
+            total[..., second] -= force[..., link]
+        return total[..., :-1]
+
+
+def differences(values: Floats, first: Ints, second: Ints) -> Floats:
+    """Values (..., N) of bodies at each second end less those at the first, shape (..., k).
+
+    End -1 is the ground or a barrier, whose value is zero.
+    """
+    extended = np.concatenate((values, np.zeros((*values.shape[:-1], 1))), axis=-1)
+    return np.asarray(extended[..., second] - extended[..., first])
 
 
 def with_elements(model: Model) -> Model:

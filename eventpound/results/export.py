@@ -225,10 +225,9 @@ def arrays_of(scene: Scene) -> dict[str, object]:
     count = len(scene.supports)
     ends = tuple(Body(support.name, 1.0) for support in scene.supports)
     model = assemble(replace(scene, bodies=(*ends, *scene.bodies), supports=(), forces=()))
-    identity = np.eye(model.bodies)
-    b_links = np.array([model.elongations(row) for row in identity])
+    b_links = model.elongations(np.eye(model.bodies))
     C, B = b_links * model.law.damping @ b_links.T, b_links[:, : model.springs]
-    W = np.array([model.rates(row) for row in identity])
+    W = model.rates(np.eye(model.bodies))
     return {
         "M": model.mass[count:],
         "C": C[count:, count:],

@@ -45,7 +45,7 @@ def as_arrays(laws: Iterable[BilinearElastic]) -> ElasticLaws:
     return ElasticLaws(*columns.reshape(-1, 3).T.copy())
 
 
-def reduced(law: Law) -> BilinearElastic:
+def reduced(law: Law | Hysteretic) -> BilinearElastic:
     """The law as two stiffnesses and an offset; of one with a memory what is elastic.
 
     Parameters

@@ -13,11 +13,10 @@ from dataclasses import fields
 
 import numpy as np
 
-from eventpound.mechanics.elements import spring_forces
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.base import Event, Extremes, History, Recording, Task, Work
-from eventpound.solvers.inferred_impacts import differences, inferred_impacts, openings
+from eventpound.solvers.inferred_impacts import inferred_impacts
 from eventpound.tolerances import SAME_SAMPLE
 
 
@@ -53,7 +52,7 @@ def sampled_recording(
     t, u, v, z = rows = _rows(model, t, u, v, z)
     impacts = inferred_impacts(model, t, u, v) if events is None else tuple(events)
     full = _history(task, model, rows)
-    elongation = differences(u, *model.link_ends.T)[:, : model.springs]
+    elongation = model.elongations(u)[:, : model.springs]
     ends = float(t[-1]) >= task.end - SAME_SAMPLE * (task.end - task.start)
     unknown = np.full(model.contacts, np.nan)
     return Recording(
@@ -92,40 +91,24 @@ def _rows(
 def _history(task: Task, model: Model, rows: tuple[Floats, Floats, Floats, Floats]) -> History:
     """All rows with what follows from them."""
     t, u, v, z = rows
-    springs, total = link_forces(model, u, v, z)
+    springs, total = model.link_forces(u, v, z)
     return History(
         t,
         task.scene.motion.acceleration(t),
         u,
         v,
         # The forces of contacts are not known; while one rests they are missing here.
-        pulled(model, total) / model.mass,
+        model.pulled(total) / model.mass,
         z,
         springs[:, : model.springs],
-        model.gap + openings(model, u),
+        model.gaps(u),
         np.full((t.size, model.contacts), np.nan),
     )
 
 
-def link_forces(model: Model, u: Floats, v: Floats, z: Floats) -> tuple[Floats, Floats]:
-    """Force of every link without and with its dashpot (N), shape (n, L); u, v (n, N), z (n, H)."""
-    x, x_rate = (differences(values, *model.link_ends.T) for values in (u, v))
-    springs = spring_forces(model.elastic, model.law, model.hysteretic, x, z)
-    return springs, springs + model.law.damping * x_rate
-
-
-def pulled(model: Model, force: Floats) -> Floats:
-    """Sum of the forces of the links (n, L) on each body, shape (n, N) (N)."""
-    total = np.zeros((force.shape[0], model.bodies + 1))
-    for link, (first, second) in enumerate(model.link_ends):
-        total[:, first] += force[:, link]
-        total[:, second] -= force[:, link]
-    return total[:, :-1]
-
-
 def _base_shear(model: Model, full: History) -> Floats:
     """Sum of the forces of springs and dashpots on the ground (N), shape (n, 1)."""
-    force = link_forces(model, full.u, full.v, full.z)[1]
+    force = model.link_forces(full.u, full.v, full.z)[1]
     first, second = (model.link_ends[:, end] == -1 for end in (0, 1))
     shear: Floats = force[:, first].sum(axis=1) - force[:, second].sum(axis=1)
     return shear[:, None]

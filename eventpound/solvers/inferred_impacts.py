@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.model import Model
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Floats
 from eventpound.score import turns
 from eventpound.solvers.base import Event, EventKind
 
@@ -32,7 +32,7 @@ def inferred_impacts(model: Model, t: Floats, u: Floats, v: Floats) -> tuple[Eve
     tuple of Event
         Impulses and lost energies are not known (NaN); every impact is a group of its own.
     """
-    gaps, rates = model.gap + openings(model, u), openings(model, v)
+    gaps, rates = model.gaps(u), model.rates(v)
     length = float(np.abs(u).max(initial=0.0))
     found = [
         (time, j, before, after)
@@ -43,32 +43,3 @@ def inferred_impacts(model: Model, t: Floats, u: Floats, v: Floats) -> tuple[Eve
         Event(time, EventKind.IMPACT, group, j, before, after, np.nan, np.nan)
         for group, (time, j, before, after) in enumerate(sorted(found))
     )
-
-
-def differences(values: Floats, first: Ints, second: Ints) -> Floats:
-    """Value at each second end less that at the first, the ground's zero; shape (n, k).
-
-    Parameters
-    ----------
-    values : ndarray, shape (n, N)
-        Of the bodies, a row an instant.
-    first, second : ndarray of int, shape (k,)
-        Bodies; -1 is the ground or a barrier.
-    """
-    extended = np.column_stack((values, np.zeros(values.shape[0])))
-    return np.asarray(extended[:, second] - extended[:, first])
-
-
-def openings(model: Model, values: Floats) -> Floats:
-    """``Wᵀ`` times values of the bodies, shape (n, K): by how much they open each contact.
-
-    Parameters
-    ----------
-    model : Model
-        The scene.
-    values : ndarray, shape (n, N)
-        Displacements (m) or velocities (m/s), a row an instant.
-    """
-    found = differences(values, model.left, model.right)
-    found[:, model.points] = values @ model.spread.T
-    return found

@@ -21,7 +21,6 @@ from eventpound.mechanics.clusters import unique_forces
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.descriptor import contact_rows
-from eventpound.mechanics.elements import spring_forces
 from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.observables import Observed, blank
@@ -95,9 +94,7 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
     gap, rate = model.initial_gaps(scales.length), model.rates(model.v0)
     if not ((model.elements.kind == NO_LAW) & (gap == 0.0) & (rate < 0.0)).any():
         return np.empty((0, row_width(model)))
-    x, links = model.elongations(model.u0), (model.elastic, model.law, model.hysteretic)
-    elastic = spring_forces(*links, x, model.z0)
-    total = elastic + model.law.damping * model.elongations(model.v0)
+    elastic, total = model.link_forces(model.u0, model.v0, model.z0)
     force = contact_forces(model.elements, gap, rate, np.zeros(gap.size))
     elastic[model.plain :] = total[model.plain :] = -force[model.laws]
     line = np.concatenate(
@@ -105,7 +102,7 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
             (task.start, _ground(task)),
             model.u0,
             model.v0,
-            _pulled(model, total) / model.mass + _loads(task, model),
+            model.pulled(total) / model.mass + _loads(task, model),
             model.z0,
             elastic[: model.springs],
             gap,
@@ -113,14 +110,6 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
         )
     )
     return line.reshape(1, -1)
-
-
-def _pulled(model: Model, force: Floats) -> Floats:
-    """Sum of the forces of the links on each body, shape (N,) (N)."""
-    total = np.zeros(model.bodies + 1)
-    np.add.at(total, model.link_ends[:, 0], force)
-    np.add.at(total, model.link_ends[:, 1], -force)
-    return total[:-1]
 
 
 def _ground(task: Task) -> float:

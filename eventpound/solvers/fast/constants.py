@@ -9,7 +9,7 @@ import numpy as np
 from eventpound.contact.cascade import INTERVAL, RESTED_AT, SETTLED_AT, SINCE_IMPACT, T
 from eventpound.mechanics.backbone import hysteresis_of
 from eventpound.mechanics.elements import CURVE_PLACES, yielding
-from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model, without_rounding
+from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model, differences, without_rounding
 from eventpound.mechanics.monitored import places_of
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats, Ints
@@ -177,7 +177,9 @@ def blank_state(
         Entries of the energy ledger.
     """
     contacts, limits, runs = plan.contacts, plan.limits, u0.shape[:-1]
-    gap = without_rounding(contacts.gap + _rates(contacts, u0), contacts.gap, u0, limits.length)
+    ends = contacts.left, contacts.right
+    gap = contacts.gap + differences(u0, *ends)
+    gap = without_rounding(gap, contacts.gap, u0, limits.length)
     clock = np.zeros((*runs, CLOCK_SIZE))
     clock[..., T], clock[..., GUESS] = start, limits.time
     clock[..., INTERVAL] = limits.time
@@ -193,7 +195,7 @@ def blank_state(
         z0 / plan.hysteresis.bound,
         np.zeros(z0.shape, np.int64),
         gap,
-        _rates(contacts, v0),
+        differences(v0, *ends),
         np.zeros(gap.shape, np.bool_),
         np.zeros(gap.shape, np.bool_),
         np.zeros(gap.shape, np.bool_),
@@ -202,13 +204,6 @@ def blank_state(
         clock,
         counts,
     )
-
-
-def _rates(contacts: Contacts, v: Floats) -> Floats:
-    """Rates of the gaps, shape (..., K), for velocities of shape (..., N)."""
-    extended = np.concatenate((v, np.zeros((*v.shape[:-1], 1))), axis=-1)
-    right, left = (np.take(extended, ends, axis=-1) for ends in (contacts.right, contacts.left))
-    return np.asarray(right - left)
 
 
 def _blank_each(plan: Plan, loaded: bool) -> Each:

@@ -33,6 +33,7 @@ from eventpound.contact.event_rows import (
     write_event,
 )
 from eventpound.mechanics.contact_problem import solve_contacts
+from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -59,7 +60,6 @@ from eventpound.solvers.timestepping.record import (
     Span,
     Stepping,
     copy_values,
-    difference,
     gap_of,
     gap_rate,
     pull_together,

@@ -18,7 +18,6 @@ import numpy as np
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Task
-from eventpound.solvers.from_samples import link_forces, pulled
 from eventpound.solvers.opensees.elements import GROUND_NODE, Element
 from eventpound.tolerances import OPENSEES_CHANGE
 
@@ -102,8 +101,7 @@ def _build(ops: Any, model: Model, elements: list[Element]) -> None:
 
 def _start(ops: Any, task: Task, model: Model) -> None:
     """Give every node its initial motion, the acceleration included."""
-    _, total = link_forces(model, *np.atleast_2d(model.u0, model.v0, model.z0))
-    force = pulled(model, total)[0]
+    force = model.pulled(model.link_forces(model.u0, model.v0, model.z0)[1])
     ground = float(task.scene.motion.acceleration(np.array([task.start]))[0])
     for b in range(model.bodies):
         ops.setNodeDisp(b + 2, 1, float(model.u0[b]), "-commit")

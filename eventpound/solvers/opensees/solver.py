@@ -22,7 +22,6 @@ from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Recording, Task, Work
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.from_samples import sampled_recording
-from eventpound.solvers.inferred_impacts import differences
 from eventpound.solvers.opensees import PACKAGE
 from eventpound.solvers.opensees.contacts import (
     DEFAULT,
@@ -111,7 +110,7 @@ def _z(model: Model, rows: Rows) -> Floats:
     force = yielding(model.law.memory).force
     for h, link in enumerate(model.hysteretic):
         if force[link] > 0.0:
-            x = differences(rows.u, *model.link_ends[[link]].T)[:, 0]
+            x = model.elongations(rows.u)[:, link]
             z[:, h] = (rows.force[:, link] - model.elastic.extension[link] * x) / force[link]
             z[0, h] = model.z0[h]
     return z

@@ -15,6 +15,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from eventpound.mechanics.elements import link_force, pull_per_z
+from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
@@ -29,7 +30,6 @@ from eventpound.solvers.timestepping.record import (
     Stepping,
     add_to_ends,
     copy_values,
-    difference,
     pull_together,
     record_step,
 )

@@ -21,7 +21,7 @@ from eventpound.mechanics.monitored import (
     running_of,
     update_extremes,
 )
-from eventpound.mechanics.observables import Observed
+from eventpound.mechanics.observables import Observed, difference
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.recorder import columns_of, row_width
@@ -106,17 +106,6 @@ def copy_values(source: Floats, target: Floats) -> None:
     """Copy a row; an assignment of slices would make an array."""
     for i in range(source.size):
         target[i] = source[i]
-
-
-@step_kernel
-def difference(values: Floats, first: int, second: int) -> float:
-    """``value_second - value_first``, where -1 stands for the ground or a barrier."""
-    total = 0.0
-    if second >= 0:
-        total += values[second]
-    if first >= 0:
-        total -= values[first]
-    return total
 
 
 @step_kernel
