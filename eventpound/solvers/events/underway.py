@@ -294,26 +294,28 @@ def _rules_of(task: Task, model: Model, scales: SceneScales) -> Rules:
     unclosed = model.elements.kind[model.laws] == Element.HERTZ_DAMP
     law.damping[model.plain :][unclosed] = 0.0
     return Rules(
-        model.mass,
-        model.link_ends,
-        law,
-        model.hysteretic,
-        *model.elastic,
-        model.left,
-        model.right,
-        model.gap,
-        model.restitution,
-        np.asarray(atol["displacement"]),
-        np.asarray(atol["velocity"]),
-        np.asarray(atol["z"]),
-        float(atol["energy"]),
-        task.rtol,
-        scales.length,
-        scales.time,
+        mass=model.mass,
+        link_ends=model.link_ends,
+        law=law,
+        hysteretic=model.hysteretic,
+        compression=model.elastic.compression,
+        extension=model.elastic.extension,
+        offset=model.elastic.offset,
+        left=model.left,
+        right=model.right,
+        gap=model.gap,
+        restitution=model.restitution,
+        atol_u=np.asarray(atol["displacement"]),
+        atol_v=np.asarray(atol["velocity"]),
+        atol_z=np.asarray(atol["z"]),
+        atol_energy=float(atol["energy"]),
+        rtol=task.rtol,
+        length=scales.length,
+        time=scales.time,
         # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
-        10.0 * float(np.sqrt(ATTAINED_ANEW)) * scales.time,
-        GAP * scales.length,
-        TOGETHER * scales.time,
+        near=10.0 * float(np.sqrt(ATTAINED_ANEW)) * scales.time,
+        length_noise=GAP * scales.length,
+        instant=TOGETHER * scales.time,
     )
 
 
@@ -327,17 +329,17 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
     clock[RESTED_AT] = clock[SETTLED_AT] = -np.inf
     count[POINTS] = model.points.size
     return State(
-        model.u0.copy(),
-        model.v0.copy(),
-        model.z0.copy(),
-        gap,
-        model.rates(model.v0),
-        np.zeros(model.contacts, np.bool_),
-        np.zeros(model.contacts, np.bool_),
-        np.zeros(model.links, np.int64),
-        np.zeros(model.ledger_entries),
-        clock,
-        count,
+        u=model.u0.copy(),
+        v=model.v0.copy(),
+        z=model.z0.copy(),
+        gap=gap,
+        gap_rate=model.rates(model.v0),
+        resting=np.zeros(model.contacts, np.bool_),
+        pressed=np.zeros(model.contacts, np.bool_),
+        branch=np.zeros(model.links, np.int64),
+        ledger=np.zeros(model.ledger_entries),
+        clock=clock,
+        count=count,
     )
 
 
@@ -353,12 +355,12 @@ def _record_of(task: Task, model: Model, scales: SceneScales) -> Record:
     extremes = blank_extremes(at, scales)
     return on_loan(
         Record(
-            Journal(times, rows, cursor, model.law.damping[: model.springs].copy()),
-            np.empty((SPARE_ROWS + 8 * model.contacts, EVENT_WIDTH)),
-            extremes,
-            in_python(running_of)(extremes, at),
-            np.zeros_like(extremes),
-            np.zeros(1, np.int64),
+            journal=Journal(times, rows, cursor, model.law.damping[: model.springs].copy()),
+            events=np.empty((SPARE_ROWS + 8 * model.contacts, EVENT_WIDTH)),
+            extremes=extremes,
+            running=in_python(running_of)(extremes, at),
+            held=np.zeros_like(extremes),
+            held_rows=np.zeros(1, np.int64),
         )
     )
 

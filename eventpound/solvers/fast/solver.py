@@ -124,13 +124,13 @@ def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
         np.ones(model.contacts, np.bool_),
     )
     return Run(
-        plan,
-        state,
-        blank_series(plan, model.loads > 0),
-        blank_happened(plan),
-        record,
-        blank_seen(plan),
-        in_python(running_of)(record.extremes, at),
+        plan=plan,
+        state=state,
+        series=blank_series(plan, model.loads > 0),
+        happened=blank_happened(plan),
+        record=record,
+        seen=blank_seen(plan),
+        running=in_python(running_of)(record.extremes, at),
     )
 
 
