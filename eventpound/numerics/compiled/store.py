@@ -81,6 +81,11 @@ class KernelStore:
         compilation_begins()
         return None
 
+    def has(self, signature: Any, context: Any) -> bool:
+        """Whether there is a kept kernel for arguments of these types; nothing is loaded."""
+        name = self._name_of(signature, context.codegen())
+        return any((folder / name).is_file() for folder in _folders(self._file))
+
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep a kernel, in the first folder that can be written.
 
