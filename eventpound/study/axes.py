@@ -87,17 +87,20 @@ def read_axes(tables: Sequence[Table], directory: Path) -> list[NumberAxis | Wor
     for table, axis in zip(tables, axes, strict=True):
         if axis is not None and [a.key for a in axes if a is not None].count(axis.key) > 1:
             table.report("key", f"found {axis.key!r} on two axes; accepted: one axis a key")
-    found = [axis for axis in axes if axis is not None]
+    numbers = [axis for axis in axes if isinstance(axis, NumberAxis)]
     for table, axis in zip(tables, axes, strict=True):
-        if isinstance(axis, NumberAxis) and axis.together:
-            sizes = [len(a.values) for a in found if _together(a) == axis.together]
-            if len(set(sizes)) > 1:
-                table.report("zip", f"found axes of {sizes} values; accepted: as many on each")
-    return found
+        lengths = [] if axis is None else _unequal(numbers, axis)
+        if lengths:
+            found = [size for _, size in lengths]
+            table.report("zip", f"found axes of {found} values; accepted: as many on each")
+    return [axis for axis in axes if axis is not None]
 
 
-def _together(axis: NumberAxis | WordAxis) -> str:
-    return axis.together if isinstance(axis, NumberAxis) else ""
+def _unequal(axes: Sequence[NumberAxis], of: NumberAxis | WordAxis) -> list[tuple[str, int]]:
+    """Keys and lengths of the axes that go along with one, where they differ."""
+    word = of.together if isinstance(of, NumberAxis) else ""
+    lengths = [(axis.key, axis.values.size) for axis in axes if word and axis.together == word]
+    return lengths if len({size for _, size in lengths}) > 1 else []
 
 
 def _read_axis(table: Table, directory: Path) -> NumberAxis | WordAxis | None:
@@ -204,11 +207,9 @@ def given_axes(
         except InputError as error:
             problems.append(f"{word}: {key}: {error}")
     problems += [f"{word}: {axis.key}: has no values" for axis in found if not axis.values.size]
-    for name in set(group.values()):
-        lengths = {axis.key: axis.values.size for axis in found if axis.together == name}
-        if len(set(lengths.values())) > 1:
-            said = ", ".join(f"{key} has {size}" for key, size in lengths.items())
-            problems.append(f"{word}: found different lengths: {said}; accepted: one length")
+    for lengths in {tuple(_unequal(found, axis)) for axis in found} - {()}:
+        said = ", ".join(f"{key} has {size}" for key, size in lengths)
+        problems.append(f"{word}: found different lengths: {said}; accepted: one length")
     if problems:
         raise InputError(problems)
     return tuple(found)

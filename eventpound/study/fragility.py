@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -234,20 +234,10 @@ def fragility_table(
     rows = []
     for limit in limits:
         fit, count, exceeded = _of_limit(there, measure, demand, limit, records)
-        rows.append(
-            {
-                "limit": limit,
-                "theta": fit.theta,
-                "beta": fit.beta,
-                "error_ln_theta": fit.error_ln_theta,
-                "error_beta": fit.error_beta,
-                "count": count,
-                "exceeded": exceeded,
-                "left_out": len(table) - len(there),
-                "method": "capacities" if records else "counts",
-                "note": fit.note,
-            }
-        )
+        counts = {"count": count, "exceeded": exceeded, "left_out": len(table) - len(there)}
+        fitted = asdict(fit)
+        last = {"method": "capacities" if records else "counts", "note": fitted.pop("note")}
+        rows.append({"limit": limit, **fitted, **counts, **last})
     return pd.DataFrame(rows)
 
 
