@@ -171,7 +171,9 @@ def differences(values: Floats, first: Ints, second: Ints) -> Floats:
     End -1 is the ground or a barrier, whose value is zero.
     """
     extended = np.concatenate((values, np.zeros((*values.shape[:-1], 1))), axis=-1)
-    return np.asarray(extended[..., second] - extended[..., first])
+    # `take` leaves its result in the order of its axes, as compiled code wants it.
+    ahead, behind = (np.take(extended, ends, axis=-1) for ends in (second, first))
+    return np.asarray(ahead - behind)
 
 
 def with_elements(model: Model) -> Model:
