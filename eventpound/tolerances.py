@@ -23,9 +23,9 @@ scene's own time, or below what springs and dashpots make of such an acceleratio
 orders or one before. Bodies without links under the tail of a Gaussian pulse are an exception: they
 have the ground's acceleration alone, whose sign is known however small it is."""
 LENGTH = 1e-13
-"""Distances to a kink, as part of L."""
+"""Distances to a kink, as part of L: which side a link is on, and whether it has passed it."""
 GAP = 1e-15
-"""Gaps and distances to a kink found within a step, as part of L: the dense output has no more."""
+"""Gaps within a step, as part of L: the dense output has no more."""
 SPEED = 1e-13
 """Elongation rates, as part of L/T."""
 FORCE = 1e-12

@@ -24,7 +24,7 @@ from eventpound.numerics.hermite import cubic_bernstein
 from eventpound.solvers.events.dense import DenseStep, look
 from eventpound.solvers.events.event_bounds import Found, Watched
 from eventpound.solvers.events.run import Happened, Rules
-from eventpound.tolerances import EPS, VANISHED_WITHIN
+from eventpound.tolerances import EPS, LENGTH, VANISHED_WITHIN
 
 DEPTH = 12
 """Halvings after which a stretch without a change of sign counts as clear."""
@@ -217,7 +217,7 @@ def first_event(
         When (s, local); inf where nothing happens.
     """
     forget(happened)
-    first, length = step.dense.end, rules.length_noise
+    first, kink_noise = step.dense.end, LENGTH * rules.length
     any_event = False
     for kind in range(3):
         marks = found.closing if kind == _GAP else found.detaching
@@ -226,11 +226,12 @@ def first_event(
         for i in range(marks.size):
             if not marks[i]:
                 continue
-            sought = Sought(kind, i, 0.0, 1.0, length if kind != _FORCE else watched.force_noise)
+            noise = watched.force_noise if kind == _FORCE else rules.length_noise
+            sought = Sought(kind, i, 0.0, 1.0, noise)
             if kind == _KINK:
                 below = watched.kink_low[i] > -np.inf
                 kink = watched.kink_low[i] if below else watched.kink_high[i]
-                sought = Sought(kind, i, kink, 1.0 if below else -1.0, length)
+                sought = Sought(kind, i, kink, 1.0 if below else -1.0, kink_noise)
             tau = first_below(sought, first, step)
             if tau == np.inf:
                 continue
@@ -291,7 +292,7 @@ def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happe
             happened.released[j] = True
     for a in range(happened.kinked.size):
         x, x_rate = seen.elongation[0, a], seen.elongation[1, a]
-        reach = rules.length_noise + rules.instant * abs(x_rate)
+        reach = LENGTH * rules.length + rules.instant * abs(x_rate)
         falls = x_rate < 0.0 and x - watched.kink_low[a] <= reach
         rises = x_rate > 0.0 and watched.kink_high[a] - x <= reach
         if falls or rises:

@@ -232,7 +232,7 @@ class EventLoop:
         self.now = Underway(task)
         self._integrated = 0.0
         if finds_events:
-            integrator.find_events(self.now.model, self.now.rules.length_noise)
+            integrator.find_events(self.now.model, self.now.rules.length)
         scales = self.now.scales
         self.moving = moving and scales.own_length.min() >= FRAMED * scales.length
 

@@ -21,7 +21,7 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.settings import Settings, word
-from eventpound.tolerances import NO_ZERO
+from eventpound.tolerances import GAP, LENGTH, NO_ZERO
 
 OWN, SUNDIALS = EVENTS = ("own", "sundials")
 """Who finds events, in `[solver]`: the event loop, or the root finder of the integrator."""
@@ -129,10 +129,10 @@ def owners(watched: Watched) -> tuple[Bools, Bools, Bools]:
 
 
 def noise_of(watched: Watched, length: float) -> Floats:
-    """Noise of every value of a mode, (n,); `length` is that of lengths (m)."""
+    """Noise of every value of a mode, (n,); `length` is the scene's own (m)."""
     gaps, forces, kinked = owners(watched)
-    of_contacts = np.where(gaps, length, watched.force_noise)[gaps | forces]
-    return np.concatenate((of_contacts, np.full(int(kinked.sum()), length)))
+    of_contacts = np.where(gaps, GAP * length, watched.force_noise)[gaps | forces]
+    return np.concatenate((of_contacts, np.full(int(kinked.sum()), LENGTH * length)))
 
 
 def marks_of(watched: Watched, fallen: Bools) -> tuple[Bools, Bools, Bools]:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from eventpound.contact.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.contact.state import Instant
-from eventpound.mechanics.elements import LinkLaw
+from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.monitored import Running
 from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced

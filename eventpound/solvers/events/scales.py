@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.elements import LinkLaw, yielding, z_bound
+from eventpound.mechanics.link_law import LinkLaw, yielding, z_bound
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.supported import peak_of
 from eventpound.motion.base import GroundMotion

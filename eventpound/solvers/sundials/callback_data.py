@@ -117,7 +117,7 @@ class RootFunctions:
     model : Model
         The scene.
     length : float
-        Gaps or elongations below which a sign means nothing (m).
+        The scene's own, L (m).
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ class RootFunctions:
     """
 
     def __init__(self, model: Model, length: float) -> None:
-        self._noise = length
+        self._length = length
         self._mode: Mode
         self.loan = no_roots(*model.counts)
 
@@ -147,7 +147,7 @@ class RootFunctions:
 
     def point_to(self, mode: Mode) -> None:
         """Be the functions of a mode, from a start on."""
-        watched, noise = mode.watched, noise_of(mode.watched, self._noise)
+        watched, noise = mode.watched, noise_of(mode.watched, self._length)
         self._mode, counts, seen = mode, self.loan.counts, self.loan.seen
         counts[FRESH] = 1
         forces = bool(watched.unlocked.any())
