@@ -117,6 +117,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     ("eventpound.motion.forcing", "the ground acceleration and its breakpoints", _ALL),
     (f"{_MECHANICS}.model", "the scene as arrays", _ALL),
     (f"{_MECHANICS}.elements", "the laws of springs", _ALL),
+    (f"{_MECHANICS}.link_law", "the constants of these laws", _ALL),
     ("eventpound.scene.elastic_laws", "elastic laws in series condensed to one", _ALL),
     (f"{_MECHANICS}.impact", "the impact law over all closed contacts", _ALL),
     (f"{_MECHANICS}.contact_problem", "accelerations over resting contacts", _ALL),

@@ -15,7 +15,8 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.contact_problem import parts, solve_contacts
-from eventpound.mechanics.elements import LinkLaw, memory_stiffness, pull_per_z
+from eventpound.mechanics.elements import memory_stiffness, pull_per_z
+from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce, state_vector
 from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from eventpound.mechanics.elements import LinkLaw
+from eventpound.mechanics.link_law import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 
 

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
-from eventpound.mechanics.elements import LinkLaw
+from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats, Ints
 

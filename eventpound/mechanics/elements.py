@@ -17,27 +17,25 @@ here and in `eventpound.mechanics.backbone`, which solves eq. 3 with time elimin
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
-
 import numpy as np
 
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.mechanics.link_law import (
+    BETA,
+    EXPONENT,
+    GAMMA,
+    KIND,
+    STRENGTH,
+    YIELD,
+)
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import F, compile_with, kernel
 from eventpound.numerics.power_series import (
     integer_power,
     power_coefficient,
     sign_after,
 )
-from eventpound.scene.elastic_laws import ElasticLaws, elastic_force
-from eventpound.scene.spring import BoucWen, Hysteretic, Law
 from eventpound.tolerances import NO_Z
 
-CONSTANTS = ("kind", "strength", "yield_displacement", "exponent", "beta", "gamma")
-"""Columns of `LinkLaw.memory`; but for the first, fields of `BoucWen`."""
-KIND, STRENGTH, YIELD, EXPONENT, BETA, GAMMA = range(len(CONSTANTS))
-ELASTIC, BOUC_WEN = 0.0, 1.0
-"""Kinds of links; that of a contact element is its code, which is negative."""
 CURVE_PLACES = 5
 """Numbers of a law that `next_z` wants to know."""
 (OVER_UY, OVER_Z, LIFT, KAPPA, WEIGHT) = range(CURVE_PLACES)
@@ -46,74 +44,6 @@ MOST_TERMS = 32
 """More than the highest order of a series, and two."""
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MOST_TERMS)])
 """1/k."""
-
-
-class LinkLaw(NamedTuple):
-    """Laws of L links beside their elastic parts; arrays of variants have axes before these.
-
-    damping (L,): c (N s/m). memory (L, constants): of z, Q = 0 where there is none.
-    """
-
-    damping: Floats
-    memory: Floats
-
-
-class Yielding(NamedTuple):
-    """What memory adds to links, of one shape: stiffness (N/m), force (N), and where it yields (m).
-
-    The stiffness is that at z = 0, the force that at z = 1.
-    """
-
-    stiffness: Floats
-    force: Floats
-    displacement: Floats
-
-
-def link_law(laws: Sequence[Law | Hysteretic], damping: Any) -> LinkLaw:
-    """Laws of links as arrays; those of which `damping` (N s/m) is longer are dashpots alone."""
-    rows = np.tile(np.array((ELASTIC, 0.0, 1.0, 20.0, 0.5, 0.5)), (len(damping), 1))
-    for row, law in zip(rows, laws, strict=False):
-        if isinstance(law, BoucWen):
-            row[:] = (BOUC_WEN, *(getattr(law, name) for name in CONSTANTS[1:]))
-    return LinkLaw(np.array(damping, np.float64), rows)
-
-
-def contact_law(codes: Floats, damping: Floats) -> LinkLaw:
-    """Contact elements of these codes as links (`eventpound.mechanics.contact_laws`)."""
-    rows = np.zeros((codes.size, len(CONSTANTS)))
-    rows[:, KIND], rows[:, YIELD] = codes, 1.0
-    return LinkLaw(damping, rows)
-
-
-def yielding(memory: Floats) -> Yielding:
-    """What memory adds to links; `memory` of shape (..., L, constants)."""
-    strength, yields = memory[..., STRENGTH], memory[..., YIELD]
-    return Yielding(strength / yields, strength, yields)
-
-
-def z_bound(memory: Floats) -> Floats:
-    """Largest |z| that loading can reach, (β + γ)^(-1/n), for constants of shape (..., L, ·)."""
-    found: Floats = (memory[..., BETA] + memory[..., GAMMA]) ** (-1.0 / memory[..., EXPONENT])
-    return found
-
-
-def spring_forces(
-    elastic: ElasticLaws, law: LinkLaw, hysteretic: Ints, x: Floats, z: Floats
-) -> Floats:
-    """Forces of links without their dashpots (N), shape (..., L).
-
-    Parameters
-    ----------
-    elastic, law : ElasticLaws, LinkLaw
-        The links.
-    hysteretic : ndarray of int, shape (H,)
-        Which of them have a memory.
-    x, z : ndarray, shape (..., L) and (..., H)
-        Elongations (m) and internal variables, perhaps of many instants.
-    """
-    force = elastic_force(elastic, x)[0]
-    force[..., hysteretic] += yielding(law.memory[hysteretic]).force * z
-    return force
 
 
 def _part(function: F) -> F:

@@ -20,13 +20,8 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, is_support
 from eventpound.mechanics.contact_laws import element_pull
-from eventpound.mechanics.elements import (
-    LinkLaw,
-    contact_code,
-    link_force,
-    pull_per_z,
-    z_rate,
-)
+from eventpound.mechanics.elements import contact_code, link_force, pull_per_z, z_rate
+from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced_loads import (

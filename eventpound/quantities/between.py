@@ -18,7 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eventpound.mechanics.elements import link_law, yielding
+from eventpound.mechanics.link_law import link_law, yielding
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.loops import z_by_x
 from eventpound.quantities.owners import owners

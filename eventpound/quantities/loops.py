@@ -11,9 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.mechanics.elements import link_law, yielding, z_rate
+from eventpound.mechanics.link_law import link_law, yielding
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.spring import Hysteretic, Law
 
@@ -79,5 +78,9 @@ def _along(memory: Floats, x: Floats, z: Floats) -> Floats:
 
 def z_by_x(memory: Floats, z: Floats, way: Floats | float) -> Floats:
     """Slope dz/dx (1/m) of the one law where x goes a way: grows where that is positive."""
+    # Here and not above: to read results imports no compiler.
+    from eventpound.mechanics.elements import z_rate
+    from eventpound.numerics.compiled import in_python
+
     rate: Any = in_python(z_rate)
     return np.asarray(rate(0, memory, 1.0, way, z))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from eventpound.mechanics.elements import link_law
+from eventpound.mechanics.link_law import link_law
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.loops import z_by_x
 from eventpound.report.style import PALETTE, force_unit, length_unit, literal, say, zero_lines

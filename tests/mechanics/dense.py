@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eventpound.mechanics.elements import link_law
+from eventpound.mechanics.link_law import link_law
 from eventpound.scene import (
     BARRIER,
     GROUND,

@@ -8,7 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.special import hyp2f1
 
 from eventpound.mechanics.backbone import backbone, backbone_inverse, backbone_table
-from eventpound.mechanics.elements import z_bound, z_rate
+from eventpound.mechanics.elements import z_rate
+from eventpound.mechanics.link_law import z_bound
 from eventpound.tolerances import BEYOND_TABLE
 from tests.mechanics.dense import memory_of
 

@@ -11,11 +11,11 @@ from eventpound.mechanics.elements import (
     CURVE_PLACES,
     begin_curve,
     next_z,
-    z_bound,
     z_coefficient,
     z_rate,
     z_slopes,
 )
+from eventpound.mechanics.link_law import z_bound
 from eventpound.scene import BoucWen
 from eventpound.solvers.fast.single.body import BODY
 from eventpound.solvers.fast.single.series import curved_series

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from eventpound.contact.cascade import TIRED
-from eventpound.mechanics.elements import STRENGTH
+from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model, assemble
 from eventpound.scene import GROUND, Scene
 from eventpound.solvers.base import Event, EventKind, Recording

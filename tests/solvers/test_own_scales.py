@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound.mechanics.elements import LinkLaw
+from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import assemble
 from eventpound.motion.harmonic import Harmonic
 from eventpound.motion.pulses import Sine

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import nnls
 
 from eventpound.contact.rest import Touching, rest_contacts
-from eventpound.mechanics.elements import link_law
+from eventpound.mechanics.link_law import link_law
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from tests.numerics.problems import Contacts, graph

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from eventpound.mechanics.elements import BETA, GAMMA
+from eventpound.mechanics.link_law import BETA, GAMMA
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import only_root

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.mechanics.backbone import hysteresis_of
-from eventpound.mechanics.elements import CONSTANTS, LinkLaw
+from eventpound.mechanics.link_law import CONSTANTS, LinkLaw
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.monitored import blank_extremes, places_in
 from eventpound.motion.base import GroundMotion, Scales

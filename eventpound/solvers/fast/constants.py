@@ -8,7 +8,8 @@ import numpy as np
 
 from eventpound.contact.cascade import INTERVAL, RESTED_AT, SETTLED_AT, SINCE_IMPACT, T
 from eventpound.mechanics.backbone import hysteresis_of
-from eventpound.mechanics.elements import CURVE_PLACES, yielding
+from eventpound.mechanics.elements import CURVE_PLACES
+from eventpound.mechanics.link_law import yielding
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model, differences, without_rounding
 from eventpound.mechanics.monitored import places_of
 from eventpound.motion.base import Family, Piece

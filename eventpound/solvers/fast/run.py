@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from eventpound.contact.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.contact.impacts import ENDLESS, NO_FORCES, NO_IMPACT
 from eventpound.mechanics.backbone import Hysteresis
-from eventpound.mechanics.elements import LinkLaw
+from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.fast.compiled import compiled

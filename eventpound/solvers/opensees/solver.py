@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.errors import ComputationError, InputError
-from eventpound.mechanics.elements import yielding
+from eventpound.mechanics.link_law import yielding
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact_law import BY_WORD

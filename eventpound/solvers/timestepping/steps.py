@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.mechanics.elements import yielding
+from eventpound.mechanics.link_law import yielding
 from eventpound.mechanics.model import Model
 from eventpound.motion.base import Family, Piece
 from eventpound.motion.forcing import next_sample

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from eventpound.mechanics.elements import z_bound
+from eventpound.mechanics.link_law import z_bound
 from eventpound.scene import BoucWen
 from eventpound.solvers.timestepping.hysteresis import z_after
 from tests.mechanics.dense import literal_z_rate, memory_of
