@@ -153,12 +153,12 @@ def blank_extremes(at: Places, scales: Sizes) -> Floats:
 
     The five rows are those of `Running`.
     """
-    sizes = [np.asarray(getattr(scales, scale)) for scale in SCALES]
-    rounding = np.zeros((*np.broadcast_shapes(*(size.shape for size in sizes)), at.end))
+    sizes = np.broadcast_arrays(*(getattr(scales, scale) for scale in SCALES))
+    table = np.zeros((*sizes[0].shape, 5, at.end))
+    table[..., 0, :], table[..., 2, :] = -np.inf, np.inf
     for kind, size in zip(KINDS, sizes, strict=True):
-        rounding[..., columns_of_kind(kind, at)] = ATTAINED_ANEW * size[..., None]
-    nothing, never = np.full(rounding.shape, np.inf), np.zeros(rounding.shape)
-    return np.stack((-nothing, never, nothing, never, rounding), axis=-2)
+        table[..., 4, columns_of_kind(kind, at)] = ATTAINED_ANEW * size[..., None]
+    return table
 
 
 @scalar_kernel

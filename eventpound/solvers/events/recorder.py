@@ -155,8 +155,8 @@ def history_of(rows: Floats, unique: Bools, model: Model) -> History:
 
 def extremes_of(kind: str, table: Floats, at: Places) -> Extremes:
     """Extremes of one kind of monitored quantity from a table of `Running`, or many of them."""
-    rows = table[..., :4, columns_of_kind(kind, at)]
-    return Extremes(*np.moveaxis(rows, -2, 0).copy())
+    columns = columns_of_kind(kind, at)
+    return Extremes(*(table[..., row, columns].copy() for row in range(4)))
 
 
 def kept(table: Floats, events: Sequence[Event], end: float, model: Model) -> dict[str, Any]:
@@ -165,7 +165,8 @@ def kept(table: Floats, events: Sequence[Event], end: float, model: Model) -> di
     Extremes of displacements, elongations, accelerations and base shear; of the contacts smallest
     and largest gaps, resting times and largest forces.
     """
-    found = {kind: extremes_of(kind, table, places_in(model)) for kind in KINDS}
+    places = places_in(model)
+    found = {kind: extremes_of(kind, table, places) for kind in KINDS}
     gap, force = found.pop("gap"), found.pop("contact_force")
     return {
         **found,
