@@ -961,11 +961,14 @@ def furthest_vertex(points: Floats, curve: Floats) -> tuple[float, int]:
         rows = order[n : n + 64]
         if near[rows[0]] < worst:
             break
+        # Each vertex with the segments of its own that may be nearer than its bound.
         low, high = (points[rows, 0] + side * near[rows] for side in (-1.0, 1.0))
-        start = max(int(np.searchsorted(curve[:, 0], low.min())) - 1, 0)
-        stop = int(np.searchsorted(curve[:, 0], high.max(), side="right"))
-        segments = np.arange(start, max(stop, start + 1))
-        far = _from_segments(points[rows].T[:, :, None], curve, segments).min(axis=1)
+        start = np.maximum(np.searchsorted(curve[:, 0], low) - 1, 0)
+        count = np.maximum(np.searchsorted(curve[:, 0], high, side="right") - start, 1)
+        begins = np.cumsum(count) - count
+        segments = np.arange(count.sum()) + np.repeat(start - begins, count)
+        apart = _from_segments(points[np.repeat(rows, count)].T, curve, segments)
+        far = np.minimum.reduceat(apart, begins)
         first = int(rows[far == far.max()].min())
         if far.max() > worst or (far.max() == worst and first < vertex):
             worst, vertex = float(far.max()), first
