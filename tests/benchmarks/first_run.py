@@ -25,6 +25,7 @@ RUNS = (
     ("pair", "cases/pair", "fast"),
     ("bridge-el-centro", FROZEN_BRIDGE, "fast"),
     ("bridge-el-centro", FROZEN_BRIDGE, "ida"),
+    ("bridge-el-centro", FROZEN_BRIDGE, "cvode"),
     ("row-of-eight", "cases/row-of-eight", "moreau"),
 )
 """What is shown, case (none: a scene of one elastic body), solver."""
