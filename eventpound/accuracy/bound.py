@@ -40,8 +40,8 @@ from enum import StrEnum
 import numpy as np
 
 from eventpound.accuracy.conditioning import LARGE, Conditioning
-from eventpound.accuracy.left_out import EPSILON
 from eventpound.numerics.arrays import Floats
+from eventpound.tolerances import EPS
 
 SAFETY = 10.0
 """S."""
@@ -162,7 +162,7 @@ def rounding_of_run(conditions: Conditioning, scale: Floats, displaced: float) -
     ndarray, shape (n,)
     """
     grown = np.fmax(conditions.slope * displaced, conditions.of_change(displaced))
-    return np.asarray((4.0 * EPSILON + displaced) * scale + np.nan_to_num(grown))
+    return np.asarray((4.0 * EPS + displaced) * scale + np.nan_to_num(grown))
 
 
 def bounds_of(

@@ -18,9 +18,9 @@ import numpy as np
 
 from eventpound.accuracy.bound import SAFETY
 from eventpound.accuracy.conditioning import LARGE
-from eventpound.accuracy.left_out import EPSILON
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import History
+from eventpound.tolerances import EPS
 
 WINDOWS = 50
 """Moments at which digits are stated."""
@@ -84,7 +84,7 @@ def digits_over_time(
     amplification = growth / (LARGE * length)
     lost = np.flatnonzero(amplification >= LOST)
     parts = np.array_split(np.arange(times.size), min(WINDOWS, times.size))
-    worst = np.array([max(float(np.max(error[part])) / length, EPSILON) for part in parts])
+    worst = np.array([max(float(np.max(error[part])) / length, EPS) for part in parts])
     return DigitsOverTime(
         float(times[0]),
         np.array([times[part[-1]] for part in parts]),

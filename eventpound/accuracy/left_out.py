@@ -20,13 +20,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from eventpound.contact.cascade import TIRED
 from eventpound.solvers.base import Event, EventKind, Recording
-from eventpound.tolerances import FADED, LAST_SPEED, LISTED_SPEED
+from eventpound.tolerances import EPS, FADED, LAST_SPEED, LISTED_SPEED
 
-EPSILON = float(np.finfo(float).eps)
 ROUNDINGS_OF_EVENT = 4
 """Of the state at an event: its place in time, the state there, the constraint, the impulse."""
 _BESIDE = 2.0
@@ -42,7 +39,7 @@ def displaced(recording: Recording) -> float:
         The run.
     """
     roundings = recording.work.steps + ROUNDINGS_OF_EVENT * sum(e.count for e in recording.events)
-    return EPSILON * roundings + _taken(recording.events)
+    return EPS * roundings + _taken(recording.events)
 
 
 def _taken(events: Sequence[Event]) -> float:

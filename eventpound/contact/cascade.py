@@ -86,6 +86,13 @@ def is_endless(here: int, lost: float, passed_on: float) -> bool:
 
 
 @scalar_kernel
+def end_flight(clock: Floats) -> None:
+    """The last flight is over, unless it was none: what happens at once is no interval."""
+    if clock[SINCE_IMPACT] > 0.0:
+        clock[INTERVAL] = clock[SINCE_IMPACT]
+
+
+@scalar_kernel
 def is_fleeting(tau: float, clock: Floats, time: float) -> bool:
     """Whether a mode that ends after tau (s) is none: a contact has only just come to rest.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import INTERVAL, SETTLED_AT, SINCE_IMPACT, STALE, T
+from eventpound.contact.cascade import SETTLED_AT, SINCE_IMPACT, STALE, T, end_flight
 from eventpound.contact.event_rows import write_changes
 from eventpound.contact.impacts import DONE, NO_FORCES, end_impacts, settle_closed
 from eventpound.contact.kinks import turn_at_kinks
@@ -26,10 +26,7 @@ from eventpound.tolerances import OF_A_FLIGHT, SPEED, TOGETHER
 @scalar_kernel
 def begin_instant(at: Instant) -> None:
     """Close what closes in this instant, and remember what impacts are about to change."""
-    since = at.clock[SINCE_IMPACT]
-    if since > 0.0:
-        # What happens at once is no interval of its own.
-        at.clock[INTERVAL] = since
+    end_flight(at.clock)
     close_together(at)
     copy_numbers(at.v, at.before)
 

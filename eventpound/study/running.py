@@ -59,9 +59,7 @@ def run_study(
     """
     check_writable(directory)
     store = Store(directory, study)
-    details = details or (
-        lambda: ({}, {"title": study.title, "runs": study.size, **study.described()})
-    )
+    details = details or (lambda: ({}, _details(study)))
     moved = None
     with only_one(directory, AT_WORK):
         if again or not store.finished():

@@ -27,7 +27,7 @@ from eventpound.batch_response import (
 )
 from eventpound.case.case import Case
 from eventpound.case.defaults import default_output_step
-from eventpound.case.options import FAST as FAST
+from eventpound.case.options import FAST
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.numerics.arrays import Floats, Ints

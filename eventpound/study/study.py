@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from eventpound.case.case import Case, SolverOptions
-from eventpound.case.options import default_solver
+from eventpound.case.options import FAST, default_solver
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member, Suite
@@ -24,7 +24,6 @@ from eventpound.study.engines.local import Batch, Processes
 from eventpound.study.plan import RECORD, base_of, described
 from eventpound.study.quantities import planned
 from eventpound.study.running import run_study
-from eventpound.study.runs import FAST
 from eventpound.study.table import SUCCESS, read_table
 from eventpound.units import Dimension
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from eventpound.accuracy.judge import KEEPING
 from eventpound.case.case import Case
 from eventpound.case.member import member_case
+from eventpound.case.options import FAST
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member
 from eventpound.errors import InputError
@@ -32,7 +33,7 @@ from eventpound.study.engines.local import Batch
 from eventpound.study.plan import OfSuite, Study, base_of, described
 from eventpound.study.records import FAILED, columns_of
 from eventpound.study.running import run_study
-from eventpound.study.runs import FAST, cores
+from eventpound.study.runs import cores
 from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
 from eventpound.study.table import SUITE_FORMAT, SUITE_TABLE, read_table
 from eventpound.units import Dimension

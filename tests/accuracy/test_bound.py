@@ -5,7 +5,7 @@ import pytest
 
 from eventpound.accuracy.bound import SAFETY, Agreement, Limit, bounds_of, rounding_of_run
 from eventpound.accuracy.conditioning import LARGE, SMALL, Conditioning
-from eventpound.accuracy.left_out import EPSILON
+from eventpound.tolerances import EPS
 
 TRUE = np.array([1.0, -2.0, 0.5])
 
@@ -23,7 +23,7 @@ def _agreement(errors: list[tuple[float, float]], formulation: str = "ABB") -> A
 
 def test_bound_holds_the_error_of_a_route_that_converges():
     agreement = _agreement([(1e-12, 1e-11), (3e-11, -2e-10), (-5e-11, 7e-10)])
-    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), displaced=100 * EPSILON)
+    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), displaced=100 * EPS)
     error = np.abs(agreement.values - TRUE)
     assert np.all(error < bounds.bound)
     assert bounds.confirmed == pytest.approx(np.full(3, 2.9e-11), rel=1e-3)
@@ -36,20 +36,20 @@ def test_values_that_agree_by_chance_are_held_by_the_others():
     agreement = _agreement([(1e-12, 1e-11), (3e-12, 2e-11), (1e-11, 7e-11)])
     agreement.loose[0, 1] = agreement.tight[0, 1]
     agreement.tight[1, 1] = agreement.tight[0, 1]
-    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), displaced=100 * EPSILON)
+    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), displaced=100 * EPS)
     assert bounds.bound[1] == pytest.approx(bounds.bound[0], rel=0.1)
 
 
 def test_a_route_that_does_not_agree_widens_the_bound_to_itself():
     agreement = _agreement([(1e-12, 1e-11), (3e-11, -2e-10), (1e-3, 1.001e-3)])
-    bounds = bounds_of(agreement, _smooth(1e-3), np.abs(TRUE), displaced=100 * EPSILON)
+    bounds = bounds_of(agreement, _smooth(1e-3), np.abs(TRUE), displaced=100 * EPS)
     assert bounds.bound == pytest.approx(np.full(3, 2e-3), rel=1e-6)
     assert bounds.limit == [Limit.DISAGREEMENT] * 3
 
 
 def test_without_another_formulation_there_is_no_bound():
     agreement = _agreement([(1e-12, 1e-11), (3e-12, 2e-11), (1e-11, 7e-11)], "AAA")
-    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), displaced=100 * EPSILON)
+    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), displaced=100 * EPS)
     assert np.all(np.isnan(bounds.bound))
     assert bounds.limit == [Limit.ALONE] * 3
 
@@ -68,7 +68,7 @@ def test_what_rounding_decides_has_no_bound():
 
 def test_a_route_without_an_event_leaves_it_to_the_others():
     agreement = _agreement([(1e-12, np.nan), (3e-11, -2e-10), (np.nan, 7e-10)])
-    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), displaced=100 * EPSILON)
+    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), displaced=100 * EPS)
     assert bounds.bound == pytest.approx(np.full(3, SAFETY * 2.9e-11), rel=0.05)
 
 
@@ -79,18 +79,16 @@ def test_every_rounding_of_the_state_counts_in_full():
     for _ in range(steps):
         total += part
     error, scale = abs(total - steps * part), np.full(3, steps * part)
-    assert error > 5.0 * np.sqrt(steps) * EPSILON * scale[0]
-    assert error < rounding_of_run(_smooth(0.0), scale, steps * EPSILON)[0]
+    assert error > 5.0 * np.sqrt(steps) * EPS * scale[0]
+    assert error < rounding_of_run(_smooth(0.0), scale, steps * EPS)[0]
 
 
 def test_rounding_grows_with_what_collects_and_amplification():
     one = np.ones(3)
-    many, few = (
-        rounding_of_run(_smooth(), one, n * EPSILON)[0] - 4.0 * EPSILON for n in (4000, 1000)
-    )
+    many, few = (rounding_of_run(_smooth(), one, n * EPS)[0] - 4.0 * EPS for n in (4000, 1000))
     assert many == pytest.approx(4.0 * few)
-    steep = rounding_of_run(_smooth(30.0), one, 1000 * EPSILON)[0]
-    assert steep == pytest.approx(EPSILON * (4.0 + 1000.0 * (1.0 + 30.0)))
+    steep = rounding_of_run(_smooth(30.0), one, 1000 * EPS)[0]
+    assert steep == pytest.approx(EPS * (4.0 + 1000.0 * (1.0 + 30.0)))
 
 
 def test_what_collects_before_a_graze_grows_as_its_root():
@@ -98,5 +96,5 @@ def test_what_collects_before_a_graze_grows_as_its_root():
     root = Conditioning(
         np.full(3, np.sqrt(LARGE)), np.full(3, np.sqrt(SMALL)), np.zeros(3, np.bool_), np.zeros(1)
     )
-    collected = rounding_of_run(root, np.zeros(3), 450 * EPSILON)
-    assert collected == pytest.approx(np.full(3, np.sqrt(450.0 * EPSILON)), rel=1e-6)
+    collected = rounding_of_run(root, np.zeros(3), 450 * EPS)
+    assert collected == pytest.approx(np.full(3, np.sqrt(450.0 * EPS)), rel=1e-6)

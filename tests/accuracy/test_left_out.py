@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from eventpound.accuracy.left_out import EPSILON, displaced, time_to_limits
+from eventpound.accuracy.left_out import displaced, time_to_limits
 from eventpound.motion.record import Record
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.simulation import simulate
 from eventpound.solvers.base import Event, EventKind
+from eventpound.tolerances import EPS
 
 E, SPEED = 0.8, 1e-3
 
@@ -52,8 +53,8 @@ def test_bounces_of_a_run_end_before_their_limit_by_what_is_stated() -> None:
     fall = (2.0 * height / g) ** 0.5
     limit = fall * (1.0 + 2.0 * e / (1.0 - e))
     (end,) = (event for event in found.events if event.kind is EventKind.ACCUMULATION)
-    assert 0.0 <= limit - end.t < time_to_limits(found.events)[end.t] + 20 * EPSILON
-    assert displaced(found) >= EPSILON * (found.work.steps + 4 * sum(e.count for e in found.events))
+    assert 0.0 <= limit - end.t < time_to_limits(found.events)[end.t] + 20 * EPS
+    assert displaced(found) >= EPS * (found.work.steps + 4 * sum(e.count for e in found.events))
 
 
 def test_what_ends_in_one_instant_counts_with_what_is_taken_for_rounding() -> None:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.contact.rest import is_none
+from eventpound.contact.rest import acceleration_noise, is_none
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents, element_pull
 from eventpound.mechanics.elements import bends_at_zero, z_bend
@@ -28,7 +28,6 @@ from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.run import Dynamics, Run, State
 from eventpound.tolerances import (
     ACCELERATION,
-    DIRECT,
     GAP_COEFFICIENT,
     GROUND_ERROR,
     NO_POWER,
@@ -49,10 +48,7 @@ def _with_rounding(level: float, k: int, own: float, ground: float, acceleration
     """The rounding `level` of coefficient k of a gap, with that of a body's `own`."""
     if k > 2:
         return level + GAP_COEFFICIENT * abs(own)
-    if 2.0 * own == -ground:
-        return level
-    absolute = abs(2.0 * own + ground)
-    return max(level, 0.5 * max(DIRECT * absolute, acceleration))
+    return max(level, 0.5 * acceleration_noise(2.0 * own + ground, acceleration))
 
 
 @kernel

@@ -23,7 +23,7 @@ from eventpound.solvers.fast.compiled import (
     compiled_deferred,
     compiled_with_arrays,
 )
-from eventpound.solvers.fast.links import CORE, all_variables, elongations, reverse, set_curve
+from eventpound.solvers.fast.links import all_variables, elongations, reverse, set_curve, turns_back
 from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
@@ -180,7 +180,7 @@ def choose_directions(run: Run) -> None:
     still = SPEED * plan.limits.length / plan.limits.time
     for h in range(hysteresis.link.size):
         a = hysteresis.link[h]
-        if state.part[h] != CORE and state.sigma[h] * series.x_rate[a] < -still:
+        if turns_back(state.part[h], state.sigma[h], series.x_rate[a], still):
             reverse(h, series.x[a], hysteresis, state)
 
 

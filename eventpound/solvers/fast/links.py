@@ -141,6 +141,15 @@ def set_curve(
     state.part[h] = part_of(h, xi, hysteresis)
 
 
+@compiled
+def turns_back(part: int, sigma: float, rate: float, still: float) -> bool:
+    """Whether a link seen along σ goes the other way now; `still` (m/s) has no direction.
+
+    On the line about its origin it has none.
+    """
+    return part != CORE and sigma * rate < -still
+
+
 @compiled_apart
 def reverse(h: int, x: float, hysteresis: Hysteresis, state: State) -> None:
     """Turn a link round at the elongation x (m)."""

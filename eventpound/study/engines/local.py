@@ -20,10 +20,11 @@ from concurrent.futures.process import BrokenProcessPool
 from itertools import chain
 from multiprocessing import get_context
 
+from eventpound.case.options import FAST
 from eventpound.errors import ComputationError
 from eventpound.study.engines.base import Engine
 from eventpound.study.plan import Chunk, Study
-from eventpound.study.runs import FAST, cores
+from eventpound.study.runs import cores
 from eventpound.study.table import Keep, compute
 from eventpound.warned import show_warning
 

@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from eventpound.contact.cascade import INTERVAL, SINCE_IMPACT, T
+from eventpound.contact.cascade import T, end_flight
 from eventpound.contact.event_rows import (
     events_wanted,
     new_group,
@@ -38,7 +38,7 @@ from eventpound.solvers.fast.compiled import (
     compiled_loop,
 )
 from eventpound.solvers.fast.expansion import GAUSSIAN_STEP
-from eventpound.solvers.fast.links import CORE
+from eventpound.solvers.fast.links import turns_back
 from eventpound.solvers.fast.record import rows_wanted
 from eventpound.solvers.fast.run import (
     DUE,
@@ -124,7 +124,7 @@ def settle_single(g: float, piece: Piece, run: SingleRun) -> None:
     body.z = spring_state(body.u, run)
     if side != 0.0 and duty(0.0, -side * body.v) == IMPACT:
         impact_at_barrier(side, j, run)
-    if body.part != CORE and body.sigma * body.v < -body.still:
+    if turns_back(body.part, body.sigma, body.v, body.still):
         turn_round(body.u, run)
     body.a = absolute_acceleration(body.u, body.v, body.z, body)
     rests = 0.0
@@ -245,7 +245,7 @@ def _rest(last_step: int, run: SingleRun) -> int:
         if not rest_step(piece_end, piece, run):
             return FULL
         if body.released:
-            clock[INTERVAL] = clock[SINCE_IMPACT]
+            end_flight(clock)
             g = ground_acceleration(piece, clock[T])
             write_present(clock[T], g, run)
             count[DUE] = 1

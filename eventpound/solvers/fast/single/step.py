@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from eventpound.contact.cascade import IN_A_ROW, INTERVAL, SINCE_IMPACT, T
+from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T, end_flight
 from eventpound.contact.event_rows import list_all
 from eventpound.contact.impacts import FULL
 from eventpound.numerics.arrays import Ints
@@ -402,7 +402,7 @@ def _happen(event: int, t: float, run: SingleRun) -> None:
     elif event == CROSSED:
         pass_border(body.u, body)
     else:
-        run.clock[INTERVAL] = run.clock[SINCE_IMPACT]
+        end_flight(run.clock)
         if event == CLOSED_RIGHT:
             body.right = 0.0
         else:
