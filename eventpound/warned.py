@@ -1,13 +1,22 @@
-"""How a warning reaches somebody who uses commands: one line, without a place in the source."""
+"""How a warning reaches its reader: of a command in one line, in Python at the call it is about."""
 
 from __future__ import annotations
 
 import sys
+import warnings
 from typing import TextIO
 
 
 class OptionWarning(UserWarning):
     """An option of a case plays no part in what is computed of it."""
+
+
+def warn_caller(text: str, category: type[Warning]) -> None:
+    """Warn of what the first caller from outside of the package asked for."""
+    level, frame = 1, sys._getframe()
+    while frame.f_back and frame.f_globals["__name__"].startswith(("eventpound.", "functools")):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, category, stacklevel=level)
 
 
 def show_warning(

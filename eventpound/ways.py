@@ -6,7 +6,6 @@ anything runs. What a command that computes something else leaves out is said in
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 from enum import StrEnum
 
@@ -14,7 +13,7 @@ from eventpound.case.case import DEFAULTS, Case, RunOptions
 from eventpound.errors import InputError
 from eventpound.quantities.lookup import asked, ledger_of, needs_energy
 from eventpound.scene.scene import Scene
-from eventpound.warned import OptionWarning
+from eventpound.warned import OptionWarning, warn_caller
 
 
 class Way(StrEnum):
@@ -109,7 +108,7 @@ def warn_left_out(case: Case | Scene, way: Way) -> None:
         return
     left = [name for name, given in _GIVEN.items() if way not in HOLDS[name] and given(case.run)]
     if left:
-        warnings.warn(without_part(left, way), OptionWarning, stacklevel=3)
+        warn_caller(without_part(left, way), OptionWarning)
 
 
 def without_part(options: Iterable[str], way: Way) -> str:

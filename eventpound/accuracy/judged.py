@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +20,7 @@ from eventpound.simulation import Progress
 from eventpound.solvers import name_of
 from eventpound.solvers.base import Solver
 from eventpound.units import Dimension
+from eventpound.warned import warn_caller
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -104,7 +104,7 @@ def simulate(
         error_estimate = case.run.error_estimate
     estimate = estimate_of(response, asked=error_estimate)
     for text in (estimate or {}).get("warnings", ()):
-        warnings.warn(text, AccuracyWarning, stacklevel=3)
+        warn_caller(text, AccuracyWarning)
     if progress is True:
         print(f"\r{response.recording.t:.6g} s", file=sys.stderr)
         response = replace(response, task=replace(response.task, progress=None))

@@ -6,7 +6,6 @@ are doubled until no number changes by more than `AGREEMENT`.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from itertools import pairwise
@@ -19,6 +18,7 @@ from eventpound.motion.base import Family, GroundMotion
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.periods import local_periods
 from eventpound.solvers.base import Recording, Task
+from eventpound.warned import warn_caller
 
 Key = TypeVar("Key", bound=Hashable)
 Rerun = Callable[[Task], Recording]
@@ -84,7 +84,7 @@ def warn_unsettled(name: str, part: float, aim: float = AGREEMENT) -> None:
     if part == np.inf:
         text = f"not checked: closer rows would be more than {MOST_ROWS}; a shorter duration helps"
     if part > aim:
-        warnings.warn(f"{name}: {text}", AccuracyWarning, stacklevel=2)
+        warn_caller(f"{name}: {text}", AccuracyWarning)
 
 
 def first_step(task: Task) -> tuple[float, bool]:

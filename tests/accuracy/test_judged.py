@@ -49,8 +49,11 @@ def test_it_is_not_made_where_it_is_not_wanted() -> None:
 def test_a_run_of_few_steps_warns_that_its_error_is_not_known() -> None:
     """Its judge has no more steps than it had itself."""
     plain = simulate(SCENE, "fast")
-    with pytest.warns(AccuracyWarning, match="error not known: fast itself at rtol 1e-11 failed"):
+    with pytest.warns(
+        AccuracyWarning, match="error not known: fast itself at rtol 1e-11 failed"
+    ) as warned:
         found = eventpound.simulate(SCENE, "fast", max_steps=plain.work.steps)
+    assert [each.filename for each in warned] == [__file__]
     assert found.error_estimate is not None
     assert "the limit of" in found.error_estimate["failed"]
 

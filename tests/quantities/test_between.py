@@ -232,8 +232,9 @@ def test_a_warning_names_what_was_asked_and_what_helps(monkeypatch: pytest.Monke
     monkeypatch.setattr(between, "_ROUNDS", 1)
     response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)
     said = r"^velocity.a.\*: known to some \de-\d+ of its size, not to 1e-06; a smaller rtol helps"
-    with pytest.warns(AccuracyWarning, match=said):
+    with pytest.warns(AccuracyWarning, match=said) as warned:
         response.quantity("velocity.a.max")
+    assert [each.filename for each in warned] == [__file__]
     assert response.quantity("contacts.joint.largest_gap")
     monkeypatch.setattr(rows, "MOST_ROWS", 1)
     response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)
