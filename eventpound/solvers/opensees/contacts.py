@@ -27,6 +27,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import assert_never
 
 from eventpound.errors import InputError
 from eventpound.mechanics.contact_elements import drag
@@ -140,7 +141,9 @@ def element_material(
             return ("ViscoelasticGap", stiffness, drag(element, constant, stiffness, mass), -gap)
         case Element.JANKOWSKI:
             return ("JankowskiImpact", stiffness, constant, mass, -gap, 1.5)
-    return ("Hertzdamp", stiffness, constant, -gap, 1.5)
+        case Element.HERTZ | Element.HERTZ_DAMP:
+            return ("Hertzdamp", stiffness, constant, -gap, 1.5)
+    assert_never(element)
 
 
 def _impact_material(k: float, deepest: float, e: float, gap: float) -> Material:
