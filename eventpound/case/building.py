@@ -67,23 +67,17 @@ def with_buildings(document: Mapping[str, object], file: Path) -> Mapping[str, o
 def _expanded(table: Table) -> dict[str, list[object]]:
     """Bodies, springs and damping of one building; empty where it has problems."""
     name = table.text("name", "a name for the building")
-    storeys = table.data.get("storeys") if table.has("storeys") else None
-    accepted = f"a whole number from 1 to {MOST_STOREYS}"
+    storeys = table.whole_number("storeys", 1, MOST_STOREYS)
     if storeys is None:
-        table.report_missing("storeys", accepted)
-        return {}
-    if (
-        isinstance(storeys, bool)
-        or not isinstance(storeys, int)
-        or not 1 <= storeys <= MOST_STOREYS
-    ):
-        table.reject("storeys", accepted)
         return {}
     masses = _values(table, "mass", Dimension.MASS, storeys)
     weights = [STANDARD_GRAVITY * sum(masses[i:]) for i in range(storeys)]
     stiffnesses = _values(table, "stiffness", Dimension.STIFFNESS, storeys)
-    heights = _optional(table, "height", Dimension.LENGTH, storeys)
-    forces = _optional(table, "yield_force", Dimension.FORCE, storeys, weights)
+    heights, forces = list[float](), list[float]()
+    if table.has("height"):
+        heights = _values(table, "height", Dimension.LENGTH, storeys)
+    if table.has("yield_force"):
+        forces = _values(table, "yield_force", Dimension.FORCE, storeys, weights)
     hardening = table.quantity("hardening", Dimension.NUMBER, 0.05) if forces else None
     ends = [GROUND, *(f"{name}{i}" for i in range(1, storeys + 1))]
     springs: list[object] = []
@@ -137,14 +131,3 @@ def _values(
             return [math.nan] * count
         found.append(number)
     return found
-
-
-def _optional(
-    table: Table,
-    key: str,
-    dimension: Dimension,
-    count: int,
-    weights: Sequence[float] | None = None,
-) -> list[float]:
-    """The same, empty where it is not given."""
-    return _values(table, key, dimension, count, weights) if table.has(key) else []

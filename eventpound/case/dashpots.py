@@ -11,12 +11,13 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from eventpound.case.frequency import agree, frequency_or_period
+from eventpound.case.spring_stiffness import held_mass
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.scene.damping import initial_stiffness, post_yield_stiffness, ratio_coefficient
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import ends_on_ground
-from eventpound.scene.spring import GROUND, Spring
+from eventpound.scene.spring import Spring
 from eventpound.units import Dimension, quantity
 
 _STIFFNESSES = {
@@ -55,7 +56,7 @@ def read_dashpot(
     between = table.pair("between", 'two bodies, or a body and "ground"')
     coefficient = table.optional_quantity("coefficient", Dimension.DAMPING)
     if table.has("ratio"):
-        mass = _held_mass(ends_on_ground(between, supports), masses)
+        mass = held_mass(ends_on_ground(between, supports), masses)
         from_ratio = _from_ratio(table, between, mass, springs)
         if coefficient is None:
             coefficient = from_ratio
@@ -80,13 +81,6 @@ def given_ratios(tables: Iterable[Table]) -> list[tuple[str, float]]:
         for table in tables
         if "ratio" in table.data
     ]
-
-
-def _held_mass(between: tuple[str, str], masses: Mapping[str, float]) -> float | None:
-    """Mass (kg) of the one body that a dashpot joins to the ground, None between two bodies."""
-    if GROUND not in between:
-        return None
-    return masses.get(between[1] if between[0] == GROUND else between[0], math.nan)
 
 
 def _from_ratio(

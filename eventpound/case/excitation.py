@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from eventpound.case.frequency import optional_frequency
+from eventpound.case.frequency import required_frequency
 from eventpound.case.record_file import find_record
 from eventpound.case.record_options import RecordOptions, read_record_options
 from eventpound.case.suite import Suite, read_suite, understood_suite
@@ -106,11 +106,7 @@ def _read_formula(table: Table, kind: str) -> Excitation | None:
     table.require(
         "amplitude", not amplitude <= 0.0, "a positive acceleration; reverse turns a motion round"
     )
-    omega, period = optional_frequency(table) or (math.nan, math.nan)
-    if not (table.has("period") or table.has("frequency")):
-        table.report_missing("period", f"{Dimension.TIME.accepted}; or frequency (rad/s)")
-    elif omega == 0.0:
-        table.reject("frequency", "a positive frequency (rad/s)")
+    omega, period = required_frequency(table)
     numbers = {"amplitude": amplitude, "period": period, **_read_shape(table, kind)}
     numbers["start"] = table.quantity("start", Dimension.TIME, 0.0)
     reverse = table.flag("reverse")
@@ -174,12 +170,4 @@ def record_excitation(file: str, path: Path, options: RecordOptions) -> Excitati
         Where it cannot be read or used.
     """
     data = options.read(path)
-    understood = {
-        "kind": "record",
-        "file": file,
-        "format": data.format,
-        "units": data.units,
-        "time_step": data.time_step,
-        **options.understood(),
-    }
-    return Excitation(options.motion(data), understood, data)
+    return Excitation(options.motion(data), options.of_file(file, data), data)

@@ -203,9 +203,8 @@ def _read_contours(table: Table, kind: FigureKind) -> Figure:
 def _read_motion(table: Table) -> NamedMotion:
     """A name, and ``file`` or ``length``."""
     name = table.text("name", "what it is called")
-    length = table.optional_quantity("length", Dimension.LENGTH)
+    length = table.optional_quantity("length", Dimension.LENGTH, "a positive length L_e")
     file = table.text("file", "the file of a record") if table.has("file") else None
-    table.require("length", length is None or length > 0.0, "a positive length L_e")
     if (length is None) == (file is None):
         table.report_missing("file", "a record, or length = its L_e")
     table.close()

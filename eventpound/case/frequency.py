@@ -65,6 +65,16 @@ def optional_frequency(table: Table) -> tuple[float, float] | None:
     return omega, period
 
 
+def required_frequency(table: Table) -> tuple[float, float]:
+    """Angular frequency and period that a table has to give, positive; NaN with problems noted."""
+    omega, period = optional_frequency(table) or (math.nan, math.nan)
+    if not (table.has("period") or table.has("frequency")):
+        table.report_missing("period", f"{Dimension.TIME.accepted}; or frequency (rad/s)")
+    elif omega == 0.0:
+        table.reject("frequency", "a positive frequency (rad/s)")
+    return omega or math.nan, period
+
+
 def frequency_or_period(value: object) -> float:
     """Angular frequency from a frequency or, with a unit of time, a period.
 

@@ -46,8 +46,9 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
             raise InputError([f"duration: {problem}" for problem in error.problems]) from error
     if math.isnan(run.output_step):
         run = replace(run, output_step=default_output_step(scene.motion, run.duration))
-    understood = understood_case(case.title, _read(member, data), scene, run, case.solver)
-    records = {name: _read(own, own.read()) for name, own in member.supports}
+    read = member.options.of_file(member.file, data)
+    understood = understood_case(case.title, read, scene, run, case.solver)
+    records = {name: own.options.of_file(own.file, own.read()) for name, own in member.supports}
     driven: dict[str, Any] = {
         key: case.understood[key] for key in ("support", "force") if key in case.understood
     }
@@ -63,18 +64,6 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
         figure=None,
         understood=understood | driven,
     )
-
-
-def _read(member: Member, data: RecordData) -> dict[str, object]:
-    """The table of the record that was read."""
-    return {
-        "kind": "record",
-        "file": member.file,
-        "format": data.format,
-        "units": data.units,
-        "time_step": data.time_step,
-        **member.options.understood(),
-    }
 
 
 def _with_record(

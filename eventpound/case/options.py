@@ -63,13 +63,11 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
         None where there are problems; they are noted.
     """
     start_time = table.quantity("start_time", Dimension.TIME, 0.0)
-    duration = table.optional_quantity("duration", Dimension.TIME)
-    output_step = table.optional_quantity("output_step", Dimension.TIME)
+    positive = "a positive time (s)"
+    duration = table.optional_quantity("duration", Dimension.TIME, positive)
+    output_step = table.optional_quantity("output_step", Dimension.TIME, positive)
     energy, balanced = table.flag("energy"), to_be_placed(table.data)
     errors = table.flag("error_estimate") if table.has("error_estimate") else None
-    for key, value in (("duration", duration), ("output_step", output_step)):
-        if value is not None:
-            table.require(key, not value <= 0.0, "a positive time (s)")
     stated = _read_stated(table)
     if suite and not math.isnan(start_time):
         table.close()
@@ -114,9 +112,8 @@ def _read_stated(table: Table) -> Stated:
     """What is said of quantities."""
     speed = table.quantity("threshold_speed", Dimension.VELOCITY, DEFAULTS.threshold_speed)
     table.require("threshold_speed", not speed < 0.0, "a speed (m/s), not negative")
-    stiffness = table.optional_quantity("contact_stiffness", Dimension.STIFFNESS)
-    if stiffness is not None:
-        table.require("contact_stiffness", not stiffness <= 0.0, "a positive stiffness (N/m)")
+    positive = "a positive stiffness (N/m)"
+    stiffness = table.optional_quantity("contact_stiffness", Dimension.STIFFNESS, positive)
     given = table.texts("quantities", "a list of texts") if table.has("quantities") else ()
     free, gaps = table.flag("without_contact"), table.flag("avoiding_gap")
     return Stated(speed, stiffness, tuple(dict.fromkeys(given)), free, gaps)
@@ -146,9 +143,8 @@ def read_solver(table: Table, default: str = REFERENCE) -> SolverOptions:
     atol_table = table.table("atol")
     atol: dict[str, float] = {}
     for key, dimension in _ATOL.items():
-        value = atol_table.optional_quantity(key, dimension)
+        value = atol_table.optional_quantity(key, dimension, "a positive tolerance")
         if value is not None:
-            atol_table.require(key, not value <= 0.0, "a positive tolerance")
             atol[key] = value
     atol_table.close()
     known = ("name", "rtol", "atol")

@@ -75,9 +75,8 @@ def read_pi(top: Table) -> PiTable | None:
     ]
     given = {key: table.optional_quantity(key, Dimension.NUMBER) for key in keys}
     terms = {key: value for key, value in given.items() if value is not None}
-    periods = table.optional_quantity("periods", Dimension.NUMBER)
-    if periods is not None:
-        table.require("periods", not periods <= 0.0, "a positive number of periods 2 pi / omega_g")
+    positive = "a positive number of periods 2 pi / omega_g"
+    periods = table.optional_quantity("periods", Dimension.NUMBER, positive)
     table.close()
     if not word:
         return None

@@ -89,6 +89,11 @@ class RecordOptions:
         """What is done to the size of every record, in words; empty where nothing is."""
         return self.size.words
 
+    def of_file(self, file: str, data: RecordData) -> dict[str, object]:
+        """``[excitation]`` of one file that was read, in SI with the defaults filled in."""
+        read = {"format": data.format, "units": data.units, "time_step": data.time_step}
+        return {"kind": "record", "file": file, **read, **self.understood()}
+
     def said(self) -> Mapping[str, object]:
         """Format, units and time step of the file, where they were given."""
         given = {"format": self.format, "units": self.units, "time_step": self.time_step}
@@ -121,15 +126,13 @@ def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
         None where there are problems; they are noted.
     """
     size = read_scaling(table, directory)
-    time_step = table.optional_quantity("time_step", Dimension.TIME)
+    time_step = table.optional_quantity("time_step", Dimension.TIME, "a positive number")
     start = table.quantity("start", Dimension.TIME, 0.0)
     reverse = table.flag("reverse")
     texts = {
         key: table.text(key, f"the {key} of the file") if table.has(key) else None
         for key in ("format", "units", "component", "response")
     }
-    if time_step is not None:
-        table.require("time_step", not time_step <= 0.0, "a positive number")
     if math.isnan(start) or (time_step is not None and math.isnan(time_step)):
         return None
     if "" in texts.values():

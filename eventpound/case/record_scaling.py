@@ -119,13 +119,15 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
     RecordScaling or None
         None where there are problems; they are noted.
     """
-    scale = table.optional_quantity("scale", Dimension.NUMBER)
-    pga, psa = (table.optional_quantity(key, Dimension.ACCELERATION) for key in ("pga", "psa"))
-    period = table.optional_quantity("psa_period", Dimension.TIME)
+    dimensions = (
+        ("scale", Dimension.NUMBER),
+        ("pga", Dimension.ACCELERATION),
+        ("psa", Dimension.ACCELERATION),
+        ("psa_period", Dimension.TIME),
+    )
+    positive = "a positive number; reverse turns a motion round"
+    scale, pga, psa, period = (table.optional_quantity(*each, positive) for each in dimensions)
     damping = table.optional_quantity("psa_damping", Dimension.NUMBER)
-    for key, value in (("scale", scale), ("pga", pga), ("psa", psa), ("psa_period", period)):
-        if value is not None:
-            table.require(key, not value <= 0.0, "a positive number; reverse turns a motion round")
     if damping is not None:
         table.require("psa_damping", not (damping < 0.0 or damping >= 1.0), "0 to below 1")
     given = [way for way in _WAYS if table.has(way)]

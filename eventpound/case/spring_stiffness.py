@@ -140,8 +140,13 @@ def masses_carried(
 def _swinging(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> float | None:
     """The mass that a frequency or period is one of (kg); None where there is none."""
     named = _named_mass(table, masses)
-    if named is not None or GROUND not in between:
-        return named
+    return held_mass(between, masses) if named is None else named
+
+
+def held_mass(between: tuple[str, str], masses: Mapping[str, float]) -> float | None:
+    """Mass (kg) of the one body that something joins to the ground, None between two bodies."""
+    if GROUND not in between:
+        return None
     return masses.get(between[1] if between[0] == GROUND else between[0], math.nan)
 
 

@@ -86,6 +86,13 @@ class Member:
             stamp = (0, 0, 0)
         return _motion(self, stamp)
 
+    def at_support(self, name: str) -> Record:
+        """Its ground motion, of a support that messages name."""
+        try:
+            return self.motion()
+        except InputError as error:
+            raise InputError([f"support '{name}': {each}" for each in error.problems]) from error
+
     def on(self, scene: Scene) -> Scene:
         """A scene moved by it, and by what goes with it at supports.
 
@@ -94,14 +101,7 @@ class Member:
         InputError
             Where a record cannot be read or used.
         """
-        own = {}
-        for name, member in self.supports:
-            try:
-                own[name] = member.motion()
-            except InputError as error:
-                raise InputError(
-                    [f"support '{name}': {each}" for each in error.problems]
-                ) from error
+        own = {name: member.at_support(name) for name, member in self.supports}
         return replace(
             scene,
             motion=self.motion(),
@@ -260,13 +260,10 @@ def understood_suite(suite: Suite) -> Mapping[str, object]:
 def _read_synthetic(table: Table) -> tuple[tuple[int, int], ...]:
     """Seeds and numbers of ``synthetic = { seed, first, count }``; empty with problems noted."""
     numbers = {"seed": 1, "first": 1, "count": 60}
-    for key in numbers:
-        if not table.has(key):
-            continue
-        value = table.data[key]
+    for key, default in numbers.items():
         most = MOST_MATCHES if key == "count" else LARGEST_SEED
-        if not isinstance(value, int) or isinstance(value, bool) or not 1 <= value <= most:
-            table.reject(key, f"a whole number from 1 to {most}")
+        value = table.whole_number(key, 1, most, default)
+        if value is None:
             return ()
         numbers[key] = value
     table.close()

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from eventpound.case.excitation import Excitation, read_excitation
-from eventpound.case.frequency import optional_frequency
+from eventpound.case.frequency import required_frequency
 from eventpound.case.record_file import find_record
 from eventpound.case.suite import Suite
 from eventpound.case.table import Table
@@ -184,9 +184,7 @@ def _formula(table: Table, directory: Path) -> _History:
     kind = table.choice("kind", list(_CYCLES))
     amplitude, per_mass = _amount(table, "amplitude")
     table.require("amplitude", not amplitude <= 0.0, "a positive force; reverse turns it round")
-    omega, period = optional_frequency(table) or (math.nan, math.nan)
-    if not (table.has("period") or table.has("frequency")):
-        table.report_missing("period", f"{Dimension.TIME.accepted}; or frequency (rad/s)")
+    omega, period = required_frequency(table)
     cycles = _CYCLES.get(kind)
     if kind == "harmonic":
         cycles = table.optional_quantity("cycles", Dimension.NUMBER)
@@ -196,8 +194,6 @@ def _formula(table: Table, directory: Path) -> _History:
     }
     reverse = table.flag("reverse")
     if not kind or not (amplitude > 0.0 and omega > 0.0) or math.isnan(sum(numbers.values())):
-        if omega <= 0.0:
-            table.report("period", "found one that is not positive; accepted: a positive time (s)")
         return NoMotion(), per_mass, {}
     understood: dict[str, object] = {
         "kind": kind,

@@ -92,15 +92,36 @@ class Table:
             self._asked.append(key)
         return key in self.data
 
-    def optional_quantity(self, key: str, dimension: Dimension) -> float | None:
-        """Value in SI; None where it is not given, NaN where it is wrong."""
+    def optional_quantity(self, key: str, dimension: Dimension, positive: str = "") -> float | None:
+        """Value in SI; None where it is not given, NaN where it is wrong.
+
+        `positive` is what is accepted of a key that may be neither zero nor negative.
+        """
         if not self.has(key):
             return None
         try:
-            return quantity(self.data[key], dimension)
+            value = quantity(self.data[key], dimension)
         except InputError as error:
             self.report(key, str(error))
             return math.nan
+        if positive:
+            self.require(key, value > 0.0, positive)
+        return value
+
+    def whole_number(
+        self, key: str, least: int, most: int, default: int | None = None
+    ) -> int | None:
+        """A whole number; None where it is wrong or, without a default, missing."""
+        accepted = f"a whole number from {least} to {most}"
+        if not self.has(key):
+            if default is None:
+                self.report_missing(key, accepted)
+            return default
+        value = self.data[key]
+        if isinstance(value, int) and not isinstance(value, bool) and least <= value <= most:
+            return value
+        self.reject(key, accepted)
+        return None
 
     def quantity(self, key: str, dimension: Dimension, default: float | None = None) -> float:
         """Value in SI; NaN where it is wrong or, without a default, missing."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from eventpound.errors import InputError
 from eventpound.motion.readers import RecordData, read_components, read_record
@@ -46,26 +47,11 @@ class RecordFile:
         InputError
             As `read_record` does.
         """
+        said: Any = asdict(self) | {"as_needed": True}
         if self.component is None:
-            return read_components(
-                self.path,
-                format=self.format,
-                units=self.units,
-                time_step=self.time_step,
-                response=self.response,
-                as_needed=True,
-            )
-        return [
-            read_record(
-                self.path,
-                format=self.format,
-                units=self.units,
-                time_step=self.time_step,
-                component=self.component,
-                response=self.response,
-                as_needed=True,
-            )
-        ]
+            del said["component"]
+            return read_components(**said)
+        return [read_record(**said)]
 
 
 def files_in(folder: Path) -> list[Path]:
