@@ -33,7 +33,7 @@ from eventpound.solvers.fast import many as fast_many
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.many import run_rows, run_single_rows
 from eventpound.solvers.fast.single.oscillator import oscillate
-from eventpound.study import runs
+from eventpound.study import sweep
 from eventpound.study.axes import given_axes
 from eventpound.study.plan import base_of
 from eventpound.study.variants import axis_values, rows_with
@@ -201,7 +201,7 @@ def test_no_variant_depends_on_those_before_it(seed: int) -> None:
 def test_workers_and_chunks_change_nothing(monkeypatch, workers, most):
     scene, duration, parameters = SCENES["everything of a pair"]
     expected = simulate_many(scene, parameters, duration=duration, workers=1).table
-    monkeypatch.setattr(runs, "MOST_IN_CHUNK", most)
+    monkeypatch.setattr(sweep, "MOST_IN_CHUNK", most)
     found = simulate_many(scene, parameters, duration=duration, workers=workers).table
     assert found.equals(expected)
 
@@ -352,7 +352,7 @@ def test_a_contact_at_a_support_is_checked_in_every_variant(key, fine, wrong):
         axes = given_axes("parameters", {key: values})
         base = base_of(SUPPORTED, axes, (), SolverOptions("fast", 1e-6))
         rows = rows_with(base, axis_values(base, 0, 2), range(2))
-        runs.variants_of(rows, runs.Wanted("fast", 1e-6))
+        sweep.variants_of(rows, sweep.Wanted("fast", 1e-6))
 
     checked(fine, fine)
     with pytest.raises(InputError, match=r"variant 1 .*gap: found 0?-?[.\d]+; .* not penetrated"):

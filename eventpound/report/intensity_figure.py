@@ -11,19 +11,19 @@ from eventpound.report.notes import add_notes
 from eventpound.report.style import PALETTE, new_figure, show_as_written, styled
 from eventpound.report.symbols import axis_label, display_unit, symbol
 from eventpound.study.intensity import IntensityPlan
-from eventpound.study.plan import Study
+from eventpound.study.plan import Plan
 from eventpound.study.stated import stated
 
 
 @styled()
 def intensity_figure(
-    study: Study, plan: IntensityPlan, table: pd.DataFrame, curves: pd.DataFrame
+    study: Plan, plan: IntensityPlan, table: pd.DataFrame, curves: pd.DataFrame
 ) -> Figure:
     """Draw intensity over demand.
 
     Parameters
     ----------
-    study : Study
+    study : Plan
         For the title and what is stated below.
     plan : IntensityPlan
         Which columns.

@@ -32,7 +32,7 @@ from eventpound.report.style import (
 from eventpound.report.symbols import axis_label, display_unit, plain_value, symbol, value_label
 from eventpound.report.view import stretches
 from eventpound.study.figure import FigurePlan
-from eventpound.study.plan import Study
+from eventpound.study.plan import Plan
 from eventpound.study.reading import StudyCase
 from eventpound.study.spectra import dimensional_name
 from eventpound.study.stated import stated
@@ -180,7 +180,7 @@ def _shading(plan: FigurePlan) -> str:
     return said
 
 
-def _panels(study: Study, plan: FigurePlan, table: pd.DataFrame) -> Iterator[_Panel]:
+def _panels(study: Plan, plan: FigurePlan, table: pd.DataFrame) -> Iterator[_Panel]:
     for i, (row_value, of_row) in enumerate(_split(table, plan.rows)):
         for j, (column_value, of_panel) in enumerate(_split(of_row, plan.columns)):
             words = [] if row_value is None else [value_label(plan.rows, row_value)]
@@ -209,7 +209,7 @@ def _unit(table: pd.DataFrame, key: str, said: Sequence[str]) -> Unit:
     return Unit("", 1.0) if said else display_unit(key, largest_size(table[key].to_numpy(float)))
 
 
-def _last_axis(study: Study, table: pd.DataFrame) -> str:
+def _last_axis(study: Plan, table: pd.DataFrame) -> str:
     """The axis that varies fastest in the scene of the first row of a table."""
     first = table.iloc[0]
     for base in study.bases:
@@ -227,7 +227,7 @@ def _split(table: pd.DataFrame, key: str) -> Iterator[tuple[object, pd.DataFrame
         yield value, table[table[key] == value]
 
 
-def _draw_panel(axes: Axes, study: Study, plan: FigurePlan, panel: _Panel) -> dict[str, Artist]:
+def _draw_panel(axes: Axes, study: Plan, plan: FigurePlan, panel: _Panel) -> dict[str, Artist]:
     """Curves of one panel; what the legend says of them."""
     handles: dict[str, Artist] = {}
     curves = list(_split(panel.table, plan.curves))
@@ -304,7 +304,7 @@ def _marked_curve(plan: FigurePlan, panel: _Panel) -> pd.DataFrame:
     return marked.sort_values(panel.x)
 
 
-def _along(study: Study, key: str) -> list[str]:
+def _along(study: Plan, key: str) -> list[str]:
     """Keys of the axes that go along with that of a key."""
     axes = study.bases[0].axes
     zips = {axis.together for axis in axes if axis.key == key} - {""}

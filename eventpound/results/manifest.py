@@ -43,19 +43,27 @@ def describe_run(
     dict
         Described key by key on the page "results" of the docs.
     """
-    understood = None if case is None else case.understood
     return {
         "format": FORMAT,
         "complete": response.success,
         "started": None if started is None else started.isoformat(),
         "wall_time": response.work.seconds,
         "options": _options(response),
-        "case": understood,
-        "case_sha256": None if understood is None else sha256(canonical(understood)),
-        "case_file_sha256": None if case is None else case.source_hash,
+        **told_of(case),
         "record": _record_file(case) | _samples(response.scene.motion),
         "versions": versions(),
         "machine": machine(),
+    }
+
+
+def told_of(case: Case | None) -> dict[str, object]:
+    """What manifests say of a case: as it was understood, with its hash and that of its file."""
+    if case is None:
+        return dict.fromkeys(("case", "case_sha256", "case_file_sha256"))
+    return {
+        "case": case.understood,
+        "case_sha256": sha256(canonical(case.understood)),
+        "case_file_sha256": case.source_hash,
     }
 
 

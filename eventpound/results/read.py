@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -87,11 +87,7 @@ def read(directory: str | os.PathLike[str]) -> StoredResults:
         raise InputError(
             f"{folder}: holds no complete results: {', '.join(missing)} missing; run the case first"
         )
-    manifest = read_json(folder / MANIFEST)
-    if manifest.get("format") != FORMAT:
-        found = manifest.get("format")
-        raise InputError(f"{folder / MANIFEST}: format is {found!r}, this reads {FORMAT!r}")
-    _check_files(folder, manifest)
+    manifest = read_manifest(folder / MANIFEST, FORMAT, (SUMMARY, HISTORY, EVENTS))
     return StoredResults(
         summary=read_json(folder / SUMMARY),
         history=read_history(folder / HISTORY),
@@ -100,20 +96,36 @@ def read(directory: str | os.PathLike[str]) -> StoredResults:
     )
 
 
-def _check_files(folder: Path, manifest: Mapping[str, object]) -> None:
-    """Refuse files of different runs, as an interruption or an edit leaves them."""
+def read_manifest(path: Path, form: str, files: Sequence[str]) -> dict[str, Any]:
+    """The manifest of files beside it, which are those that it tells of.
+
+    Parameters
+    ----------
+    path : Path
+        The manifest.
+    form : str
+        Name and number of the form that it has to have.
+    files : sequence of str
+        What has to lie beside it.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be read, is of another form, or files are not of its run, as an
+        interruption or an edit leaves them.
+    """
+    manifest = read_json(path)
+    if (found := manifest.get("format")) != form:
+        raise InputError(f"{path}: format is {found!r}, this reads {form!r}")
     hashes = manifest.get("files")
     known = hashes if isinstance(hashes, Mapping) else {}
-    changed = [
-        name
-        for name in (SUMMARY, HISTORY, EVENTS)
-        if known.get(name) != sha256(_read_bytes(folder / name))
-    ]
+    changed = [n for n in files if known.get(n) != sha256(_read_bytes(path.parent / n))]
     if changed:
         raise InputError(
-            f"{folder}: {', '.join(changed)} not as the run of {MANIFEST} wrote it "
+            f"{path.parent}: {', '.join(changed)} not as the run of {path.name} wrote it "
             "(interrupted or edited since); run the case again"
         )
+    return manifest
 
 
 def _read_bytes(path: Path) -> bytes:

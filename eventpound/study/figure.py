@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from eventpound.case.table import Table
-from eventpound.study.plan import Study
+from eventpound.study.plan import Plan
 from eventpound.units import Dimension
 
 _SCALES = ("linear", "logarithmic")
@@ -102,7 +102,7 @@ class FigurePlan:
     claim: str
     note: str
 
-    def problems(self, study: Study) -> Iterator[str]:
+    def problems(self, study: Plan) -> Iterator[str]:
         """Columns of the figure that the table does not have, axes that a map does not show."""
         known = (*study.columns, *study.quantities)
         named = {"curves": self.curves, "rows": self.rows, "columns": self.columns}
@@ -120,7 +120,7 @@ class FigurePlan:
         if self.map:
             yield from self._map_problems(study)
 
-    def _map_problems(self, study: Study) -> Iterator[str]:
+    def _map_problems(self, study: Plan) -> Iterator[str]:
         axes = {axis.key: axis.together or axis.key for base in study.bases for axis in base.axes}
         for x in {key or study.bases[0].axes[-1].key for key in self.x} if axes else ("",):
             own = (x, self.curves)

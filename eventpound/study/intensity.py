@@ -24,7 +24,7 @@ import numpy as np
 
 from eventpound.case.table import Table
 from eventpound.study.figure import one_or_several
-from eventpound.study.plan import Study
+from eventpound.study.plan import Plan
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,7 +52,7 @@ class IntensityPlan:
     records: str
     fractiles: tuple[float, ...]
 
-    def problems(self, study: Study) -> Iterator[str]:
+    def problems(self, study: Plan) -> Iterator[str]:
         """Columns that the table does not have."""
         known = (*study.columns, *study.quantities)
         for key in ("measure", "demand", "records"):

@@ -19,7 +19,8 @@ from eventpound.quantities.lookup import chosen, values_of
 from eventpound.scene.scene import Scene
 from eventpound.study.axes import given_axes
 from eventpound.study.plan import base_of
-from eventpound.study.runs import Wanted, cores, results_of
+from eventpound.study.runs import results_of
+from eventpound.study.sweep import Wanted, cores
 from eventpound.study.variants import axis_values, rows_with, unknown_axes
 from eventpound.units import Dimension
 from eventpound.ways import Way, quantities_asked, refuse_options

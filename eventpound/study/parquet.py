@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from eventpound.study.plan import RECORD, Study
+from eventpound.study.plan import RECORD, Plan
 from eventpound.study.table import MESSAGE, SUCCESS, TABLE
 
 PARQUET = "study.parquet"
@@ -15,12 +15,12 @@ _BLOCK = 1 << 18
 """Bytes of the table that are read at once: several such blocks are in memory."""
 
 
-def write_parquet(study: Study, directory: Path) -> bool:
+def write_parquet(study: Plan, directory: Path) -> bool:
     """Write ``study.parquet`` beside ``study.csv``, a block of rows at a time.
 
     Parameters
     ----------
-    study : Study
+    study : Plan
         Whose table it is.
     directory : Path
         Results of the study.
@@ -56,7 +56,7 @@ def write_parquet(study: Study, directory: Path) -> bool:
     return True
 
 
-def _types(study: Study) -> dict[str, Any]:
+def _types(study: Plan) -> dict[str, Any]:
     """Types of the columns, which the first block alone need not show."""
     import pyarrow as pa
 

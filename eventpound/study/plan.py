@@ -206,7 +206,7 @@ class OfSuite:
 
 
 @dataclass(frozen=True)
-class Study:
+class Plan:
     """Everything that decides the table of a study or a suite.
 
     Parameters

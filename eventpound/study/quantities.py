@@ -17,7 +17,7 @@ from eventpound.quantities.lookup import chosen, names_of, unstated
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_solver
-from eventpound.study.plan import Base, Study
+from eventpound.study.plan import Base, Plan
 from eventpound.study.variants import check_axes
 from eventpound.ways import Way, quantities_asked, refuse_options
 
@@ -31,7 +31,7 @@ def default_quantities(bases: Sequence[Base]) -> tuple[str, ...]:
 
 def planned(
     bases: tuple[Base, ...], columns: Sequence[str], quantities: Sequence[str], by: SolverOptions
-) -> tuple[Study, list[str]]:
+) -> tuple[Plan, list[str]]:
     """The plan of a study, and what is wrong with it before anything runs.
 
     Parameters
@@ -46,7 +46,7 @@ def planned(
     by : SolverOptions
         Solver and tolerance.
     """
-    study = Study(bases[0].case.title, bases, tuple(columns), (), by.name, by.rtol)
+    study = Plan(bases[0].case.title, bases, tuple(columns), (), by.name, by.rtol)
     try:
         for base in bases:
             check_solver(replace(base.case.solver, name=by.name, rtol=by.rtol), base.case.scene)

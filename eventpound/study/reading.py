@@ -27,7 +27,7 @@ from eventpound.errors import InputError
 from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
 from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities
-from eventpound.study.plan import PART, RECORD, Base, Study
+from eventpound.study.plan import PART, RECORD, Base, Plan
 from eventpound.study.quantities import planned
 from eventpound.study.table import read_manifest
 from eventpound.ways import Way, without_part
@@ -43,7 +43,7 @@ class StudyCase:
 
     Parameters
     ----------
-    study : Study
+    study : Plan
         What decides its table.
     figures : tuple of FigurePlan
         How the table is drawn.
@@ -55,7 +55,7 @@ class StudyCase:
         Of its scenes, each once.
     """
 
-    study: Study
+    study: Plan
     figures: tuple[FigurePlan, ...]
     intensities: tuple[IntensityPlan, ...]
     directory: Path

@@ -12,7 +12,7 @@ import numpy as np
 
 from eventpound.accuracy.judge import rtol_of_judge
 from eventpound.case.suite import KEPT, Member
-from eventpound.errors import EventpoundError, InputError
+from eventpound.errors import EventpoundError
 from eventpound.motion.intensity import peak_velocity
 from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
@@ -20,7 +20,8 @@ from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Extremes
 from eventpound.study.plan import OfSuite
-from eventpound.study.runs import Results, Sweep, Wanted
+from eventpound.study.runs import Results
+from eventpound.study.sweep import Sweep, Wanted
 
 FILE, FAILED = "file", "failed"
 _IDENTITY = (
@@ -52,7 +53,9 @@ def about(member: Member, period: float | None) -> dict[str, object]:
         scales = motion.scales()
         for name, own in member.supports:
             row[f"{FILE}.{name}"] = own.file
-            row |= _of_support(name, own)
+            moved = own.at_support(name)
+            row[f"sha256.{name}"] = None if moved.source is None else moved.source.sha256
+            row[f"PGA.{name}"] = moved.peak
     except EventpoundError as error:
         row[FAILED] = reason(str(error), member.file)
         with suppress(EventpoundError):
@@ -64,16 +67,6 @@ def about(member: Member, period: float | None) -> dict[str, object]:
         row |= zip(_MEASURES, _measures(motion, period), strict=True)
     row[_READ] = time.perf_counter() - began
     return row
-
-
-def _of_support(name: str, member: Member) -> dict[str, object]:
-    """What the record of a support is."""
-    try:
-        motion = member.motion()
-    except InputError as error:
-        raise InputError([f"support '{name}': {each}" for each in error.problems]) from error
-    sha = None if motion.source is None else motion.source.sha256
-    return {f"sha256.{name}": sha, f"PGA.{name}": motion.peak}
 
 
 @lru_cache(KEPT)

@@ -8,7 +8,7 @@ from pathlib import Path
 from eventpound.results.files import check_writable, only_one
 from eventpound.study.engines.base import Engine
 from eventpound.study.parquet import PARQUET, write_parquet
-from eventpound.study.plan import Study
+from eventpound.study.plan import Plan
 from eventpound.study.store import Details, Store
 from eventpound.study.table import header
 
@@ -19,7 +19,7 @@ Progress = Callable[[int, int], None]
 
 
 def run_study(
-    study: Study,
+    study: Plan,
     directory: Path,
     engine: Engine,
     progress: Progress | None = None,
@@ -31,7 +31,7 @@ def run_study(
 
     Parameters
     ----------
-    study : Study
+    study : Plan
         What is computed.
     directory : Path
         Where the table and its manifest go, and meanwhile the chunks.
@@ -76,7 +76,7 @@ def run_study(
     return moved
 
 
-def _compute_missing(study: Study, store: Store, engine: Engine, progress: Progress | None) -> None:
+def _compute_missing(study: Plan, store: Store, engine: Engine, progress: Progress | None) -> None:
     there = store.stored()
     before = sum(c.high - c.low for c in study.chunks() if c.number in there)
     missing = (chunk for chunk in study.chunks() if chunk.number not in there)
@@ -90,5 +90,5 @@ def _compute_missing(study: Study, store: Store, engine: Engine, progress: Progr
             progress(done, before)
 
 
-def _details(study: Study) -> dict[str, object]:
+def _details(study: Plan) -> dict[str, object]:
     return {"title": study.title, "runs": study.size, **study.described()}

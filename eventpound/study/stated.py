@@ -7,15 +7,15 @@ from collections.abc import Callable
 from eventpound.motion.record import Record
 from eventpound.motion.scaling import DAMPING
 from eventpound.study.axes import PI
-from eventpound.study.plan import PART, Base, Study
+from eventpound.study.plan import PART, Base, Plan
 
 
-def stated(study: Study, symbol: Callable[[str], str]) -> list[str]:
+def stated(study: Plan, symbol: Callable[[str], str]) -> list[str]:
     """Lines that state what is the same in all runs, and of each part what it has beyond that.
 
     Parameters
     ----------
-    study : Study
+    study : Plan
         The study.
     symbol : callable
         How a column of its table is called.

@@ -22,7 +22,7 @@ from eventpound.errors import InputError
 from eventpound.results.files import plain_name, write_stream, write_together
 from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import sha256
-from eventpound.study.plan import Study
+from eventpound.study.plan import Plan
 from eventpound.study.table import MANIFEST, SUITE_MANIFEST, files_of, read_manifest
 
 FORMAT = "eventpound-study/1"
@@ -30,7 +30,6 @@ FORMAT = "eventpound-study/1"
 Details = Callable[[], tuple[Mapping[str, bytes], Mapping[str, object]]]
 _DIGEST = "study_sha256"
 _DIGITS = 12
-_BLOCK = 1 << 20
 
 
 class Store:
@@ -40,11 +39,11 @@ class Store:
     ----------
     directory : Path
         Where the results go.
-    study : Study
+    study : Plan
         Whose they are.
     """
 
-    def __init__(self, directory: Path, study: Study) -> None:
+    def __init__(self, directory: Path, study: Plan) -> None:
         self.directory, self.study = directory, study
         self.table, self.manifest = files_of(study)
         self.unfinished = directory / f"unfinished-{study.digest[:_DIGITS]}"
@@ -138,8 +137,5 @@ def _name(number: int) -> str:
 
 
 def _hash(path: Path) -> str:
-    digest = hashlib.sha256()
     with path.open("rb") as file:
-        while block := file.read(_BLOCK):
-            digest.update(block)
-    return digest.hexdigest()
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -24,17 +24,16 @@ from eventpound.quantities.base import Source
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import all_of
 from eventpound.response import Response
-from eventpound.results.jsontext import canonical
-from eventpound.results.manifest import machine, sha256, versions
+from eventpound.results.manifest import machine, told_of, versions
 from eventpound.results.tables import table_csv
 from eventpound.scene.periods import longest_period
 from eventpound.simulation import check_solver
 from eventpound.study.engines.local import Batch
-from eventpound.study.plan import OfSuite, Study, base_of, described
+from eventpound.study.plan import OfSuite, Plan, base_of, described
 from eventpound.study.records import FAILED, columns_of
 from eventpound.study.running import run_study
-from eventpound.study.runs import cores
 from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
+from eventpound.study.sweep import cores
 from eventpound.study.table import SUITE_FORMAT, SUITE_TABLE, read_table
 from eventpound.units import Dimension
 from eventpound.ways import Way, quantities_asked, refuse_options
@@ -110,7 +109,7 @@ def simulate_suite(
 
 
 def run_suite(
-    plan: Study,
+    plan: Plan,
     case: Case,
     out: Path,
     progress: Callable[[int, int], None] | None = None,
@@ -141,7 +140,7 @@ def plan_of(
     rtol: float | str | None,
     error_estimate: bool | None,
     intensities: bool,
-) -> tuple[Study, Case]:
+) -> tuple[Plan, Case]:
     """The plan of a suite, and its case with the solver of the call.
 
     Raises
@@ -174,7 +173,7 @@ def plan_of(
     suite, base = OfSuite(period, errors), described(base_of(case, (), members, options))
     names = tuple(dict.fromkeys(quantities))
     columns = columns_of(members, suite)
-    return Study(case.title, (base,), columns, names, options.name, options.rtol, suite), case
+    return Plan(case.title, (base,), columns, names, options.name, options.rtol, suite), case
 
 
 def _handing_on(case: Case, keep: Keep) -> Callable[[Member, Response], None]:
@@ -214,9 +213,7 @@ def _manifest(table: pd.DataFrame, case: Case, started: datetime, total: int) ->
             "rtol": case.solver.rtol,
             "settings": dict(case.solver.settings),
         },
-        "case": case.understood,
-        "case_sha256": sha256(canonical(case.understood)),
-        "case_file_sha256": case.source_hash,
+        **told_of(case),
         "versions": versions(),
         "machine": machine(),
     }

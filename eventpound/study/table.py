@@ -21,11 +21,12 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.lookup import is_whole
 from eventpound.response import Response
 from eventpound.results.jsontext import read_json
-from eventpound.results.manifest import sha256
+from eventpound.results.read import read_manifest as read_stated
 from eventpound.results.tables import read_columns, to_numbers
-from eventpound.study.plan import RECORD, Chunk, Study
+from eventpound.study.plan import RECORD, Chunk, Plan
 from eventpound.study.records import FAILED, about, peak_errors, reason
-from eventpound.study.runs import Refused, Results, Wanted, parts_of
+from eventpound.study.runs import Refused, Results, parts_of
+from eventpound.study.sweep import Wanted
 from eventpound.study.variants import axis_values
 
 if TYPE_CHECKING:
@@ -50,12 +51,12 @@ Keep = Callable[[Member, Response], None]
 Cells = Mapping[str, Sequence[object]]
 
 
-def files_of(study: Study) -> tuple[str, str]:
+def files_of(study: Plan) -> tuple[str, str]:
     """Names of the table and of its manifest."""
     return (TABLE, MANIFEST) if study.suite is None else (SUITE_TABLE, SUITE_MANIFEST)
 
 
-def names_of(study: Study) -> list[str]:
+def names_of(study: Plan) -> list[str]:
     """Names of the columns."""
     names = [*study.columns, *study.quantities]
     if study.suite is None:
@@ -64,17 +65,17 @@ def names_of(study: Study) -> list[str]:
     return names + [SECONDS] * ran + [ERRORS] * (ran and study.suite.errors)
 
 
-def header(study: Study) -> bytes:
+def header(study: Plan) -> bytes:
     """Line of the names of the columns."""
     return _text([names_of(study)])
 
 
-def compute(study: Study, chunk: Chunk, keep: Keep | None = None) -> bytes:
+def compute(study: Plan, chunk: Chunk, keep: Keep | None = None) -> bytes:
     """Run a chunk.
 
     Parameters
     ----------
-    study : Study
+    study : Plan
         Whose chunk it is.
     chunk : Chunk
         Which one.
@@ -106,7 +107,7 @@ def compute(study: Study, chunk: Chunk, keep: Keep | None = None) -> bytes:
 
 
 def _cells_of(
-    study: Study, part: Results | Refused, told: Sequence[Mapping[str, object]]
+    study: Plan, part: Results | Refused, told: Sequence[Mapping[str, object]]
 ) -> dict[str, Sequence[object]]:
     """Cells of some rows by their columns, of those that they have."""
     if isinstance(part, Refused):
@@ -134,7 +135,7 @@ def _cells_of(
     return cells
 
 
-def _numbers_of(study: Study, part: Results) -> dict[str, Sequence[object]]:
+def _numbers_of(study: Plan, part: Results) -> dict[str, Sequence[object]]:
     """Cells of the quantities of some runs, and what a suite tells of each run."""
     found = {name: part.quantity(name) for name in study.quantities}
     columns = {name: values for name, values in found.items() if values is not None}
@@ -224,24 +225,13 @@ def read_suite(directory: str | os.PathLike[str]) -> tuple[pd.DataFrame, dict[st
         Where a file is missing, unreadable or not of the manifest's run.
     """
     folder = Path(directory)
-    try:
-        manifest = read_json(folder / SUITE_MANIFEST)
-        content = (folder / SUITE_TABLE).read_bytes()
-    except (InputError, OSError) as error:
-        raise InputError(f"{folder}: holds no complete results of a suite: {error}") from error
-    if manifest.get("format") != SUITE_FORMAT:
-        found = manifest.get("format")
+    if lacking := [n for n in (SUITE_MANIFEST, SUITE_TABLE) if not (folder / n).is_file()]:
         raise InputError(
-            f"{folder / SUITE_MANIFEST}: format is {found!r}, this reads {SUITE_FORMAT!r}"
+            f"{folder}: holds no complete results of a suite: {', '.join(lacking)} missing"
         )
+    manifest = read_stated(folder / SUITE_MANIFEST, SUITE_FORMAT, [SUITE_TABLE])
     if lacking := [key for key in ("case", "options") if not isinstance(manifest.get(key), dict)]:
         raise InputError(f"{folder / SUITE_MANIFEST}: has no table {', '.join(lacking)}")
-    files = manifest.get("files")
-    if not isinstance(files, dict) or files.get(SUITE_TABLE) != sha256(content):
-        raise InputError(
-            f"{folder}: {SUITE_TABLE} not as the run of {SUITE_MANIFEST} wrote it "
-            "(interrupted or edited since); run the case again"
-        )
     return read_table(folder, SUITE_TABLE), manifest
 
 

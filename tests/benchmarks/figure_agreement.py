@@ -18,7 +18,7 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.simulation import simulate
-from eventpound.study.plan import Study
+from eventpound.study.plan import Plan
 from eventpound.study.reading import load_study
 from eventpound.study.variants import rows_of, scene_of_row
 
@@ -27,7 +27,7 @@ REFERENCE, RTOL = "cvode", 1e-10
 LIMIT = 1e-6
 
 
-def studies() -> dict[str, Study]:
+def studies() -> dict[str, Plan]:
     """Studies of the paper's figures, by their names."""
     found = {}
     for file in sorted(CASES.glob("*/case.toml")):
@@ -36,7 +36,7 @@ def studies() -> dict[str, Study]:
     return found
 
 
-def difference(study: Study, run: int) -> tuple[float, str]:
+def difference(study: Plan, run: int) -> tuple[float, str]:
     """Relative difference of the peaks of one run, and which run it is."""
     for base in study.bases:
         if run < base.size:

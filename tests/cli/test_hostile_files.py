@@ -18,8 +18,8 @@ import pytest
 import eventpound.input_files
 import eventpound.results.files
 import eventpound.study.engines.local
-import eventpound.study.runs
 import eventpound.study.suite
+import eventpound.study.sweep
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.input_files import matching_files, read_bytes
@@ -272,7 +272,7 @@ def test_synthetic_motions_without_number(key, tmp_path, capsys):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, capsys):
     results = suite(tmp_path, "records/*", records=8)
-    run = eventpound.study.runs.simulate
+    run = eventpound.study.sweep.simulate
     begun = []
 
     def third_stops(*words: object, **options: object) -> object:
@@ -281,7 +281,7 @@ def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, c
             os.kill(os.getpid(), number)
         return run(*words, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(eventpound.study.runs, "simulate", third_stops)
+    monkeypatch.setattr(eventpound.study.sweep, "simulate", third_stops)
     assert main(["run", str(tmp_path), "--solver", "cvode"]) == 130
     monkeypatch.undo()
     table, manifest = read_suite(results)
@@ -300,7 +300,7 @@ def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, c
         again.append(words)
         return run(*words, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(eventpound.study.runs, "simulate", counted)
+    monkeypatch.setattr(eventpound.study.sweep, "simulate", counted)
     assert main(["run", str(tmp_path), "--solver", "cvode"]) == 0
     assert len(again) == 8 - len(table)
     whole, manifest = read_suite(results)

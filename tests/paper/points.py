@@ -25,7 +25,7 @@ from eventpound.motion.record import Record
 from eventpound.scene import Scene
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
-from eventpound.study.plan import Study
+from eventpound.study.plan import Plan
 from eventpound.study.reading import load_study
 from eventpound.study.variants import rows_of, scene_of_row
 from tests.benchmarks.problem import CASES
@@ -71,7 +71,7 @@ def row_of_terms(terms: dict[str, float], places: tuple[str, ...], a: float, ome
     )  # fmt: skip
 
 
-def of_study(name: str, study: Study, run: int) -> Point:
+def of_study(name: str, study: Plan, run: int) -> Point:
     """Peak of the body looked at in one run of a study."""
     for base in study.bases:
         if run < base.size:

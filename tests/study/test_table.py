@@ -98,14 +98,14 @@ values = [0.0, 0.01, -0.02, 0.005]
 
 
 def test_a_failed_run_is_a_row_with_its_reason(make_study, table, monkeypatch):
-    from eventpound.study import runs
+    from eventpound.study import sweep
 
     def failing(case, *arguments, **options):
         if case.scene.contacts[0].gap > 0.4:
             raise ComputationError("no step is small enough", 1.25)
         return simulate(case, *arguments, **options)
 
-    monkeypatch.setattr(runs, "simulate", failing)
+    monkeypatch.setattr(sweep, "simulate", failing)
     text = ELASTOPLASTIC.replace("count = 40", "count = 2") + '[solver]\nname = "cvode"\n'
     text = text.replace('"free.pi_um", "amplification", ', "")
     found = table(make_study(text).study)

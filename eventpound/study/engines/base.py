@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Protocol
 
-from eventpound.study.plan import Chunk, Study
+from eventpound.study.plan import Chunk, Plan
 
 
 class Engine(Protocol):
@@ -18,6 +18,6 @@ class Engine(Protocol):
     nothing goes on working.
     """
 
-    def run(self, study: Study, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
+    def run(self, study: Plan, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
         """Compute chunks of a study."""
         ...

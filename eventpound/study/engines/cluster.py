@@ -8,7 +8,7 @@ from typing import Any
 
 from eventpound.errors import ComputationError, InputError
 from eventpound.study.engines.local import computed
-from eventpound.study.plan import Chunk, Study
+from eventpound.study.plan import Chunk, Plan
 from eventpound.study.table import compute
 
 _IN_FLIGHT_A_WORKER = 2
@@ -41,7 +41,7 @@ class Cluster:
         self._distributed: Any = distributed
         self.scheduler, self.workers = scheduler, workers
 
-    def run(self, study: Study, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
+    def run(self, study: Plan, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
         """Compute chunks of a study; those of a worker that is lost are made again elsewhere."""
         with self._client() as client:
             # Sent once to each worker, not with every chunk; a task, because the scheduler makes

@@ -23,13 +23,13 @@ from multiprocessing import get_context
 from eventpound.case.options import FAST
 from eventpound.errors import ComputationError
 from eventpound.study.engines.base import Engine
-from eventpound.study.plan import Chunk, Study
-from eventpound.study.runs import cores
+from eventpound.study.plan import Chunk, Plan
+from eventpound.study.sweep import cores
 from eventpound.study.table import Keep, compute
 from eventpound.warned import show_warning
 
 _MOST_BREAKS = 8
-_study: Study | None = None
+_study: Plan | None = None
 
 
 class Batch:
@@ -46,7 +46,7 @@ class Batch:
     def __init__(self, workers: int | None = None, keep: Keep | None = None) -> None:
         self.workers, self.keep = workers or cores(), keep
 
-    def run(self, study: Study, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
+    def run(self, study: Plan, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
         """Compute chunks of a study."""
         pool = ThreadPoolExecutor(self.workers)
         try:
@@ -72,7 +72,7 @@ class Processes:
     def __init__(self, workers: int) -> None:
         self.workers = workers
 
-    def run(self, study: Study, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
+    def run(self, study: Plan, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
         """Compute chunks of a study; a process that dies is replaced, its chunk made again."""
         waiting, breaks = iter(chunks), 0
         while True:
@@ -139,7 +139,7 @@ def computed(
                 yield chunk, rows
 
 
-def _begin(study: Study) -> None:
+def _begin(study: Plan) -> None:
     """Keep the study in a new process, so that a chunk is all that is sent."""
     global _study
     # Ctrl-C reaches every process of a terminal; the one that asked for the chunks answers it.
