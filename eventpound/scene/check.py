@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from numbers import Real
 
@@ -161,13 +161,18 @@ def _body_problems(scene: Scene) -> Iterator[Problem]:
         yield from element.number("initial.velocity", body.velocity, "a number (m/s)")
 
 
+def _some(names: Sequence[str], others: Sequence[str] = ()) -> str:
+    """Names as a message lists them: the first ones, and all others."""
+    return ", ".join([*names[:8], *["..."] * (len(names) > 8), *others])
+
+
 def _end_problems(
     element: _Element, between: tuple[str, str], scene: Scene, fixed: str
 ) -> Iterator[Problem]:
     """Two different ends, each a body or one that is fixed, not both of those."""
     names = [body.name for body in scene.bodies]
     held = [fixed, *(support.name for support in scene.supports)]
-    choices = ", ".join([*names[:8], *(["..."] if len(names) > 8 else []), *held])
+    choices = _some(names, held)
     for end in between:
         if end not in held and end not in names:
             yield element.problem("between", end, f"two different ones of {choices}")
@@ -279,8 +284,7 @@ def _force_problems(scene: Scene) -> Iterator[Problem]:
     for position, force in enumerate(scene.forces, 1):
         element = _Element("force", position, force.body)
         if force.body not in names:
-            choices = ", ".join([*names[:8], *(["..."] if len(names) > 8 else [])])
-            yield element.problem("body", force.body, f"one of {choices}")
+            yield element.problem("body", force.body, f"one of {_some(names)}")
         for problem in motion_problems(force.history):
             yield element.problem("value", problem.found, problem.accepted)
 
@@ -325,7 +329,7 @@ def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
 def _point_problems(element: _Element, contact: Contact, scene: Scene) -> Iterator[Problem]:
     """What is wrong with a contact at a point between bodies."""
     known = {body.name for body in scene.bodies}
-    some = ", ".join([body.name for body in scene.bodies[:8]] + ["..."] * (len(known) > 8))
+    some = _some([body.name for body in scene.bodies])
     for end in (contact.left, contact.right):
         if isinstance(end, str):
             if end not in (known | {BARRIER}):
