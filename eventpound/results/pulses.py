@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 
 from eventpound.motion.characteristics import Characteristics
 from eventpound.motion.pulse_fit import PulseFit
+from eventpound.results.tables import rows_csv
 
 PULSE_TABLE = "pulses.csv"
 _SHAPE = ("gamma", "phase", "cycles")
@@ -22,11 +21,7 @@ def pulses_csv(records: Sequence[tuple[Characteristics, Sequence[PulseFit]]]) ->
         The records with their pulses, the best first.
     """
     rows = [_row(record, fit) for record, fits in records for fit in fits]
-    text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue().encode()
+    return rows_csv([rows[0], *(row.values() for row in rows)])
 
 
 def _row(record: Characteristics, fit: PulseFit) -> dict[str, object]:

@@ -6,8 +6,6 @@ reason, in the column ``problem``.
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 from collections.abc import Mapping, Sequence
 from datetime import datetime
@@ -17,6 +15,7 @@ from eventpound.motion.characteristics import Characteristics
 from eventpound.motion.processing import Processing
 from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import machine, sha256, versions
+from eventpound.results.tables import rows_csv
 
 FORMAT = "eventpound-records/1"
 """Name and number of the form of the files."""
@@ -49,11 +48,7 @@ def records_csv(
     for row in rows:
         row["file"] = _seen_from(folder, str(row["file"]))
     names = list(rows[0]) if records else ["file", _PROBLEM]
-    text = io.StringIO()
-    writer = csv.DictWriter(text, names, restval="", lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue().encode()
+    return rows_csv([names, *([row.get(name, "") for name in names] for row in rows)])
 
 
 def _seen_from(folder: Path, file: str) -> str:

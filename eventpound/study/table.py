@@ -6,10 +6,8 @@ nor on what ran before; but for the times that a suite tells.
 
 from __future__ import annotations
 
-import csv
-import io
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +20,7 @@ from eventpound.quantities.lookup import is_whole
 from eventpound.response import Response
 from eventpound.results.jsontext import read_json
 from eventpound.results.read import read_manifest as read_stated
-from eventpound.results.tables import read_columns, to_numbers
+from eventpound.results.tables import read_columns, rows_csv, to_numbers
 from eventpound.study.plan import RECORD, Chunk, Plan
 from eventpound.study.records import FAILED, about, peak_errors, reason
 from eventpound.study.runs import Refused, Results, parts_of
@@ -67,7 +65,7 @@ def names_of(study: Plan) -> list[str]:
 
 def header(study: Plan) -> bytes:
     """Line of the names of the columns."""
-    return _text([names_of(study)])
+    return rows_csv([names_of(study)])
 
 
 def compute(study: Plan, chunk: Chunk, keep: Keep | None = None) -> bytes:
@@ -92,7 +90,7 @@ def compute(study: Plan, chunk: Chunk, keep: Keep | None = None) -> bytes:
     if study.suite is not None:
         told = [about(member, study.suite.period) for member in base.records[low:high]]
         if not base.case.scene.bodies:
-            return _text([row.get(name, "") for name in names_of(study)] for row in told)
+            return rows_csv([row.get(name, "") for name in names_of(study)] for row in told)
     own = None if keep is None else lambda i, response: keep(base.records[i], response)
     wanted = Wanted(study.solver, study.rtol, study.quantities, keep=own)
     rows: list[bytes] = []
@@ -102,7 +100,7 @@ def compute(study: Plan, chunk: Chunk, keep: Keep | None = None) -> bytes:
         cells = _cells_of(study, part, own_told)
         empty = [""] * len(at)
         columns = (cells.get(name, empty) for name in names_of(study))
-        rows.append(_text(zip(*columns, strict=True)))
+        rows.append(rows_csv(zip(*columns, strict=True)))
     return b"".join(rows)
 
 
@@ -157,13 +155,6 @@ def _cells(name: str, values: Floats) -> list[object]:
 def _plain(value: object) -> object:
     """A cell; nothing of what is not known."""
     return "" if value is None or value != value else value
-
-
-def _text(rows: Iterable[Sequence[object]]) -> bytes:
-    """Lines of a CSV file; every number reads back as the same double."""
-    text = io.StringIO(newline="")
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    return text.getvalue().encode()
 
 
 def read_manifest(directory: Path, name: str = MANIFEST) -> dict[str, object] | None:
