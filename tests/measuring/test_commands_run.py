@@ -59,7 +59,6 @@ RUN = {
     "tests.benchmarks.contact_laws": Small(constants=_once(MULTIPLES=(1e3,))),
     "tests.benchmarks.estimate_cost": Small(call=lambda m: m.main(1)),
     "tests.benchmarks.figure_agreement": Small(call=lambda m: m.main(12, 1)),
-    "tests.benchmarks.invariants": Small(constants=_once(ROUNDS=100)),
     "tests.benchmarks.studies": Small(call=lambda m: m.main([1000])),
     "tests.hard.stiff": Small(call=lambda m: m.main(1, 0, 20.0)),
     "tests.motion.readers.outcomes": Small(

@@ -1,0 +1,123 @@
+"""`fast` with and without the energy ledger, which one program of several keeps: the same run.
+
+Without it a body alone between barriers, bodies that no link joins and steps from sample to sample
+of a record each take a way of their own.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eventpound.mechanics.model import assemble
+from eventpound.motion.pulses import Cosine, Sine
+from eventpound.motion.ricker import Ricker
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    Body,
+    BoucWen,
+    Contact,
+    Dashpot,
+    Linear,
+    Scene,
+    Spring,
+)
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import Recording, Task
+from eventpound.solvers.fast.constants import links_of
+from eventpound.solvers.fast.single.body import oscillator_of
+from tests.benchmarks.agreement import distances, sequence
+from tests.solvers.accuracy import allowed
+from tests.solvers.test_apart import MOTIONS, row
+from tests.solvers.test_sample_steps import BRIDGES, record
+
+RIGHT = Contact("right", "a", BARRIER, 0.2, 0.6)
+LEFT = Contact("left", BARRIER, "a", 0.3, 0.4)
+PULSE = Sine(1.0, 2.0 * np.pi, reverse=True)
+
+
+def scene(law, *contacts, motion=PULSE, damping=0.0, body=None, ends=(GROUND, "a")) -> Scene:
+    dashpots = (Dashpot((GROUND, "a"), damping),) if damping else ()
+    springs = (Spring("s", ends, law),) if law else ()
+    return Scene((body or Body("a", 1.3),), springs, dashpots, contacts, motion)
+
+
+def bouc_wen(exponent=20.0, beta=0.5, gamma=0.5, initial_z=0.0, stiffness=0.4) -> BoucWen:
+    return BoucWen(stiffness, 0.4, 0.05, exponent, beta, gamma, initial_z)
+
+
+ALONE = {
+    "elastic": scene(Linear(3.0), RIGHT),
+    "elastic between barriers": scene(Linear(3.0), RIGHT, LEFT),
+    "elastic and damped": scene(Linear(3.0), RIGHT, damping=0.3),
+    "no spring": scene(None, RIGHT, LEFT, motion=Cosine(1.0, 2.0 * np.pi)),
+    "elastoplastic": scene(bouc_wen(stiffness=0.0), RIGHT),
+    "bilinear": scene(bouc_wen(), RIGHT, LEFT),
+    "bilinear and damped": scene(bouc_wen(), RIGHT, damping=0.2),
+    "turned spring": scene(bouc_wen(2.0, 0.6, 0.4), RIGHT, ends=("a", GROUND)),
+    "n = 1": scene(bouc_wen(1.0), RIGHT),
+    "n = 2, unloading curved": scene(bouc_wen(2.0, 0.1, 0.9), RIGHT),
+    "n = 20, unloading curved": scene(bouc_wen(20.0, 0.8, 0.2), RIGHT, LEFT),
+    "initial z": scene(bouc_wen(initial_z=-0.7), RIGHT, body=Body("a", 1.3, 0.1, -0.4)),
+    "no strength": scene(BoucWen(3.0, 0.0, 0.05), RIGHT),
+    "Ricker": scene(bouc_wen(), RIGHT, motion=Ricker(1.5, 2.0, center=3.0)),
+    "record": scene(bouc_wen(), RIGHT, motion=record()),
+    "record, elastic and damped": scene(Linear(9.0), RIGHT, LEFT, motion=record(), damping=0.2),
+    "record, damped": scene(bouc_wen(), Contact("r", "a", BARRIER, 0.05, 0.5), motion=record()),
+    "no contact": scene(bouc_wen(), motion=record()),
+    "comes to rest": scene(Linear(3.0), Contact("r", "a", BARRIER, 0.02, 0.3)),
+}
+ROWS = {
+    f"{motion}, gap {gap:g}{', damped' * damped}": row(gap, MOTIONS[motion], damped)
+    for motion in MOTIONS
+    for gap in (0.03, 0.2, 1e3)
+    for damped in (False, True)
+}
+SCENES = ALONE | ROWS | BRIDGES
+RUNS = [(name, rtol) for name in ALONE | BRIDGES for rtol in (1e-6, 1e-10)]
+RUNS += [(name, 1e-9) for name in ROWS]
+
+
+def both(of: Scene, end: float, rtol: float) -> tuple[Recording, Recording]:
+    """Without the ledger and with it."""
+    times = np.linspace(0.0, end, 61)
+    tasks = (Task(of, 0.0, end, rtol, output_times=times, energy=e) for e in (False, True))
+    without, kept = (solver_named("fast").solve(task) for task in tasks)
+    return without, kept
+
+
+@pytest.mark.parametrize("of", ALONE.values(), ids=ALONE)
+def test_a_body_alone_has_a_way_of_its_own_without_a_ledger(of: Scene) -> None:
+    model = assemble(of)
+    assert oscillator_of(model, 1.0, links_of(model), energy=False).alone
+    assert not oscillator_of(model, 1.0, links_of(model), energy=True).alone
+
+
+@pytest.mark.parametrize(("name", "rtol"), RUNS)
+def test_the_same_run(name: str, rtol: float) -> None:
+    """Ends, extremes, events and rows, to what the tolerance allows."""
+    end = 9.0 if name in ROWS else 12.0
+    without, kept = both(SCENES[name], end, rtol)
+    if name in BRIDGES:
+        assert without.work.rhs < 0.9 * kept.work.rhs
+    apart = distances(kept, without, end)
+    if without.resting_time.sum() > 0.0 and name not in ROWS:
+        # At rest the acceleration is the ground's, known at the ends of steps only.
+        apart = {key: apart[key] for key in apart if not key.startswith("a_")}
+    error = 1e-6 if name in ROWS else 10.0 * allowed(1.0, rtol)
+    assert {key: value for key, value in apart.items() if value > error} == {}
+    if name not in ROWS:
+        assert max(apart[key] for key in ("u", "v", "u_max", "u_min", "gap")) < 0.1 * error
+    if rtol > 1e-8:
+        return
+    assert sequence(without) == sequence(kept)
+    outputs = np.linspace(0.0, end, 61)[1:-1]
+    places = [np.searchsorted(run.history.t, outputs) for run in (without, kept)]
+    for column in ("u", "z", "force", *(("v", "a") if name in ROWS else ("gap",))):
+        one, other = (
+            getattr(run.history, column)[at]
+            for run, at in zip((without, kept), places, strict=True)
+        )
+        scale = 10.0 * error * np.abs(other).max(initial=0.0)
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=scale, err_msg=column)
