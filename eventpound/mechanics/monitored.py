@@ -179,6 +179,14 @@ def update_extreme(i: int, value: float, t: float, running: Running) -> None:
 
 
 @scalar_kernel
+def update_all(first: int, values: Floats, t: float, part: float, running: Running) -> None:
+    """Take values of the quantities from `first` on that exceed a part of their rounding."""
+    for k in range(values.size):
+        i = first + k
+        update_beyond(i, values[k], t, part * running.rounding[i], running)
+
+
+@scalar_kernel
 def update_settled(u: Floats, elongation: Floats, gap: Floats, t: float, running: Running) -> None:
     """Take the displacements of a settled instant into the extremes.
 
@@ -186,14 +194,9 @@ def update_settled(u: Floats, elongation: Floats, gap: Floats, t: float, running
     that a cascade only approached is attained here, by however little.
     """
     at = running.at
-    for i in range(at.displacement, at.acceleration):
-        if i < at.elongation:
-            value = u[i - at.displacement]
-        elif i < at.gap:
-            value = elongation[i - at.elongation]
-        else:
-            value = gap[i - at.gap]
-        update_beyond(i, value, t, SETTLED * running.rounding[i], running)
+    update_all(at.displacement, u, t, SETTLED, running)
+    update_all(at.elongation, elongation[: at.gap - at.elongation], t, SETTLED, running)
+    update_all(at.gap, gap, t, SETTLED, running)
 
 
 @scalar_kernel

@@ -60,24 +60,28 @@ class Found(NamedTuple):
 
 
 @kernel
-def _may_peak(
-    bounds: tuple[float, float],
-    start: tuple[float, float],
-    end: tuple[float, float],
-    h: float,
-    flat: float,
-    i: int,
-    running: Running,
-) -> bool:
+def _bounds(i: int, at: Places, a: Observed, b: Observed, h: float) -> tuple[float, float]:
+    """Bounds of quantity i in the step, by the Bernstein coefficients."""
+    x, y = motion_of(i, at, a), motion_of(i, at, b)
+    if is_motion(i, at):
+        quintic = quintic_bernstein(x, y, h)
+        return min(quintic), max(quintic)
+    cubic = cubic_bernstein(x[0], x[1], y[0], y[1], h)
+    return min(cubic), max(cubic)
+
+
+@kernel
+def _may_peak(i: int, a: Observed, b: Observed, h: float, running: Running) -> bool:
     """Whether the bounds allow an extreme inside the step beyond those known.
 
-    `start` and `end` are value and rate at the ends; a change of sign of the
-    rate tells of a turning point even where its value differs from that of an
-    end by rounding only, unless it gains less than `flat` or the rates
-    themselves are rounding.
+    A change of sign of the rate tells of a turning point even where its value differs from that
+    of an end by rounding only, unless it gains less than `flat` or the rates themselves are
+    rounding.
     """
-    low, high = bounds
+    start, end = motion_of(i, running.at, a), motion_of(i, running.at, b)
+    low, high = _bounds(i, running.at, a, b, h)
     rounding = running.rounding[i]
+    flat = FLAT_TURN * rounding if is_motion(i, running.at) else rounding
     margin = DOUBT * (high - low) + rounding
     turns = start[1] * end[1] < 0.0 and max(abs(start[1]), abs(end[1])) * h > flat
     above = (turns or high > max(start[0], end[0]) + flat) and (high + margin > running.maximum[i])
@@ -86,65 +90,32 @@ def _may_peak(
 
 
 @kernel
-def _peak_of_quintic(
-    start: tuple[float, float, float],
-    end: tuple[float, float, float],
-    h: float,
-    i: int,
-    running: Running,
-) -> bool:
-    b = quintic_bernstein(start, end, h)
-    flat = FLAT_TURN * running.rounding[i]
-    return _may_peak((min(b), max(b)), start[:2], end[:2], h, flat, i, running)
-
-
-@kernel
-def _peak_of_cubic(
-    start: tuple[float, float], end: tuple[float, float], h: float, i: int, running: Running
-) -> bool:
-    b = cubic_bernstein(start[0], start[1], end[0], end[1], h)
-    return _may_peak((min(b), max(b)), start, end, h, running.rounding[i], i, running)
-
-
-@kernel
 def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> bool:
-    any_found = False
+    any_found, at = False, watched.at
     for j in range(a.gap.shape[1]):
         found.closing[j] = False
         found.detaching[j] = False
         if watched.open_contacts[j]:
-            c = quintic_bernstein(
-                (a.gap[0, j], a.gap[1, j], a.gap[2, j]),
-                (b.gap[0, j], b.gap[1, j], b.gap[2, j]),
-                h,
-            )
-            found.closing[j] = min(c) <= DOUBT * (max(c) - min(c))
+            low, high = _bounds(at.gap + j, at, a, b, h)
+            found.closing[j] = low <= DOUBT * (high - low)
         elif watched.unlocked[j]:
-            f = cubic_bernstein(
-                a.contact_force[0, j],
-                a.contact_force[1, j],
-                b.contact_force[0, j],
-                b.contact_force[1, j],
-                h,
-            )
-            low = min(f) - DOUBT * (max(f) - min(f))
-            found.detaching[j] = low < -watched.force_noise
+            low, high = _bounds(at.contact_force + j, at, a, b, h)
+            found.detaching[j] = low - DOUBT * (high - low) < -watched.force_noise
         any_found = any_found or found.closing[j] or found.detaching[j]
     return any_found
 
 
 @kernel
 def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> bool:
-    any_found = False
+    any_found, at = False, watched.at
     for link in range(found.kink.size):
         found.kink[link] = False
-        low, high = watched.kink_low[link], watched.kink_high[link]
-        if low == -np.inf and high == np.inf:
+        if watched.kink_low[link] == -np.inf and watched.kink_high[link] == np.inf:
             continue
-        x0, x1 = a.elongation[:, link], b.elongation[:, link]
-        c = quintic_bernstein((x0[0], x0[1], x0[2]), (x1[0], x1[1], x1[2]), h)
-        doubt = DOUBT * (max(c) - min(c))
-        found.kink[link] = min(c) - doubt < low or max(c) + doubt > high
+        low, high = _bounds(at.elongation + link, at, a, b, h)
+        doubt = DOUBT * (high - low)
+        found.kink[link] = low - doubt < watched.kink_low[link]
+        found.kink[link] = found.kink[link] or high + doubt > watched.kink_high[link]
         any_found = any_found or found.kink[link]
     return any_found
 
@@ -177,11 +148,6 @@ def inspect_step(
     any_found = _inspect_kinks(a, b, h, watched, found) or any_found
     at = running.at
     for i in range(at.displacement, at.end):
-        x, y, j = motion_of(i, at, a), motion_of(i, at, b), contact_pressed(i, at)
-        if is_motion(i, at):
-            found.peak[i] = _peak_of_quintic(x, y, h, i, running)
-        elif j >= 0 and watched.open_contacts[j]:
-            found.peak[i] = False
-        else:
-            found.peak[i] = _peak_of_cubic(x[:2], y[:2], h, i, running)
+        j = contact_pressed(i, at)
+        found.peak[i] = not (j >= 0 and watched.open_contacts[j]) and _may_peak(i, a, b, h, running)
     return any_found or bool(found.peak.any()) or watched.follows

@@ -10,6 +10,7 @@ from __future__ import annotations
 from eventpound.contact.cascade import T
 from eventpound.mechanics.monitored import (
     Running,
+    update_all,
     update_extreme,
     update_turning_point,
 )
@@ -28,16 +29,14 @@ def take_instant(t: float, run: Run) -> None:
     """Take everything known at one time (s) into the extremes."""
     plan, seen, running = run.plan, run.seen, run.running
     at, ends = running.at, plan.links.ends
-    for b in range(plan.mass.size):
-        update_extreme(at.displacement + b, seen.u[b], t, running)
-        update_extreme(at.acceleration + b, seen.a[b], t, running)
+    update_all(at.displacement, seen.u, t, 1.0, running)
+    update_all(at.acceleration, seen.a, t, 1.0, running)
     for a in range(plan.links.springs):
         x = seen.u[ends[a, 1]] if ends[a, 1] >= 0 else 0.0
         x -= seen.u[ends[a, 0]] if ends[a, 0] >= 0 else 0.0
         update_extreme(at.elongation + a, x, t, running)
-    for j in range(plan.contacts.gap.size):
-        update_extreme(at.gap + j, seen.gap[j], t, running)
-        update_extreme(at.contact_force + j, seen.contact_force[j], t, running)
+    update_all(at.gap, seen.gap, t, 1.0, running)
+    update_all(at.contact_force, seen.contact_force, t, 1.0, running)
     update_extreme(at.base_shear, seen.base[1], t, running)
 
 
@@ -153,16 +152,29 @@ def _pair(i: int, head: int, tail: int, value: float, tau: float, order: int, ru
 
 @compiled
 def _locate(i: int, head: int, tail: int, value: float, tau: float, order: int, run: Run) -> None:
-    plan, state, series, running = run.plan, run.state, run.series, run.running
-    c, d = series.c, series.d
-    relative(head, tail, order, series, c)
-    c[0] = value
+    relative(head, tail, order, run.series, run.series.c)
+    run.series.c[0] = value
+    set_rate(run.series.c, order, run.series.d)
+    take_turns(i, run.series.c, order, run.state.clock[T], tau, run)
+
+
+@compiled
+def set_rate(c: Floats, order: int, d: Floats) -> None:
+    """Rate of a polynomial c of a degree into d."""
     for k in range(order):
         d[k] = (k + 1) * c[k + 1]
-    near = flat_time(plan)
-    for m in range(turning_times(d, order, tau, series.turns, series.work)):
+
+
+@compiled
+def take_turns(i: int, c: Floats, order: int, start: float, tau: float, run: Run) -> None:
+    """Turning points of quantity i, a polynomial c of a degree with the rate `series.d`.
+
+    They are looked for from a time on (s) and within tau (s) of it; `series.d` is overwritten.
+    """
+    plan, series, running, near = run.plan, run.series, run.running, flat_time(run.plan)
+    for m in range(turning_times(series.d, order, tau, series.turns, series.work)):
         there, _ = value_and_slope(c[: order + 1], series.turns[m])
-        t = state.clock[T] + series.turns[m]
+        t = start + series.turns[m]
         update_turning_point(i, there, t, near, running)
         b = i - running.at.displacement
         if 0 <= b < plan.mass.size:
@@ -260,31 +272,35 @@ def _turns(c: int, tau: float, order: int, run: Run) -> bool:
 
 
 @compiled
+def _acceleration_term(c: int, k: int, series: Series) -> float:
+    """Coefficient k of the absolute acceleration of a cluster (m/s^(2+k))."""
+    return (k + 1) * (k + 2) * series.X[c, k + 2] + series.ground[k]
+
+
+@compiled
 def _acceleration(c: int, tau: float, order: int, series: Series) -> tuple[float, float]:
     """Absolute acceleration of a cluster (m/s²), and how much it may change within the step."""
-    X, ground, spread = series.X, series.ground, 0.0
+    spread = 0.0
     for k in range(order - 2, 0, -1):
-        spread = (spread + abs((k + 1) * (k + 2) * X[c, k + 2] + ground[k])) * tau
-    return 2.0 * X[c, 2] + ground[0], spread
+        spread = (spread + abs(_acceleration_term(c, k, series))) * tau
+    return _acceleration_term(c, 0, series), spread
 
 
 @compiled
 def _set_acceleration_rate(c: int, order: int, series: Series) -> None:
     """Rate of the absolute acceleration of a cluster into `series.d`."""
-    X, ground = series.X, series.ground
     for k in range(1, order - 1):
-        series.d[k - 1] = k * ((k + 1) * (k + 2) * X[c, k + 2] + ground[k])
+        series.d[k - 1] = k * _acceleration_term(c, k, series)
 
 
 @compiled
 def _shear_rate_of_bodies(order: int, mass: Floats, series: Series) -> None:
     """Rate of the base shear into `series.d`, where no body is held but by links."""
-    X, d, ground = series.X, series.d, series.ground
+    d = series.d
     for k in range(1, order - 1):
         d[k - 1] = 0.0
         for b in range(mass.size):
-            c = series.of_body[b]
-            d[k - 1] -= mass[b] * k * ((k + 1) * (k + 2) * X[c, k + 2] + ground[k])
+            d[k - 1] -= mass[b] * k * _acceleration_term(series.of_body[b], k, series)
 
 
 @compiled
@@ -323,13 +339,6 @@ def _at_rest(tau: float, order: int, run: Run) -> None:
 @compiled
 def _polynomial_turns(i: int, c: Floats, tau: float, order: int, run: Run) -> None:
     """Turning points of a quantity known by its own series."""
-    plan, state, series, running = run.plan, run.state, run.series, run.running
-    d = series.d
-    for k in range(order - 2):
-        d[k] = (k + 1) * c[k + 1]
-    if _settled(i, c[0], tau, order, series, running):
-        return
-    for m in range(turning_times(d, order - 2, tau, series.turns, series.work)):
-        there, _ = value_and_slope(c[: order - 1], series.turns[m])
-        t = state.clock[T] + series.turns[m]
-        update_turning_point(i, there, t, flat_time(plan), running)
+    set_rate(c, order - 2, run.series.d)
+    if not _settled(i, c[0], tau, order, run.series, run.running):
+        take_turns(i, c, order - 2, run.state.clock[T], tau, run)

@@ -24,6 +24,7 @@ from eventpound.motion.loads import (
     rows_of,
 )
 from eventpound.numerics.arrays import Ints
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events.recorder import put_line
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
@@ -84,8 +85,7 @@ def hold(run: Run) -> None:
         return
     state.count[HELD], state.clock[HELD_AT] = state.count[ROWS], state.clock[T]
     for row in range(series.held.shape[0]):
-        for i in range(record.extremes.shape[1]):
-            series.held[row, i] = record.extremes[row, i]
+        copy_numbers(record.extremes[row], series.held[row])
 
 
 @compiled_apart
@@ -100,8 +100,7 @@ def forget(run: Run) -> None:
     while count[OUTPUT] > 0 and times[count[OUTPUT] - 1] >= clock[T]:
         count[OUTPUT] -= 1
     for row in range(series.held.shape[0]):
-        for i in range(record.extremes.shape[1]):
-            record.extremes[row, i] = series.held[row, i]
+        copy_numbers(series.held[row, : record.extremes.shape[1]], record.extremes[row])
 
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)

@@ -12,10 +12,17 @@ from eventpound.contact.cascade import T
 from eventpound.mechanics.monitored import update_extreme, update_turning_point
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.polynomial import first_root, value_and_slope
+from eventpound.numerics.polynomial import first_root
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import see_forces
-from eventpound.solvers.fast.extremes import flat_time, shift, stays_within, turning_times
+from eventpound.solvers.fast.extremes import (
+    flat_time,
+    set_rate,
+    shift,
+    stays_within,
+    take_turns,
+    turning_times,
+)
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import write_row
 from eventpound.solvers.fast.run import OUTPUT, Piece, Run
@@ -145,13 +152,9 @@ def _take_gap(place: int, j: int, now: float, run: Run) -> None:
     series, running, since = run.series, run.running, run.series.each.since[j]
     h, (_, rate), (low, high) = now - since, _gap_at(j, since, run), _bends(j, run)
     if not (rate + min(low, 0.0) * h > 0.0 or rate + max(high, 0.0) * h < 0.0):
-        order, c, d = _set_gap(j, since, run), run.series.c, run.series.d
-        for k in range(order):
-            d[k] = (k + 1) * c[k + 1]
-        near = flat_time(run.plan)
-        for m in range(turning_times(d, order, h, series.turns, series.work)):
-            value, _ = value_and_slope(c[: order + 1], series.turns[m])
-            update_turning_point(place, value, since + series.turns[m], near, running)
+        order = _set_gap(j, since, run)
+        set_rate(series.c, order, series.d)
+        take_turns(place, series.c, order, since, h, run)
     update_extreme(place, _gap_at(j, now, run)[0], now, running)
 
 
@@ -209,8 +212,7 @@ def _follow_shear(place: int, now: float, then: float, run: Run) -> None:
     c[:] = 0.0
     for b in range(plan.mass.size):
         order = max(order, _add_acceleration(b, -plan.mass[b], now, run))
-    for k in range(order):
-        d[k] = (k + 1) * c[k + 1]
+    set_rate(c, order, d)
     for m in range(turning_times(d, order, then - now, series.turns, series.work)):
         _look(now + series.turns[m], 0.0, run)
         update_turning_point(place, seen.base[1], now + series.turns[m], near, running)

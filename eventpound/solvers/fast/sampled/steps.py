@@ -15,7 +15,7 @@ import math
 
 from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T
 from eventpound.contact.event_rows import end_cascade
-from eventpound.mechanics.monitored import update_extreme
+from eventpound.mechanics.monitored import update_all, update_extreme
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.links import elongations, gap_of, saturate
 from eventpound.solvers.fast.record import sample_step
@@ -238,13 +238,10 @@ def _accept(step: Step, t: float, run: Run) -> None:
 def _take_extremes(t: float, run: Run) -> None:
     """Take the present state, at t (s), into the extremes."""
     plan, state, series, running = run.plan, run.state, run.series, run.running
-    tables, at = series.tables, running.at
-    for b in range(state.u.size):
-        update_extreme(at.displacement + b, state.u[b], t, running)
-        update_extreme(at.acceleration + b, tables.bodies.acceleration[b], t, running)
-    for a in range(plan.links.springs):
-        update_extreme(at.elongation + a, tables.along.x[a], t, running)
-    for j in range(plan.contacts.gap.size):
-        update_extreme(at.gap + j, state.gap[j], t, running)
-    shear = base_shear(plan.mass, tables.bodies.acceleration)
+    tables, at, acceleration = series.tables, running.at, series.tables.bodies.acceleration
+    update_all(at.displacement, state.u, t, 1.0, running)
+    update_all(at.acceleration, acceleration[: state.u.size], t, 1.0, running)
+    update_all(at.elongation, tables.along.x[: plan.links.springs], t, 1.0, running)
+    update_all(at.gap, state.gap, t, 1.0, running)
+    shear = base_shear(plan.mass, acceleration)
     update_extreme(at.base_shear, shear, t, running)
