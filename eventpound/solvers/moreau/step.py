@@ -23,7 +23,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.contact.cascade import EVENTS
 from eventpound.contact.event_rows import (
     DETACHMENT,
     IMPACT,
@@ -35,7 +34,6 @@ from eventpound.contact.event_rows import (
 from eventpound.mechanics.contact_problem import solve_contacts
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
-from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.numerics.borrowing import put_numbers
@@ -45,16 +43,14 @@ from eventpound.solvers.timestepping.equations import (
     Step,
     balanced,
     end_of_step,
-    end_step,
     fill_newton_matrix,
     momentum_residual,
     predict,
-    step_of,
+    take_steps,
 )
 from eventpound.solvers.timestepping.record import (
     CONTACT,
     DONE,
-    NO_ROOM,
     NOT_CONVERGED,
     NOT_SOLVED,
     Span,
@@ -257,19 +253,16 @@ def _close_step(step: Step, active: Active, run: Stepping) -> None:
             trial.contact[j] = p / step.h
 
 
+@step_kernel
+def _take_step(step: Step, active: Active, run: Stepping) -> int:
+    """The rule; an outcome."""
+    outcome = _solve_step(step, active, run)
+    if outcome == DONE:
+        _close_step(step, active, run)
+    return outcome
+
+
 @step_loop
 def advance(span: Span, forcing: Forcing, active: Active, run: Stepping) -> tuple[int, int]:
     """Take steps; see `eventpound.solvers.timestepping.run.Advance`."""
-    counters = run.record.counters
-    ground = ground_acceleration(forcing, forcing.start + span.first * span.h)
-    for i in range(span.first, span.last):
-        if counters[EVENTS] + 3 * active.marked.size > run.record.events.shape[0]:
-            return i, NO_ROOM
-        step = step_of(i, span, ground, forcing, run.structure.theta)
-        outcome = _solve_step(step, active, run)
-        if outcome != DONE:
-            return i, outcome
-        _close_step(step, active, run)
-        end_step(step, run)
-        ground = step.ground_end
-    return span.last, DONE
+    return take_steps(_take_step, 3 * active.marked.size, span, forcing, active, run)

@@ -10,9 +10,7 @@ brings the balance of momentum nearer.
 
 from __future__ import annotations
 
-from eventpound.contact.cascade import EVENTS
 from eventpound.mechanics.reduced import Forcing
-from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.solvers.events.law_contacts import (
     CLOSED,
@@ -29,16 +27,14 @@ from eventpound.solvers.timestepping.equations import (
     balanced,
     couple,
     end_of_step,
-    end_step,
     fill_newton_matrix,
     momentum_residual,
     predict,
-    step_of,
+    take_steps,
 )
 from eventpound.solvers.timestepping.record import (
     CONTACT,
     DONE,
-    NO_ROOM,
     NOT_CONVERGED,
     Span,
     Stepping,
@@ -175,20 +171,17 @@ def _follow_contacts(step: Step, laws: Laws, run: Stepping) -> None:
             write_touch(j, rate_1, laws, record.counters, record.events)
 
 
+@step_kernel
+def _take_step(step: Step, elements: Elements, run: Stepping) -> int:
+    """The rule; an outcome."""
+    _take_closing_drags(elements.laws, run)
+    outcome = _solve_step(step, elements, run)
+    if outcome == DONE:
+        _follow_contacts(step, elements.laws, run)
+    return outcome
+
+
 @step_loop
 def advance(span: Span, forcing: Forcing, elements: Elements, run: Stepping) -> tuple[int, int]:
     """Take steps; see `eventpound.solvers.timestepping.run.Advance`."""
-    counters = run.record.counters
-    ground = ground_acceleration(forcing, forcing.start + span.first * span.h)
-    for i in range(span.first, span.last):
-        if counters[EVENTS] + elements.stiffness.size > run.record.events.shape[0]:
-            return i, NO_ROOM
-        step = step_of(i, span, ground, forcing, run.structure.theta)
-        _take_closing_drags(elements.laws, run)
-        outcome = _solve_step(step, elements, run)
-        if outcome != DONE:
-            return i, outcome
-        _follow_contacts(step, elements.laws, run)
-        end_step(step, run)
-        ground = step.ground_end
-    return span.last, DONE
+    return take_steps(_take_step, elements.stiffness.size, span, forcing, elements, run)

@@ -12,8 +12,10 @@ Mech. Div. ASCE 85, 1959, 67-94) written in velocities. Newton's matrix is
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
+from eventpound.contact.cascade import EVENTS
 from eventpound.mechanics.elements import link_force, pull_per_z
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
@@ -21,9 +23,11 @@ from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.timestepping.hysteresis import z_after
 from eventpound.solvers.timestepping.record import (
+    DONE,
     EVALUATIONS,
     HYSTERETIC,
     INPUT,
+    NO_ROOM,
     STEPS,
     VISCOUS,
     Span,
@@ -48,7 +52,7 @@ class Step(NamedTuple):
 
 
 @step_kernel
-def step_of(i: int, span: Span, ground: float, forcing: Forcing, theta: float) -> Step:
+def _step_of(i: int, span: Span, ground: float, forcing: Forcing, theta: float) -> Step:
     """Step i of a span, at whose start the ground has this acceleration (m/s²)."""
     start, end = forcing.start + i * span.h, forcing.start + (i + 1) * span.h
     ground_end = ground_acceleration(forcing, end)
@@ -166,7 +170,7 @@ def _add_work(step: Step, run: Stepping) -> None:
 
 
 @step_kernel
-def end_step(step: Step, run: Stepping) -> None:
+def _end_step(step: Step, run: Stepping) -> None:
     """Make the end of the step the present state, and record it."""
     _add_work(step, run)
     state, trial = run.state, run.trial
@@ -178,3 +182,37 @@ def end_step(step: Step, run: Stepping) -> None:
     copy_values(trial.contact, state.contact)
     run.record.counters[STEPS] += 1
     record_step(step.end, step.ground_end, run)
+
+
+@step_kernel
+def take_steps(
+    take: Callable[[Step, Any, Stepping], int],
+    most_events: int,
+    span: Span,
+    forcing: Forcing,
+    contacts: Any,
+    run: Stepping,
+) -> tuple[int, int]:
+    """Take the steps of a span; see `eventpound.solvers.timestepping.run.Advance`.
+
+    Parameters
+    ----------
+    take : callable
+        The rule of a method: takes one step, writes its events, returns an outcome.
+    most_events : int
+        Of one step.
+    span, forcing, contacts, run
+        Of `Advance`.
+    """
+    counters = run.record.counters
+    ground = ground_acceleration(forcing, forcing.start + span.first * span.h)
+    for i in range(span.first, span.last):
+        if counters[EVENTS] + most_events > run.record.events.shape[0]:
+            return i, NO_ROOM
+        step = _step_of(i, span, ground, forcing, run.structure.theta)
+        outcome = take(step, contacts, run)
+        if outcome != DONE:
+            return i, outcome
+        _end_step(step, run)
+        ground = step.ground_end
+    return span.last, DONE
