@@ -71,6 +71,14 @@ def default_duration(scene: Scene, start_time: float) -> float:
     return duration
 
 
+def duration_unsaid(scene: Scene, start_time: float) -> float:
+    """The same of a run of many; what is wrong is said of the key ``duration``."""
+    try:
+        return default_duration(scene, start_time)
+    except InputError as error:
+        raise InputError([f"duration: {problem}" for problem in error.problems]) from error
+
+
 def _after(motion: GroundMotion, scene: Scene) -> float:
     """Time for which a run goes on after a motion (s)."""
     if isinstance(_undelayed(motion), Record):

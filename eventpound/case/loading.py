@@ -28,7 +28,7 @@ from eventpound.case.rayleigh import read_rayleigh
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.spring_stiffness import masses_carried
 from eventpound.case.springs import read_springs
-from eventpound.case.suite import Suite
+from eventpound.case.suite import Suite, with_suite
 from eventpound.case.supports import Driven, read_driven
 from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import understood_case
@@ -235,9 +235,8 @@ def _with_suite(document: Mapping[str, object], file: Path, pattern: str) -> dic
     excitation = document.get("excitation")
     if not isinstance(excitation, dict) or excitation.get("kind") != "record":
         raise InputError(f'{file}: [excitation]: a suite takes the place of kind = "record" only')
-    kept = {key: v for key, v in excitation.items() if key not in ("file", "suite", "synthetic")}
     own = pattern if pattern.startswith(PACKAGE) else str(Path(pattern).absolute())
-    return {**document, "excitation": {**kept, "suite": own}}
+    return {**document, "excitation": with_suite(excitation, own)}
 
 
 def _figure(top: Table, excitation: Excitation | None) -> Figure | None:

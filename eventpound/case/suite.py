@@ -246,6 +246,12 @@ def read_suite(table: Table, options: RecordOptions | None) -> Suite | None:
     return Suite(pattern, synthetic, options)
 
 
+def with_suite(excitation: Mapping[str, object], pattern: str) -> dict[str, object]:
+    """``[excitation]`` with the records of a pattern in the place of its own."""
+    kept = {k: v for k, v in excitation.items() if k not in ("file", "suite", "synthetic")}
+    return {**kept, "suite": pattern}
+
+
 def understood_suite(suite: Suite) -> Mapping[str, object]:
     """``[excitation]`` of a suite in SI with every default filled in."""
     said = suite.options.said()

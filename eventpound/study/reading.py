@@ -22,6 +22,7 @@ from pathlib import Path
 
 from eventpound.case.loading import read_case, read_document
 from eventpound.case.options import default_solver, read_solver
+from eventpound.case.suite import with_suite
 from eventpound.case.table import CaseProblem, Table
 from eventpound.errors import InputError
 from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
@@ -168,8 +169,7 @@ def _under_records(study: Table, excitation: object) -> _Document:
     given = excitation if isinstance(excitation, dict) else {"kind": "record"}
     if given.get("kind") != "record":
         study.reject("records", 'no records, where [excitation] is not of kind = "record"')
-    kept = {key: v for key, v in given.items() if key not in ("file", "suite", "synthetic")}
-    return {**kept, "suite": pattern}
+    return with_suite(given, pattern)
 
 
 def _has_records(document: _Document) -> bool:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eventpound.case.case import Case
-from eventpound.case.defaults import default_duration
+from eventpound.case.defaults import default_duration, duration_unsaid
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
@@ -184,10 +184,7 @@ def _lengths(rows: Rows, scales: ScaleColumns | None) -> Floats:
         return np.full(count, case.run.duration)
     scene, start, own = case.scene, case.run.start_time, case.run.duration
     if math.isnan(own):
-        try:
-            own = default_duration(scene, start)
-        except InputError as error:
-            raise InputError([f"duration: {problem}" for problem in error.problems]) from error
+        own = duration_unsaid(scene, start)
     kinds = ["excitation", "support"]
     if isinstance(scene.motion, Record):
         kinds += ["body", "spring"]
