@@ -12,7 +12,7 @@ import numpy as np
 from eventpound.contact.cascade import SETTLED_AT, SINCE_IMPACT, STALE, T, end_flight
 from eventpound.contact.event_rows import write_changes
 from eventpound.contact.impacts import DONE, NO_FORCES, end_impacts, settle_closed
-from eventpound.contact.kinks import turn_at_kinks
+from eventpound.contact.kinks import still_rate, turn_at_kinks
 from eventpound.contact.modes import ACCELERATION, duty
 from eventpound.contact.rest import Touching, rest_contacts
 from eventpound.contact.state import Instant
@@ -20,7 +20,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
-from eventpound.tolerances import OF_A_FLIGHT, SPEED, TOGETHER
+from eventpound.tolerances import OF_A_FLIGHT, TOGETHER
 
 
 @scalar_kernel
@@ -137,7 +137,7 @@ def touching_of(undecided: Bools, z: Floats, forcing: Forcing, at: Instant) -> T
         stiffness,
         -stiffness * at.offset,
         forcing,
-        SPEED * at.length / at.time,
+        still_rate(at.length, at.time),
         at.length / at.time**2,
         at.time,
     )

@@ -11,6 +11,12 @@ from eventpound.tolerances import LENGTH, SPEED
 
 
 @scalar_kernel
+def still_rate(length: float, time: float) -> float:
+    """Rate of an elongation (m/s) below which it has no direction, of a scene's own scales."""
+    return SPEED * length / time
+
+
+@scalar_kernel
 def _beyond(a: int, at: Instant) -> float:
     """How far the elongation of a link is beyond its kink (m); zero where it is on it."""
     x = difference(at.u, at.ends[a, 0], at.ends[a, 1]) - at.offset[a]
@@ -72,7 +78,7 @@ def choose_clear_branches(at: Instant) -> None:
 @scalar_kernel
 def turn_at_kinks(at: Instant) -> None:
     """Put every link that is on its kink on the side to which it moves after an impact."""
-    still = SPEED * at.length / at.time
+    still = still_rate(at.length, at.time)
     for a in range(at.branch.size):
         if at.branch[a] == 0 or _beyond(a, at) != 0.0:
             continue

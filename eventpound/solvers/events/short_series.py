@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import acceleration_noise, is_none
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents, element_pull
@@ -34,7 +35,6 @@ from eventpound.tolerances import (
     SAME_INSTANT,
     SERIES_DEFECT,
     SERIES_SHARE,
-    SPEED,
 )
 
 ORDER = 12
@@ -286,7 +286,7 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
     weight = np.empty(y.size)
     for i in range(y.size):
         weight[i] = run.atol[i] + rules.rtol * abs(y[i])
-    Y = motion_series(0.0, y, system, forcing, ORDER, SPEED * rules.length / rules.time)
+    Y = motion_series(0.0, y, system, forcing, ORDER, still_rate(rules.length, rules.time))
     if not all_finite(Y):
         none = np.zeros(state.gap.size, np.bool_)
         nowhere = Dense(Y, 0.0, 0.0, 0.0, np.empty((4, 0)), True, np.empty((0, 0)))

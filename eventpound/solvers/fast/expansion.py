@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import INVERSE, pull_per_z
 from eventpound.motion.forcing import ground_taylor
@@ -47,7 +48,7 @@ from eventpound.solvers.fast.run import (
     Series,
 )
 from eventpound.solvers.fast.search import distance_coefficient
-from eventpound.tolerances import LONGEST_STEP, NO_ERROR, RETRIED, SPEED
+from eventpound.tolerances import LONGEST_STEP, NO_ERROR, RETRIED
 
 LOCAL_SHARE = 0.1
 """Part of the tolerance given to one step."""
@@ -245,7 +246,7 @@ def wrong_way(order: int, run: Run) -> bool:
     """Turn round links whose elongation rate has vanished and grows against their direction."""
     plan, state, series = run.plan, run.state, run.series
     hysteresis = plan.hysteresis
-    still = SPEED * plan.limits.length / plan.limits.time
+    still = still_rate(plan.limits.length, plan.limits.time)
     turned = False
     for h in range(hysteresis.link.size):
         a = hysteresis.link[h]

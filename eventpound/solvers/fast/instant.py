@@ -12,6 +12,7 @@ import numpy as np
 
 from eventpound.contact.impacts import DONE, put_as_one
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
+from eventpound.contact.kinks import still_rate
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.reduced import Forcing
@@ -35,7 +36,6 @@ from eventpound.solvers.fast.run import (
     Contacts,
     Run,
 )
-from eventpound.tolerances import SPEED
 
 
 @compiled
@@ -177,7 +177,7 @@ def choose_directions(run: Run) -> None:
     plan, state, series = run.plan, run.state, run.series
     hysteresis = plan.hysteresis
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
-    still = SPEED * plan.limits.length / plan.limits.time
+    still = still_rate(plan.limits.length, plan.limits.time)
     for h in range(hysteresis.link.size):
         a = hysteresis.link[h]
         if turns_back(state.part[h], state.sigma[h], series.x_rate[a], still):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.kinks import still_rate
 from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.links import CORE, UNLOADING, UP, place
@@ -41,7 +42,6 @@ from eventpound.tolerances import (
     OF_BACKBONE,
     RELEASED_AT,
     SAME_INSTANT,
-    SPEED,
 )
 
 
@@ -140,7 +140,7 @@ def _reversal(order: int, h: float, i: int, run: Run) -> float:
     if stays_above(rate, slope, bend, bound_of_pair(head, tail, series.swing), h):
         return np.inf
     c, limits = series.c, plan.limits
-    still = SPEED * limits.length / limits.time
+    still = still_rate(limits.length, limits.time)
     relative(head, tail, order, series, c)
     for k in range(order):
         c[k] = sigma * (k + 1) * c[k + 1]
@@ -222,7 +222,8 @@ def _leaves_branch(
     rounding still: its force differs by no more than rounding until it has moved.
     """
     c, length = series.c, LENGTH * limits.length
-    if kept and abs(c[0]) <= length and abs(c[1]) <= SPEED * limits.length / limits.time:
+    still = still_rate(limits.length, limits.time)
+    if kept and abs(c[0]) <= length and abs(c[1]) <= still:
         return fall_beyond(c, order + 1, limit, length, series.work)
     level = length
     for k in range(order + 1):
@@ -233,7 +234,7 @@ def _leaves_branch(
         if abs(c[k]) > level + beside:
             break
         c[k] = 0.0
-        level = SPEED * limits.length / limits.time if k == 0 else level / (k * limits.time)
+        level = still if k == 0 else level / (k * limits.time)
     return first_fall(c, order + 1, limit, 0.0, 0.0, series.work)
 
 

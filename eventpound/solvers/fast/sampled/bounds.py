@@ -16,6 +16,7 @@ extremes or goes one way.
 
 from __future__ import annotations
 
+from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats
@@ -25,7 +26,7 @@ from eventpound.solvers.fast.links import CORE, DOWN, UP, place
 from eventpound.solvers.fast.run import Plan, Run, State
 from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.solvers.fast.search import bound_of_pair
-from eventpound.tolerances import LENGTH, OWN_GAP, SPEED
+from eventpound.tolerances import LENGTH, OWN_GAP
 
 NOTHING, KINK, BORDER, REVERSAL, CLOSING = range(5)
 """What happens at the end of a step: the first three to a link, the last to a contact."""
@@ -58,7 +59,7 @@ def pair_goes_one_way(
         a, spread = a + tables.bodies.pulled[second], spread - abs(tables.bodies.pulled[second])
     if not abs(a) > spread:
         return False
-    still = SPEED * plan.limits.length / plan.limits.time
+    still = still_rate(plan.limits.length, plan.limits.time)
     if abs(rate) <= still:
         return a * next_rate > 0.0
     if abs(next_rate) <= still:
@@ -88,7 +89,7 @@ def stays_open(
             rate, next_rate = rate - state.v[left], next_rate - bodies.next_v[left]
         if min(now, then) - bound_of_pair(left, right, tables.bodies.sag) >= least:
             continue
-        still = SPEED * plan.limits.length / plan.limits.time
+        still = still_rate(plan.limits.length, plan.limits.time)
         closes = what == CLOSING and j == which and now >= least and next_rate < -still
         opens = state.gap[j] == 0.0 and state.gap_rate[j] > still and then >= least and rate > 0.0
         if not (closes or opens):

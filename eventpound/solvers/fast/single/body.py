@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import acceleration_noise
 from eventpound.mechanics.backbone import backbone, backbone_inverse, shape_of
 from eventpound.mechanics.elements import pull_per_z
@@ -42,7 +43,6 @@ from eventpound.tolerances import (
     LEAST_PLAY,
     OWN_GAP,
     PENETRATED,
-    SPEED,
 )
 
 ROOM = 48
@@ -331,7 +331,7 @@ def _set_limits(b: int, limits: Limits, body: Body) -> None:
     body.atol_u, body.atol_v = LOCAL_SHARE * limits.atol_u[b], LOCAL_SHARE * limits.atol_v[b]
     body.rtol = LOCAL_SHARE * limits.rtol
     body.own_speed = limits.length / limits.time
-    body.still = SPEED * body.own_speed
+    body.still = still_rate(limits.length, limits.time)
     body.no_acceleration = ACCELERATION * limits.length / limits.time**2
     body.no_force = FORCE * limits.length / limits.time**2
     body.flat_time = FLAT_WITHIN * limits.time
