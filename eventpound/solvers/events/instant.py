@@ -47,10 +47,8 @@ from eventpound.solvers.events.recorder import PASSED, WRITTEN, is_due
 from eventpound.solvers.events.run import (
     KNOTS,
     PHASE,
-    POINTS,
     SHORT_STEPS,
     STEPS,
-    TAKEN_AT,
     Dynamics,
     Piece,
     Run,
@@ -66,10 +64,12 @@ from eventpound.solvers.events.step_check import broken_contact
 
 MOST_KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
-(DUTIES, RESTS, ARRIVAL, FLIGHT, AGAIN, TAKE, READY, LAST) = range(8)
-"""What is to be done next: impacts; who rests; the instant into the history; a short step. Or
-only this: look again at a step of an integrator; make the state vector of the run the
-present state; make the present instant ready for a step; put it, the last, into the history."""
+DUTIES, RESTS, ARRIVAL, FLIGHT = range(4)
+"""Where an instant goes on: impacts; who rests; the instant into the history; a short step."""
+SETTLE, AGAIN, TAKE, READY, LAST = range(5)
+"""What `proceed` is asked for: all that an instant demands; to look again at a step of an
+integrator; to make the state vector of the run the present state; to make the present instant
+ready for a step; to put it, the last, into the history."""
 (OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, AT_POINTS) = range(20, 25)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
 steps are used up; links have no branch yet; what is to be done is that of
@@ -139,47 +139,50 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
 
 @kernel
 def proceed(
+    wanted: int,
     most: int,
     run: Run,
     mode: Dynamics,
     piece: Piece,
     dense: Dense,
 ) -> int:
-    """Do what is to be done at the present instant, and follow the motion until nothing is near.
+    """Do what is wanted, of SETTLE to LAST, at the present instant.
 
-    All that Python asks for is one function, since most of it shares most of its parts.
+    All that Python asks for is one function, since most of it shares most of its parts and each
+    that Python calls is compiled with all of its own.
 
     Parameters
     ----------
+    wanted : int
+        Which of them.
     most : int
-        Steps of the run after which it pauses.
+        Steps of the run after which SETTLE pauses.
     run : Run
-        The run, which goes on where `count[PHASE]` says; on loan.
+        The run; SETTLE goes on where `count[PHASE]` says; on loan.
     mode : Dynamics
         The present mode; on loan.
     piece : Piece
         The ground motion.
     dense : Dense
-        The step to be looked at again, where that is what is to be done.
+        The step to be looked at AGAIN; at its end the state vector is to TAKE.
 
     Returns
     -------
     int
         OVER, where the run is made ready for an integrator, or another of the ends above.
     """
-    count = run.state.count
-    if count[PHASE] == AGAIN:
+    if wanted == SETTLE:
+        return _settle(most, run, mode, piece)
+    if wanted == AGAIN:
         return look_again(run, mode, piece, dense)
-    if count[PHASE] == TAKE:
-        t = run.state.clock[TAKEN_AT]
+    if wanted == TAKE:
+        t = dense.end
         take(run.y[: mode.system.size], t, mode, forcing_now(piece, t), run.state)
         return OVER
-    if count[PHASE] in (READY, LAST):
-        make_ready(run, mode, piece)
-        if count[PHASE] == LAST:
-            put_present(run, False)
-        return OVER
-    return _settle(most, run, mode, piece)
+    make_ready(run, mode, piece)
+    if wanted == LAST:
+        put_present(run, False)
+    return OVER
 
 
 @kernel
@@ -191,7 +194,7 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
     while ended == DONE:
         if not _has_room(run):
             return FULL
-        if count[POINTS] > 0 and count[PHASE] <= RESTS:
+        if mode.bodies.points.size > 0 and count[PHASE] <= RESTS:
             return AT_POINTS
         if count[PHASE] == DUTIES:
             ended = settle_impacts(at)

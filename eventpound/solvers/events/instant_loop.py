@@ -37,6 +37,7 @@ from eventpound.solvers.events.instant import (
     PAUSED,
     READY,
     RESTS,
+    SETTLE,
     TAKE,
     UNENDING,
     proceed,
@@ -47,7 +48,6 @@ from eventpound.solvers.events.run import (
     KNOTS,
     PHASE,
     SHORT_STEPS,
-    TAKEN_AT,
     Piece,
 )
 from eventpound.solvers.events.second_look import BROKEN, EVENT
@@ -82,7 +82,7 @@ def settle_instant(now: Underway, piece: Piece) -> None:
     most = now.steps
     ended = DONE
     while ended != OVER:
-        ended = proceed(most, now.run, now.mode.dynamics, piece, NOWHERE)
+        ended = proceed(SETTLE, most, now.run, now.mode.dynamics, piece, NOWHERE)
         if ended == PAUSED:
             now.go_on(now.t)
             most = now.steps + now.steps_left(STEPS_AT_ONCE)
@@ -137,20 +137,18 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
 
 def make_ready(now: Underway, mode: Mode, piece: Piece) -> None:
     """Leave the present instant in `now.run` as a step in a mode begins with it."""
-    now.state.count[PHASE] = READY
-    proceed(0, now.run, mode.dynamics, piece, NOWHERE)
+    proceed(READY, 0, now.run, mode.dynamics, piece, NOWHERE)
 
 
 def take_state(now: Underway, piece: Piece, y: Floats, t: float) -> None:
     """Make a state vector of the present mode the present state, at the time t (s)."""
     now.run.y[: y.size] = y
-    now.state.clock[TAKEN_AT] = t
-    _only(TAKE, now, piece)
+    proceed(TAKE, 0, now.run, now.mode.dynamics, piece, NOWHERE._replace(end=t))
 
 
 def put_last_instant(now: Underway, piece: Piece) -> None:
     """Put the last instant of a run into the history and the extremes."""
-    _only(LAST, now, piece)
+    proceed(LAST, 0, now.run, now.mode.dynamics, piece, NOWHERE)
 
 
 def look_again(now: Underway, piece: Piece, dense: Dense) -> bool:
@@ -161,13 +159,7 @@ def look_again(now: Underway, piece: Piece, dense: Dense) -> bool:
     ComputationError
         Where a contact penetrates or pulls.
     """
-    found = _only(AGAIN, now, piece, dense)
+    found = proceed(AGAIN, 0, now.run, now.mode.dynamics, piece, dense)
     if found == BROKEN:
         raise now.broken_contact(now.t)
     return found == EVENT
-
-
-def _only(phase: int, now: Underway, piece: Piece, dense: Dense = NOWHERE) -> int:
-    """One thing of those that `proceed` does."""
-    now.state.count[PHASE] = phase
-    return int(proceed(0, now.run, now.mode.dynamics, piece, dense))

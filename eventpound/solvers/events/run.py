@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from eventpound.contact.cascade import CLOCK_PLACES, COUNT_PLACES
+from eventpound.contact.cascade import COUNT_PLACES
 from eventpound.contact.state import Instant
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.monitored import Running
@@ -19,15 +19,11 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.event_bounds import Found, Watched
 from eventpound.solvers.events.recorder import Journal
 
-TAKEN_AT = CLOCK_PLACES
-"""Behind the places of `eventpound.contact.cascade` in `State.clock`: when a state vector
-is taken (s)."""
-CLOCK_SIZE = CLOCK_PLACES + 1
-(STEPS, KNOTS, SHORT_STEPS, PHASE, FINDER, POINTS) = range(COUNT_PLACES, COUNT_PLACES + 6)
-"""Behind those in `State.count`: steps, reversals followed without an event, short steps of this
-cascade, what is to be done next, who finds events in a
-step of an integrator, and how many contacts are at points."""
-COUNT_SIZE = COUNT_PLACES + 6
+STEPS, KNOTS, SHORT_STEPS, PHASE, FINDER = range(COUNT_PLACES, COUNT_PLACES + 5)
+"""Behind the places of `eventpound.contact.cascade` in `State.count`: steps, reversals followed
+without an event, short steps of this cascade, where an instant goes on, and who finds events in
+a step of an integrator."""
+COUNT_SIZE = COUNT_PLACES + 5
 
 
 class Rules(NamedTuple):

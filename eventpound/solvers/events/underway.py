@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import (
+    CLOCK_PLACES,
     EVENTS,
     GROUPS,
     INTERVAL,
@@ -51,9 +52,7 @@ from eventpound.solvers.events.recorder import (
     row_width,
 )
 from eventpound.solvers.events.run import (
-    CLOCK_SIZE,
     COUNT_SIZE,
-    POINTS,
     STEPS,
     Happened,
     Piece,
@@ -324,10 +323,9 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
     gap = model.initial_gaps(scales.length)
     # These take no part in impacts and rests.
     gap[model.laws] = np.inf
-    clock, count = np.zeros(CLOCK_SIZE), np.zeros(COUNT_SIZE, np.int64)
+    clock, count = np.zeros(CLOCK_PLACES), np.zeros(COUNT_SIZE, np.int64)
     clock[T], clock[INTERVAL], clock[SINCE_IMPACT] = task.start, scales.time, scales.time
     clock[RESTED_AT] = clock[SETTLED_AT] = -np.inf
-    count[POINTS] = model.points.size
     return State(
         u=model.u0.copy(),
         v=model.v0.copy(),
