@@ -106,23 +106,16 @@ def decide_rests(z: Floats, forcing: Forcing, at: Instant) -> int:
     at : Instant
         The instant, its impacts over.
     """
-    undecided = (at.gap == 0.0) & (at.gap_rate == 0.0)
-    resting, pressed = undecided, undecided.copy()
-    if undecided.any():
-        resting, pressed, solved = rest_contacts(touching_of(undecided, z, forcing, at))
-        if not solved:
-            copy_numbers(resting, at.resting)
-            return NO_FORCES
-    take_rests(resting, pressed, at)
-    return DONE
+    resting, pressed, solved = rest_contacts(touching_of(z, forcing, at))
+    return take_rests(resting, pressed, solved, at)
 
 
 @kernel
-def touching_of(undecided: Bools, z: Floats, forcing: Forcing, at: Instant) -> Touching:
-    """The acceleration problem over contacts (K,) with g = γ = 0; other arguments as above."""
+def touching_of(z: Floats, forcing: Forcing, at: Instant) -> Touching:
+    """The acceleration problem of an instant; arguments as above."""
     stiffness = np.where(at.branch < 0, at.compression, at.extension)
     return Touching(
-        undecided,
+        (at.gap == 0.0) & (at.gap_rate == 0.0),
         at.released,
         at.u,
         at.v,
@@ -144,8 +137,14 @@ def touching_of(undecided: Bools, z: Floats, forcing: Forcing, at: Instant) -> T
 
 
 @scalar_kernel
-def take_rests(resting: Bools, pressed: Bools, at: Instant) -> None:
-    """Make contacts (K,) the resting ones; records who came to rest or opened."""
+def take_rests(resting: Bools, pressed: Bools, solved: bool, at: Instant) -> int:
+    """Make contacts (K,) the resting ones; records who came to rest or opened.
+
+    DONE, or NO_FORCES where the problem is not solved.
+    """
+    if not solved:
+        copy_numbers(resting, at.resting)
+        return NO_FORCES
     write_changes(at.resting, resting, at.gap_rate, at.clock, at.count, at.events)
     for j in range(resting.size):
         changed = at.resting[j] != resting[j] or at.pressed[j] != pressed[j]
@@ -153,3 +152,4 @@ def take_rests(resting: Bools, pressed: Bools, at: Instant) -> None:
         at.resting[j], at.pressed[j] = resting[j], pressed[j]
         if resting[j]:
             at.gap_rate[j] = 0.0
+    return DONE

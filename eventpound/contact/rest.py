@@ -141,15 +141,34 @@ def _decide(
         gaps.opening[members],
         level[members].max(),
     )
+    if not solved:
+        return False, False
+    return take_decided(members, force, after, level, passed_over, undecided, pressed), True
+
+
+@scalar_kernel
+def take_decided(
+    members: Ints,
+    force: Floats,
+    after: Floats,
+    level: Floats,
+    passed_over: Bools,
+    undecided: Bools,
+    pressed: Bools,
+) -> bool:
+    """Take those of the members whom a solution lets open or presses from `undecided`; if any.
+
+    `force` and `after`, the accelerations left, are those of the members, all others of (K,).
+    """
     decided = False
-    for i in range(members.size if solved else 0):
+    for i in range(members.size):
         j = members[i]
         opens, holds = after[i] > level[j], force[i] > 0.0
         if (opens or holds) and not passed_over[j]:
             decided = True
             undecided[j] = False
             pressed[j] = not opens
-    return decided, solved
+    return decided
 
 
 @kernel
@@ -193,11 +212,7 @@ def _first_deciding(
         own = ACCELERATION * touching.acceleration
         for order in range(highest):
             coefficient = Y[order + 1][system.iv]
-            for c in range(noise.size):
-                absolute = abs(coefficient[c] + ground[order] / (order + 1))
-                part = DIRECT if order == 0 else UNDECIDED
-                rounding[order, c] = max(rounding[order, c], own) if pulled[c] else 0.0
-                noise[c] = max(part * absolute, rounding[order, c])
+            take_noise(order, coefficient, ground[order], own, pulled, rounding[order], noise)
             if order == 0:
                 _add_residual(coefficient, first, second, members, label, released, rounding[0])
             pass_on(rounding, order, system, stiffness, damping)
@@ -213,6 +228,27 @@ def _first_deciding(
             if deciding:
                 return order, opening, level
     return -1, opening, level
+
+
+@scalar_kernel
+def take_noise(
+    order: int,
+    coefficient: Floats,
+    ground: float,
+    own: float,
+    pulled: Bools,
+    rounding: Floats,
+    noise: Floats,
+) -> None:
+    """Noise of the accelerations of clusters (C,) of one order, and the `rounding` in it.
+
+    ground: Taylor coefficient of its acceleration. own: what one of the scene's own rounds to.
+    """
+    part = DIRECT if order == 0 else UNDECIDED
+    for c in range(noise.size):
+        absolute = abs(coefficient[c] + ground / (order + 1))
+        rounding[c] = max(rounding[c], own) if pulled[c] else 0.0
+        noise[c] = max(part * absolute, rounding[c])
 
 
 @kernel

@@ -11,10 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.contact.cascade import T
 from eventpound.contact.impacts import (
     DONE,
-    NO_FORCES,
     NO_IMPACT,
     PROBLEM,
     close_collapsed,
@@ -29,6 +27,8 @@ from eventpound.contact.rest import (
     clusters_pulled,
     links_held,
     pass_on,
+    take_decided,
+    take_noise,
 )
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import form_clusters
@@ -55,10 +55,8 @@ from eventpound.tolerances import (
     ACCELERATION,
     CANCELLED,
     DEPENDENT,
-    DIRECT,
     LAST_SPEED,
     QUIET,
-    UNDECIDED,
     ZERO_SINGULAR_VALUE,
 )
 
@@ -201,14 +199,10 @@ def rest_contacts_at_points(
         force, after, solved = solve_dense(D @ free.T, opening[members], level[members].max())
         if not solved:
             return undecided, pressed, False
-        opens = after > level[members]
-        decided = opens | (force > 0.0)
-        if order == 0:
-            decided &= ~touching.released[members]
-        if not decided.any():
+        passed_over = touching.released & (order == 0)
+        take = in_python(take_decided)
+        if not take(members, force, after, level, passed_over, undecided, pressed):
             break
-        undecided[members[decided]] = False
-        pressed[members[decided & ~opens]] = True
     return pressed | kept | undecided, pressed, True
 
 
@@ -259,14 +253,13 @@ def _first_deciding(touching: Touching, now: _Held, undecided: Bools) -> tuple[i
         Y = in_python(motion_series)(0.0, now.y, system, forcing, highest, touching.speed_noise)
         ground = np.zeros(ORDER)
         ground_taylor(forcing, forcing.start, highest, ground)
-        rounding = np.zeros((highest + 2, now.mass.size))
+        noise, rounding = np.empty(now.mass.size), np.zeros((highest + 2, now.mass.size))
         own = ACCELERATION * touching.acceleration
         for order in range(highest):
             coefficient = Y[order + 1][system.iv]
-            absolute = np.abs(coefficient + ground[order] / (order + 1))
-            rounding[order] = np.where(moved, np.maximum(rounding[order], own), 0.0)
-            part = DIRECT if order == 0 else UNDECIDED
-            noise = np.maximum(part * absolute, rounding[order])
+            in_python(take_noise)(
+                order, coefficient, ground[order], own, moved, rounding[order], noise
+            )
             in_python(pass_on)(rounding, order, system, stiffness, damping)
             level = np.max(np.where(together, noise, 0.0), axis=1, initial=0.0)
             own /= time * (order + 1)
@@ -309,9 +302,13 @@ def settle_points(now: Underway, piece: Piece) -> int:
         if in_python(lacks_branch)(run.instant):
             return FIRST_BRANCHES
         in_python(turn_elements)(run)
-        at_points = np.zeros(now.model.contacts, np.bool_)
-        at_points[now.model.points] = True
-        return _decide_rests(run, piece, rows, at_points)
+        touching = in_python(touching_of)(run.state.z, forcing_now(piece, now.t), run.instant)
+        at_points = np.isin(np.arange(now.model.contacts), now.model.points)
+        found = rest_contacts_at_points(touching, rows, at_points)
+        ended = in_python(take_rests)(*found, run.instant)
+        if ended == DONE:
+            run.state.count[PHASE] = ARRIVAL
+        return int(ended)
 
 
 def _do_duties(run: Run, rows: Floats) -> int:
@@ -324,19 +321,3 @@ def _do_duties(run: Run, rows: Floats) -> int:
     if in_python(end_instant)(ended, at) == DONE:
         at.count[PHASE] = RESTS
     return ended
-
-
-def _decide_rests(run: Run, piece: Piece, rows: Floats, at_points: Bools) -> int:
-    at = run.instant
-    undecided = (at.gap == 0.0) & (at.gap_rate == 0.0)
-    resting = pressed = undecided
-    if undecided.any():
-        forcing = forcing_now(piece, at.clock[T])
-        touching = in_python(touching_of)(undecided, run.state.z, forcing, at)
-        resting, pressed, solved = rest_contacts_at_points(touching, rows, at_points)
-        if not solved:
-            at.resting[:] = resting
-            return NO_FORCES
-    in_python(take_rests)(resting, pressed, at)
-    at.count[PHASE] = ARRIVAL
-    return DONE
