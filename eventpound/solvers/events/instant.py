@@ -205,7 +205,7 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
             if lacks_branch(at):
                 return FIRST_BRANCHES
             if run.laws.contact.size > 0:
-                turn_elements(run)
+                turn_elements(run.laws, at)
             if any_may_rest(at):
                 ended = decide_rests(state.z, forcing_now(piece, clock[T]), at)
                 if ended != DONE:

@@ -12,6 +12,7 @@ import numpy as np
 
 from eventpound.contact.cascade import T
 from eventpound.contact.event_rows import IMPACT, EventRow, new_group, write_event
+from eventpound.contact.state import Instant
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_in
 from eventpound.mechanics.observables import difference
@@ -99,17 +100,15 @@ def add_share(p: int, weight: float, force: float, rate: float, laws: Laws) -> N
 
 
 @deferred_kernel
-def turn_elements(run: Run) -> None:
+def turn_elements(laws: Laws, at: Instant) -> None:
     """Begin and end times in contact where the branches of elements have changed."""
-    rules, state, laws = run.rules, run.state, run.laws
     for p in range(laws.contact.size):
-        a, j = state.branch.size - laws.contact.size + p, laws.contact[p]
-        left, right = rules.left[j], rules.right[j]
-        gap, rate = difference(state.u, left, right), difference(state.v, left, right)
-        gap += rules.gap[j]
-        if turn(p, state.branch[a] < 0, gap, rate, rules.length, laws, state.clock[T]):
-            write_touch(p, rate, laws, state.count, run.record.events)
-        rules.law.damping[a] = laws.touch[DRAG, p]
+        a, j = at.branch.size - laws.contact.size + p, laws.contact[p]
+        gap = at.opening[j] + difference(at.u, at.left[j], at.right[j])
+        rate = difference(at.v, at.left[j], at.right[j])
+        if turn(p, at.branch[a] < 0, gap, rate, at.length, laws, at.clock[T]):
+            write_touch(p, rate, laws, at.count, at.events)
+        at.law.damping[a] = laws.touch[DRAG, p]
 
 
 @deferred_kernel

@@ -301,7 +301,7 @@ def settle_points(now: Underway, piece: Piece) -> int:
                 return ended
         if in_python(lacks_branch)(run.instant):
             return FIRST_BRANCHES
-        in_python(turn_elements)(run)
+        in_python(turn_elements)(run.laws, run.instant)
         touching = in_python(touching_of)(run.state.z, forcing_now(piece, now.t), run.instant)
         at_points = np.isin(np.arange(now.model.contacts), now.model.points)
         found = rest_contacts_at_points(touching, rows, at_points)

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 from eventpound.contact.cascade import COUNT_PLACES
 from eventpound.contact.state import Instant
-from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.monitored import Running
 from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced
@@ -29,25 +28,12 @@ COUNT_SIZE = COUNT_PLACES + 5
 class Rules(NamedTuple):
     """Constants of a run.
 
-    mass (N,) (kg). link_ends (L, 2), law, hysteretic (H,): of the `Model`. compression,
-    extension (N/m), offset (m), shape (L,): elastic branches. left, right, gap (m),
-    restitution (K,). atol_u (m), atol_v (m/s), shape (N,), atol_z (H,), atol_energy (J), rtol:
+    atol_u (m), atol_v (m/s), shape (N,), atol_z (H,), atol_energy (J), rtol:
     tolerances. length (m), time (s): the scene's own. near: time about a flat peak within
     which two attainments are one (s). length_noise: lengths without a sign (m). instant: time
     within which forces that vanish do so together (s).
     """
 
-    mass: Floats
-    link_ends: Ints
-    law: LinkLaw
-    hysteretic: Ints
-    compression: Floats
-    extension: Floats
-    offset: Floats
-    left: Ints
-    right: Ints
-    gap: Floats
-    restitution: Floats
     atol_u: Floats
     atol_v: Floats
     atol_z: Floats

@@ -158,7 +158,7 @@ class Underway:
         self.scales = scene_scales(task.scene, model, task.end - task.start)
         self.table = ModeTable(model, ledger=task.energy, force_noise=FORCE * self.scales.force)
         self.unique_forces = np.ones(model.contacts, np.bool_)
-        self.rules = _rules_of(task, model, self.scales)
+        self.rules = _rules_of(task, self.scales)
         self.state = _state_of(task, model, self.scales)
         self.record = _record_of(task, model, self.scales)
         self.run = _run_of(self.rules, self.state, self.record, model)
@@ -193,7 +193,7 @@ class Underway:
         """What the damping of elements that depends on how they closed is in this mode."""
         if self.model.laws.size == 0:
             return
-        plain, damping = self.model.plain, self.rules.law.damping
+        plain, damping = self.model.plain, self.run.instant.law.damping
         closed = mode.branch[plain:] < 0
         mode.bodies.damping[plain:] = np.where(closed, damping[plain:], 0.0)
         for a in np.flatnonzero(mode.system.link >= plain):
@@ -285,25 +285,10 @@ def looks_of(model: Model, count: int) -> tuple[Observed, ...]:
     return tuple(on_loan(blank(*model.counts)) for _ in range(count))
 
 
-def _rules_of(task: Task, model: Model, scales: SceneScales) -> Rules:
+def _rules_of(task: Task, scales: SceneScales) -> Rules:
     """Constants of a run."""
     atol = tolerances(task, scales)
-    law = model.law._replace(damping=model.law.damping.copy())
-    # None has closed.
-    unclosed = model.elements.kind[model.laws] == Element.HERTZ_DAMP
-    law.damping[model.plain :][unclosed] = 0.0
     return Rules(
-        mass=model.mass,
-        link_ends=model.link_ends,
-        law=law,
-        hysteretic=model.hysteretic,
-        compression=model.elastic.compression,
-        extension=model.elastic.extension,
-        offset=model.elastic.offset,
-        left=model.left,
-        right=model.right,
-        gap=model.gap,
-        restitution=model.restitution,
         atol_u=np.asarray(atol["displacement"]),
         atol_v=np.asarray(atol["velocity"]),
         atol_z=np.asarray(atol["z"]),
@@ -363,20 +348,26 @@ def _record_of(task: Task, model: Model, scales: SceneScales) -> Record:
     )
 
 
-def instant_of(rules: Rules, state: State, happened: Happened, events: Floats) -> Instant:
+def _instant_of(
+    model: Model, rules: Rules, state: State, happened: Happened, events: Floats
+) -> Instant:
     """What the rules of an instant work on."""
+    law = model.law._replace(damping=model.law.damping.copy())
+    # None has closed.
+    unclosed = model.elements.kind[model.laws] == Element.HERTZ_DAMP
+    law.damping[model.plain :][unclosed] = 0.0
     return Instant(
-        mass=rules.mass,
-        ends=rules.link_ends,
-        law=rules.law,
-        compression=rules.compression,
-        extension=rules.extension,
-        offset=rules.offset,
-        hysteretic=rules.hysteretic,
-        left=rules.left,
-        right=rules.right,
-        opening=rules.gap,
-        restitution=rules.restitution,
+        mass=model.mass,
+        ends=model.link_ends,
+        law=law,
+        compression=model.elastic.compression,
+        extension=model.elastic.extension,
+        offset=model.elastic.offset,
+        hysteretic=model.hysteretic,
+        left=model.left,
+        right=model.right,
+        opening=model.gap,
+        restitution=model.restitution,
         length=rules.length,
         time=rules.time,
         u=state.u,
@@ -406,7 +397,7 @@ def _run_of(rules: Rules, state: State, record: Record, model: Model) -> Run:
         Run(
             rules=rules,
             state=state,
-            instant=on_loan(instant_of(rules, state, happened, record.events)),
+            instant=on_loan(_instant_of(model, rules, state, happened, record.events)),
             record=record,
             happened=happened,
             marks=on_loan(marks),
