@@ -35,7 +35,7 @@ import html
 import json
 import math
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -66,6 +66,8 @@ UNJUDGED = ("cut-impact",)
 ALWAYS = (-math.inf, math.inf)
 TINY = 1e-300
 """What is divided by instead of nothing."""
+MOST_COSTS = 10**7
+"""Pairs of times that are weighed at once; of more a smaller window is taken."""
 CREATED = 1e-2
 """Part of the largest energy that may appear from nowhere, and of the largest ground acceleration
 that the rows may not show."""
@@ -572,14 +574,21 @@ def pair_times(reference: Floats, found: Floats, window: float) -> list[tuple[in
     window : float
         w (s), positive.
     """
+    if reference.size == found.size and np.abs(reference - found).sum() <= window:
+        # Anything else leaves one of each alone.
+        return [(i, i) for i in range(found.size)]
     pairs = []
     every = np.sort(np.concatenate((reference, found)))
     starts = every[np.flatnonzero(np.diff(every, prepend=-np.inf) > window)]
     a, b = (np.append(np.searchsorted(x, starts), x.size) for x in (reference, found))
     for i in range(starts.size):
         # Stretches between which nothing can be paired.
-        shifts = np.abs(reference[a[i] : a[i + 1], None] - found[b[i] : b[i + 1]])
-        pairs += [(int(a[i]) + j, int(b[i]) + k) for j, k in _cheapest(shifts, window)]
+        x, y = reference[a[i] : a[i + 1]], found[b[i] : b[i + 1]]
+        if x.size * y.size > MOST_COSTS and window > np.finfo(float).eps * y[-1]:
+            near = pair_times(x, y, 0.1 * window)
+        else:
+            near = _cheapest(np.abs(x[:, None] - y), window)
+        pairs += [(int(a[i]) + j, int(b[i]) + k) for j, k in near]
     return pairs
 
 
@@ -686,18 +695,26 @@ class Paired:
     ----------
     pairs : tuple of Pair
         In order of time; those too slight to count without a partner, too.
+    counted : float
+        Weight above which one without a partner counts.
     """
 
     pairs: tuple[Pair, ...] = ()
+    counted: float = COUNTED
 
     def of(self, *kinds: str) -> Paired:
         """Those of some kinds."""
-        return Paired(tuple(pair for pair in self.pairs if pair.kind in kinds))
+        return replace(self, pairs=tuple(pair for pair in self.pairs if pair.kind in kinds))
 
     @property
     def listed(self) -> tuple[Pair, ...]:
         """Those with a partner, and those that count without."""
-        return tuple(p for p in self.pairs if p.weight > COUNTED or not math.isnan(p.shift))
+        return tuple(p for p in self.pairs if p.weight > self.counted or not math.isnan(p.shift))
+
+    @property
+    def alone(self) -> tuple[Pair, ...]:
+        """Those that count without a partner, and have none."""
+        return tuple(p for p in self.pairs if p.weight > self.counted and math.isnan(p.shift))
 
     @property
     def expected(self) -> int:
@@ -726,6 +743,31 @@ class Paired:
         return max(shifts, default=math.nan)
 
 
+Weigh = Callable[
+    [str, Sequence[Any], float, float, tuple[float, float]], Iterator[tuple[Any, float]]
+]
+"""Events of a kind, and how far each is from being none, see `weighed`."""
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Which events are paired, and which of them count where they have no partner.
+
+    Parameters
+    ----------
+    weigh : callable
+        Events of a kind with the weight of each.
+    bands : tuple of tuple of float
+        Weights above and up to which events are paired, one band after the other.
+    counted : float
+        Weight above which an event without a partner counts.
+    """
+
+    weigh: Weigh
+    bands: tuple[tuple[float, float], ...]
+    counted: float
+
+
 def pair_events(
     reference: Sequence[Any],
     found: Sequence[Any],
@@ -734,16 +776,17 @@ def pair_events(
     *,
     speed: float = 0.0,
     covered: tuple[float, float] = ALWAYS,
+    weights: Weights | None = None,
 ) -> Paired:
     """Pair events of two runs, kind by kind and contact by contact.
 
     Slight events need care: an accumulation has infinitely many impacts, and a looser tolerance
     moves one across any threshold, as it makes and unmakes short rests. So each has a weight. All
-    above `LISTED` are paired by `pair_times`; one left without a partner counts above `COUNTED`.
-    The weight of an impact is its closing speed as part of the reference's largest, infinite where
-    it is not known; that of a rest and its end how long it lasts as part of the unit, infinite for
-    an end without a beginning. What lists the soft impacts at a contact that stays closed
-    (closing speed 0) is the limit of none.
+    above one are paired by `pair_times`; one left without a partner counts above another. Without
+    others these are `LISTED` and `COUNTED`, and the weight of an impact is its closing speed as
+    part of the reference's largest, infinite where it is not known; that of a rest and its end how
+    long it lasts as part of the unit, infinite for an end without a beginning. What lists the soft
+    impacts at a contact that stays closed (closing speed 0) is the limit of none.
 
     Parameters
     ----------
@@ -757,24 +800,46 @@ def pair_events(
         Closing speed (m/s) that weights refer to where the reference has no impact.
     covered : tuple of float
         Stretch of time (s) that both runs cover.
+    weights : Weights, optional
+        Others.
     """
+    rule = weights or Weights(weighed, ((LISTED, math.inf),), COUNTED)
     hits = [e for e in reference if e.kind == "impact" and covered[0] <= e.t <= covered[1]]
     fastest = max(map(_closing_speed, hits), default=speed) or TINY
     pairs: list[Pair] = []
     for kind in kinds:
-        wanted, had = (
-            [row for row in _weighed(kind, events, unit, fastest, covered) if row[1] > LISTED]
-            for events in (reference, found)
-        )
-        for contact in sorted({event.contact for event, _ in (*wanted, *had)}):
-            a, b = ([row for row in side if row[0].contact == contact] for side in (wanted, had))
-            t, s = (np.array([event.t for event, _ in side], dtype=float) for side in (a, b))
-            both = pair_times(t, s, unit)
-            pairs += [Pair(kind, a[i][0], b[k][0], a[i][1]) for i, k in both]
-            i_paired, k_paired = ({pair[side] for pair in both} for side in (0, 1))
-            pairs += [Pair(kind, e, None, w) for i, (e, w) in enumerate(a) if i not in i_paired]
-            pairs += [Pair(kind, None, e, w) for k, (e, w) in enumerate(b) if k not in k_paired]
-    return Paired(tuple(sorted(pairs, key=lambda pair: pair.t)))
+        both = [
+            list(rule.weigh(kind, events, unit, fastest, covered)) for events in (reference, found)
+        ]
+        for contact in sorted({event.contact for side in both for event, _ in side}):
+            a, b = ([row for row in side if row[0].contact == contact] for side in both)
+            for band in rule.bands:
+                a, b, paired = _pair_within(band, a, b, unit)
+                pairs += [Pair(kind, x, y, weight) for x, y, weight in paired]
+            least = rule.bands[-1][0]
+            a, b = ([row for row in side if row[1] > least] for side in (a, b))
+            pairs += [Pair(kind, event, None, weight) for event, weight in a]
+            pairs += [Pair(kind, None, event, weight) for event, weight in b]
+    return Paired(tuple(sorted(pairs, key=lambda pair: pair.t)), rule.counted)
+
+
+_Weighed = list[tuple[Any, float]]
+
+
+def _pair_within(
+    band: tuple[float, float], a: _Weighed, b: _Weighed, window: float
+) -> tuple[_Weighed, _Weighed, list[tuple[Any, Any, float]]]:
+    """What remains of two lists, and the pairs of some weights, with the first one's."""
+    low, high = band
+    i, k = ([n for n, row in enumerate(side) if low < row[1] <= high] for side in (a, b))
+    t, s = (np.array([x[n][0].t for n in rows], dtype=float) for x, rows in ((a, i), (b, k)))
+    both = [(i[m], k[n]) for m, n in pair_times(t, s, window)]
+    gone = [{pair[side] for pair in both} for side in (0, 1)]
+    left, right = (
+        [row for n, row in enumerate(side) if n not in paired]
+        for side, paired in zip((a, b), gone, strict=True)
+    )
+    return left, right, [(a[m][0], b[n][0], a[m][1]) for m, n in both]
 
 
 def _closing_speed(event: Any) -> float:
@@ -783,7 +848,7 @@ def _closing_speed(event: Any) -> float:
     return math.inf if math.isnan(before) else before
 
 
-def _weighed(
+def weighed(
     kind: str, events: Sequence[Any], unit: float, fastest: float, covered: tuple[float, float]
 ) -> Iterator[tuple[Any, float]]:
     """Events of a kind, and the weight of each, contact by contact in order of time."""
@@ -1050,6 +1115,10 @@ class Truth:
         Stretch of time (s).
     scales : MotionScales or None
         What differences of the motions are divided by, where they are compared.
+    weights : Weights or None
+        Which events are paired and count, where not those of `pair_events`.
+    of_events : tuple of str
+        Attributes of events that are quantities, ``events.<row>.<attribute>``.
     """
 
     quantities: Sequence[ScaledValue]
@@ -1057,6 +1126,8 @@ class Truth:
     unit: float
     covered: tuple[float, float] = ALWAYS
     scales: MotionScales | None = None
+    weights: Weights | None = None
+    of_events: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -1134,9 +1205,23 @@ def difference(
     scales = truth.scales
     covered = truth.covered[0], min(truth.covered[1], end)
     speed = 0.0 if scales is None else float(scales.v.max())
+    paired = pair_events(
+        truth.events, events, truth.unit, kinds,
+        speed=speed, covered=covered, weights=truth.weights,
+    )  # fmt: skip
+    row = {id(event): i for i, event in enumerate(truth.events)}
+    known = {
+        **values,
+        **{
+            f"events.{row[id(p.reference)]}.{key}": getattr(p.found, key)
+            for p in paired.pairs
+            if not math.isnan(p.shift)
+            for key in truth.of_events
+        },
+    }
     return Difference(
-        tuple(Deviation(q, values[q.name]) for q in truth.quantities if q.name in values),
-        pair_events(truth.events, events, truth.unit, kinds, speed=speed, covered=covered),
+        tuple(Deviation(q, known[q.name]) for q in truth.quantities if q.name in known),
+        paired,
         tuple(kinds),
         distance(*motions, scales)
         if motions is not None and scales is not None

@@ -9,11 +9,12 @@ import numpy as np
 
 from eventpound.accuracy.bound import Agreement
 from eventpound.accuracy.digits import positions
-from eventpound.accuracy.quantities import in_order, quantities_of, values_of
-from eventpound.accuracy.routes import REFERENCE, RouteRun
-from eventpound.accuracy.sequences import Matching, match_events
+from eventpound.accuracy.quantities import OF_IMPACTS, quantities_of, values_of
+from eventpound.accuracy.routes import REFERENCE, Route, RouteRun
+from eventpound.accuracy.sequences import KINDS, parted, touches, weights_for
 from eventpound.numerics.arrays import Floats
-from eventpound.score import ScaledValue
+from eventpound.scene.scene import Scene
+from eventpound.score import Difference, Pair, Truth, difference
 from eventpound.solvers.base import Recording, Task
 
 AS_GOOD = 1e-14
@@ -24,21 +25,30 @@ class RoutesCompared(NamedTuple):
     """Runs of one task by several routes.
 
     runs: of the routes that finished. reference: the one whose tight values are stated.
-    wanted: quantities. agreement: their values. matchings: of the events of every tight
-    run with those of the reference.
+    truth: that run, as the others are held against it. agreement: values of its quantities.
+    differences: of every tight run from it.
     """
 
     runs: list[RouteRun]
     reference: int
-    wanted: list[ScaledValue]
+    truth: Truth
     agreement: Agreement
-    matchings: list[Matching]
+    differences: list[Difference]
+
+    @property
+    def partings(self) -> list[tuple[Route, Pair, Difference]]:
+        """The first event that a route has and the reference has not, or the other way round."""
+        each = ((run.route, found) for run, found in zip(self.runs, self.differences, strict=True))
+        return [
+            (route, pair, found)
+            for route, found in each
+            for pair in [*parted(found.events).values()][:1]
+        ]
 
     @property
     def parted_from(self) -> float:
         """When routes part first (s), inf where they never do."""
-        times = [m.parting.t for m in self.matchings if m.parting is not None]
-        return min(times, default=np.inf)
+        return min((pair.t for _, pair, _ in self.partings), default=np.inf)
 
     @property
     def stated(self) -> Recording:
@@ -60,28 +70,37 @@ def compare_routes(
         if run.route.label == REFERENCE and moved[r] <= AS_GOOD * largest:
             reference = r
     stated = runs[reference].tight
-    wanted = quantities_of(task, stated, moments, events=True)
-    contacts = len(task.scene.contacts)
-
-    def valued(recordings: list[Recording]) -> tuple[Floats, list[Matching]]:
-        matched = [match_events(stated.events, found.events, contacts) for found in recordings]
-        values = [
-            in_order(wanted, values_of(task.scene, found, moments, matching.pairs))
-            for found, matching in zip(recordings, matched, strict=True)
-        ]
-        return np.array(values), matched
-
-    tight, matchings = valued([run.tight for run in runs])
-    loose, looser = valued([run.loose for run in runs])
+    truth = Truth(
+        quantities_of(task, stated, moments, events=True),
+        stated.events,
+        task.end - task.start,
+        weights=weights_for(),
+        of_events=("t", *OF_IMPACTS),
+    )
+    tight, loose = (
+        [from_truth(truth, task.scene, run, moments) for run in which]
+        for which in ([run.tight for run in runs], [run.loose for run in runs])
+    )
     agreement = Agreement(
-        tight,
-        loose,
+        np.array([in_order(truth, found) for found in tight]),
+        np.array([in_order(truth, found) for found in loose]),
         [run.route.formulation for run in runs],
         reference,
-        looser[reference].touches,
-        any(matching.parting is not None for matching in matchings),
+        touches(loose[reference].events, stated.events, runs[reference].loose.events),
+        any(found.events.alone for found in tight),
     )
-    return RoutesCompared(runs, reference, wanted, agreement, matchings)
+    return RoutesCompared(runs, reference, truth, agreement, tight)
+
+
+def from_truth(truth: Truth, scene: Scene, run: Recording, moments: Sequence[float]) -> Difference:
+    """How far a run is from the one that is stated, its events paired with that one's."""
+    return difference(truth, values_of(scene, run, moments), run.events, KINDS)
+
+
+def in_order(truth: Truth, found: Difference) -> Floats:
+    """Values of a run in the order of the quantities, NaN for what it has not; shape (n,)."""
+    values = {deviation.quantity.name: deviation.value for deviation in found.quantities}
+    return np.array([values.get(quantity.name, np.nan) for quantity in truth.quantities])
 
 
 def _restlessness(task: Task, run: RouteRun) -> float:

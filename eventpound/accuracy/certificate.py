@@ -8,7 +8,6 @@ from dataclasses import asdict, dataclass, fields
 from eventpound.accuracy.bound import Limit
 from eventpound.accuracy.digits import DigitsOverTime
 from eventpound.accuracy.near_misses import Graze, NearMiss
-from eventpound.accuracy.sequences import Parting
 
 FEWEST_DIGITS = 4.0
 """Digits below which a value is refused."""
@@ -92,18 +91,27 @@ class RouteReport:
 
 @dataclass(frozen=True, slots=True)
 class PartedRoute:
-    """The first event at which routes part, and the route that parts there."""
+    """The first event that one route has and another has not, and the route that parts there.
+
+    Parameters
+    ----------
+    route : str
+        Its label.
+    t : float
+        Time of the event (s).
+    contact : str
+        Where it is.
+    found : str
+        Its kind.
+    instead : str
+        The kind of what the other run has in its place; "nothing" where there is none.
+    """
 
     route: str
     t: float
     contact: str
     found: str
     instead: str
-
-    @classmethod
-    def of(cls, route: str, parting: Parting, contact: str) -> PartedRoute:
-        """Name the route and the contact of a parting."""
-        return cls(route, parting.t, contact, parting.found, parting.instead)
 
 
 @dataclass(frozen=True)

@@ -30,14 +30,14 @@ def certified_quantities(
     conditions : Conditioning
         What changed inputs do.
     """
-    scale = np.array([quantity.scale for quantity in found.wanted])
+    scale = np.array([quantity.scale for quantity in found.truth.quantities])
     run = found.stated
     bounds = bounds_of(found.agreement, conditions, scale, displaced(run))
     _widen_times(task, found, bounds)
     _widen_limits(found, bounds)
     _refuse_after_parting(found, bounds)
     certified = []
-    for i, quantity in enumerate(found.wanted):
+    for i, quantity in enumerate(found.truth.quantities):
         bound, slope = float(bounds.bound[i]), float(conditions.largest_slope[i])
         confirmed = float(bounds.confirmed[i])
         width = bound if np.isfinite(bound) else confirmed
@@ -74,7 +74,7 @@ def _widen_limits(found: RoutesCompared, bounds: ErrorBounds) -> None:
     """Add to the times of a cascade's end what is left of it there, the same by every route."""
     events = found.stated.events
     later = time_to_limits(events)
-    for i, quantity in enumerate(found.wanted):
+    for i, quantity in enumerate(found.truth.quantities):
         if quantity.name.endswith(".t"):
             bounds.bound[i] += later.get(events[row_of(quantity)].t, 0.0)
 
@@ -82,7 +82,7 @@ def _widen_limits(found: RoutesCompared, bounds: ErrorBounds) -> None:
 def _refuse_after_parting(found: RoutesCompared, bounds: ErrorBounds) -> None:
     """Take away the bounds of events from the first parting on: what follows may not be paired."""
     events = found.stated.events
-    for i, quantity in enumerate(found.wanted):
+    for i, quantity in enumerate(found.truth.quantities):
         row = row_of(quantity)
         if row >= 0 and events[row].t >= found.parted_from:
             bounds.bound[i] = np.nan
@@ -101,7 +101,7 @@ def _widen_times(task: Task, found: RoutesCompared, bounds: ErrorBounds) -> None
 
     An extreme that exceeds an earlier one by the rounding of the recorder does not count.
     """
-    place = {quantity.name: i for i, quantity in enumerate(found.wanted)}
+    place = {quantity.name: i for i, quantity in enumerate(found.truth.quantities)}
     names = [body.name for body in task.scene.bodies]
     values = np.array(
         [[bounds.bound[place[f"peaks.{name}.{key}"]] for name in names] for key in ("max", "min")]

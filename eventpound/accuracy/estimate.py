@@ -17,22 +17,14 @@ import numpy as np
 
 from eventpound.accuracy.judge import INDEPENDENT, judge_of, task_of_judge
 from eventpound.accuracy.quantities import quantities_of, values_of
-from eventpound.accuracy.sequences import (
-    BRIEF,
-    Matching,
-    first_that,
-    lasting_rows,
-    match_events,
-    rows_by_contact,
-    soft_limits,
-)
+from eventpound.accuracy.sequences import KINDS, instead_of, parted, weights_for
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
-from eventpound.score import Truth, difference
+from eventpound.score import Paired, Truth, difference
 from eventpound.simulation import Progress
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import Event, EventKind, Task
+from eventpound.solvers.base import Event, EventKind
 from eventpound.solvers.events.recorder import resting_times
 
 DOUBTFUL, TIMES = 1e-4, 1e3
@@ -111,12 +103,14 @@ def estimate_errors(
     except ComputationError as error:
         unknown = f"error not known: {estimate['by']} failed {error}"
         return estimate | {"failed": str(error), "warnings": [unknown]}
-    matching = match_events(
-        recording.events, other.events, len(task.scene.contacts), allowed_part(task.rtol)
+    own = Truth(
+        quantities_of(task, recording),
+        recording.events,
+        task.end - task.start,
+        weights=weights_for(allowed_part(task.rtol)),
     )
-    estimate["events_agree"] = matching.parting is None
-    own = Truth(quantities_of(task, recording), (), task.end - task.start)
-    found = difference(own, values_of(task.scene, other), ())
+    found = difference(own, values_of(task.scene, other), other.events, KINDS)
+    estimate["events_agree"] = not found.events.alone
     for off in found.quantities:
         kind, _, rest = off.quantity.name.partition(".")
         name, _, key = rest.rpartition(".")
@@ -126,7 +120,7 @@ def estimate_errors(
     assert worst is not None
     estimate["largest"] = {"quantity": worst.quantity.name, "part": worst.error}
     estimate["warnings"] = [
-        *_doubts(response, other.events, matching, estimate["by"]),
+        *_doubts(response, other.events, found.events, estimate["by"]),
         *_doubts_of_values(task.rtol, estimate["largest"]),
     ]
     return estimate
@@ -148,37 +142,17 @@ def allowed_part(rtol: float) -> float:
 
 
 def rests_of_both(
-    ours: Sequence[Event], theirs: Sequence[Event], task: Task, allowed: float
+    ours: Sequence[Event], theirs: Sequence[Event], paired: Paired, contacts: int, end: float
 ) -> list[_Rests]:
-    """Rests of each contact in two runs, as alike as any of `soft_limits` makes them.
-
-    Parameters
-    ----------
-    ours, theirs : sequence of Event
-        Of the runs.
-    task : Task
-        Of either run.
-    allowed : float
-        Part of the run by which times of rest may differ.
-    """
-    length = task.end - task.start
-    limits = soft_limits(ours, theirs)
-    contacts = len(task.scene.contacts)
-    of_contacts = [rows_by_contact(events, contacts) for events in (ours, theirs)]
-
-    def seen(contact: int, soft: float) -> _Rests:
-        counts, times = [], []
-        for events, rows in zip((ours, theirs), of_contacts, strict=True):
-            mine = [events[i] for i in lasting_rows(events, rows[contact], BRIEF * length, soft)]
-            counts.append(sum(event.kind is EventKind.REST for event in mine))
-            times.append(float(resting_times(mine, contact + 1, task.end)[contact]))
-        return _Rests(*counts, *times)
-
-    def alike(rests: _Rests) -> bool:
-        apart = abs(rests.our_time - rests.their_time)
-        return rests.ours == rests.theirs and apart <= allowed * length
-
-    return [first_that((seen(j, soft) for soft in limits), alike) for j in range(contacts)]
+    """Rests of each contact in two runs up to `end` (s), without those that are none to one."""
+    listed = {id(event) for pair in paired.listed for event in (pair.reference, pair.found)}
+    kept = [[event for event in events if id(event) in listed] for events in (ours, theirs)]
+    counts = (
+        [sum(e.kind is EventKind.REST and e.contact == j for e in mine) for j in range(contacts)]
+        for mine in kept
+    )
+    times = (resting_times(mine, contacts, end).tolist() for mine in kept)
+    return [_Rests(*numbers) for numbers in zip(*counts, *times, strict=True)]
 
 
 def impacts_apart(ours: Sequence[Event], theirs: Sequence[Event], contacts: int) -> Floats:
@@ -221,14 +195,13 @@ def _said(kind: str) -> str:
     return "detachment" if kind == EventKind.SEPARATION.value else kind
 
 
-def _doubts(
-    response: Response, others: Sequence[Event], matching: Matching, by: str
-) -> Iterator[str]:
+def _doubts(response: Response, others: Sequence[Event], paired: Paired, by: str) -> Iterator[str]:
     """What is otherwise by the judge, contact by contact: rests, events, speeds of impacts."""
     task, ours = response.task, response.recording.events
     names = [f"contact {contact.name!r}" for contact in task.scene.contacts]
     allowed = allowed_part(task.rtol)
-    rests = rests_of_both(ours, others, task, allowed)
+    rests = rests_of_both(ours, others, paired, len(names), task.end)
+    partings = parted(paired)
     restless = [j for j, found in enumerate(rests) if found.ours != found.theirs]
     for j in restless:
         yield (
@@ -237,26 +210,26 @@ def _doubts(
             "forces are not to be relied on (`eventpound verify` tells why, a smaller rtol may "
             "help)"
         )
-    first = matching.parting
-    apart = [names[j] for j in matching.parted if j not in restless]
+    first = next(iter(partings.values()), None)
+    apart = [names[j] for j in partings if j not in restless]
     if restless and apart:
         yield f"so are not the events at {', '.join(apart)}, which are others by {by}"
     elif first is not None and not restless:
         later = f", later at {', '.join(apart[1:])}, too" if apart[1:] else ""
         yield (
             f"from t = {first.t:.6g} s on events are not those by {by}: at {names[first.contact]} "
-            f"one has {_said(first.found)}, the other {_said(first.instead)}{later} "
+            f"one has {first.kind}, the other {_said(instead_of(first, paired))}{later} "
             "(`eventpound verify` tells why)"
         )
     for j, found in enumerate(rests):
         off = abs(found.our_time - found.their_time) > allowed * (task.end - task.start)
-        if off and j not in (*restless, *matching.parted):
+        if off and j not in (*restless, *partings):
             yield (
                 f"{names[j]} rests for {found.our_time:.6g} s in all, "
                 f"by {by} for {found.their_time:.6g} s"
             )
     for j, part in enumerate(impacts_apart(ours, others, len(names))):
-        if part > allowed and j not in matching.parted:
+        if part > allowed and j not in partings:
             yield (
                 f"impacts at {names[j]} have other speeds than by {by}, "
                 f"by up to {part:.1e} of the fastest in the run"

@@ -15,14 +15,13 @@ impulse what stops the lighter body from that speed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from eventpound.accuracy.sequences import SOFT, loudness, stands_by
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import lowered
-from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
 from eventpound.score import Difference, MotionScales, ScaledValue, Truth, difference
 from eventpound.solvers.base import ENDS_OF_REST, EventKind, History, Recording, Task
@@ -57,7 +56,6 @@ def values_of(
     scene: Scene,
     recording: Recording,
     moments: Sequence[float] = (),
-    rows: Mapping[int, int] | None = None,
 ) -> dict[str, float]:
     """Values of a run by name.
 
@@ -69,8 +67,6 @@ def values_of(
         The run.
     moments : sequence of float
         Times (s) at which displacements are wanted.
-    rows : mapping of int to int, optional
-        The event of this run for events of another, by whose row they are named.
     """
     x, history = recording.displacement, recording.history
     found: dict[str, float] = {}
@@ -87,9 +83,6 @@ def values_of(
     for i, body in enumerate(scene.bodies if len(moments) else ()):
         at = np.interp(moments, history.t, history.u[:, i])
         found |= {f"history.{k}.{body.name}": float(u) for k, u in enumerate(at)}
-    for row, own in (rows or {}).items():
-        event = recording.events[own]
-        found |= {f"events.{row}.{key}": getattr(event, key) for key in ("t", *OF_IMPACTS)}
     return found
 
 
@@ -127,17 +120,9 @@ def quantities_of(
     for k in range(len(moments)):
         for i, body in enumerate(scene.bodies):
             found.append((f"history.{k}.{body.name}", "m", scales.u[i]))
-    own = {}
-    if events:
-        found += _of_events(scene, recording, duration)
-        own = {row: row for row in range(len(recording.events))}
-    values = values_of(scene, recording, moments, own)
-    return [ScaledValue(name, values[name], float(scale), unit) for name, unit, scale in found]
-
-
-def in_order(wanted: Sequence[ScaledValue], values: Mapping[str, float]) -> Floats:
-    """Values in the order of quantities, NaN for what a run does not have; shape (n,)."""
-    return np.array([values.get(quantity.name, np.nan) for quantity in wanted])
+    values = values_of(scene, recording, moments)
+    stated = [ScaledValue(name, values[name], float(scale), unit) for name, unit, scale in found]
+    return [*stated, *(_of_events(scene, recording, duration) if events else ())]
 
 
 def row_of(quantity: ScaledValue) -> int:
@@ -152,7 +137,7 @@ def largest_speed(recording: Recording) -> float:
     return max(fastest, float(np.max(np.abs(recording.history.v), initial=0.0)))
 
 
-def _of_events(scene: Scene, recording: Recording, duration: float) -> list[tuple[str, str, float]]:
+def _of_events(scene: Scene, recording: Recording, duration: float) -> list[ScaledValue]:
     loud = loudness(recording.events)
     fastest = float(np.max(loud, initial=0.0))
     speed = largest_speed(recording) or 1.0
@@ -162,14 +147,14 @@ def _of_events(scene: Scene, recording: Recording, duration: float) -> list[tupl
         impact = event.kind is EventKind.IMPACT
         if stands_by(event) or (impact and loud[row] <= SOFT * fastest):
             continue
-        found.append((f"events.{row}.t", "s", duration))
+        found.append(ScaledValue(f"events.{row}.t", event.t, duration, "s"))
         if impact:
             ends = scene.contacts[event.contact].ends
             impulse = min(mass.get(end, np.inf) for end in ends) * speed
             scales = (speed, speed, impulse)
             units = ("m/s", "m/s", "N s")
             found += [
-                (f"events.{row}.{key}", unit, scale)
+                ScaledValue(f"events.{row}.{key}", getattr(event, key), scale, unit)
                 for key, unit, scale in zip(OF_IMPACTS, units, scales, strict=True)
             ]
     return found

@@ -1,87 +1,36 @@
-"""Which event of one run is which event of another.
+"""Which events two runs must both have: weights for the pairing of `eventpound.score`.
 
-Contacts are taken one by one, since rows of one instant may stand in any order.
-The rows of a contact are cut into *episodes* at what is not an impact: a rest, a
-detachment, a separation, the limit of an accumulation. These must be the same in
-both runs. In an episode impacts are paired in order; the last ones of a cascade,
-softer than `SOFT` of the fastest, are many or few as the rounding wants and may
-be missing in either run. Where two runs part, they are taken up again at the next
-row of the same kind and, to `TOGETHER` of the run, the same time. Rests that follow
-impacts softer than `SOFT` alone need not be in both runs either.
+A certificate and an estimate ask of two exact solutions whether they are the same, so that any
+difference counts that rounding does not make. Rounding makes and unmakes the last impacts of a
+cascade, softer than `SOFT` of the fastest; rests that follow such impacts alone, with their ends;
+flights that take no time; and the limit of a cascade after which nothing rests. Everything is
+paired, however far apart; what weighs more than one must have a partner.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from typing import TypeVar
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
+from eventpound.score import Pair, Paired, Weights
 from eventpound.solvers.base import ENDS_OF_REST, Event, EventKind
-
-Tried = TypeVar("Tried")
 
 SOFT = 1e-6
 """Part of the fastest closing speed below which an impact need not be in both runs."""
-TOGETHER = 1e-5
-"""Part of the length of a run by which one event may be off in two runs that had parted."""
 BRIEF = 1e-12
-"""The same below which a contact that detaches and rests again has not opened."""
+"""Part of the length of a run below which a contact that detaches and rests again has not
+opened."""
 TINY = 1e-300
 """What is divided by instead of nothing."""
-AHEAD = 60
-"""Rows of a contact that are searched for it."""
 MARGIN = 10.0
 """Multiple of a limit of speed below which one run may find an impact softer than it and the
 other not."""
-
-
-@dataclass(frozen=True, slots=True)
-class Parting:
-    """The first event that one run has and another does not.
-
-    Parameters
-    ----------
-    t : float
-        Its time (s).
-    contact : int
-        Position of the contact.
-    found : str
-        Its kind in the run that has it first.
-    instead : str
-        The kind of what the other run has in its place; "nothing" where there is none.
-    """
-
-    t: float
-    contact: int
-    found: str
-    instead: str
-
-
-@dataclass(frozen=True)
-class Matching:
-    """What two runs have in common.
-
-    Parameters
-    ----------
-    pairs : dict of int to int
-        Row of the other run for rows of the one.
-    parting : Parting or None
-        Where they part.
-    parted : tuple of int
-        Contacts at which they part, the first one first.
-    touches : bool
-        Whether one has soft impacts that the other has not and that are not the tail
-        of a cascade: a contact that one run touches and the other does not.
-    """
-
-    pairs: dict[int, int]
-    parting: Parting | None
-    touches: bool
-    parted: tuple[int, ...] = ()
+KINDS = ("impact", "rest", "detachment", "accumulation", "cut-impact")
+"""What is paired."""
 
 
 def stands_by(event: Event) -> bool:
@@ -92,88 +41,64 @@ def stands_by(event: Event) -> bool:
     return event.kind is EventKind.ACCUMULATION and event.gap_velocity_before == 0.0
 
 
-def rows_by_contact(events: Sequence[Event], contacts: int) -> list[list[int]]:
-    """Rows of each of so many contacts, in order of time."""
-    rows: list[list[int]] = [[] for _ in range(contacts)]
-    for row, event in enumerate(events):
-        rows[event.contact].append(row)
-    return rows
+def loudness(events: Sequence[Event]) -> Floats:
+    """Largest closing speed in the problem each row belongs to, shape (rows,) (m/s).
 
-
-def lasting_rows(
-    events: Sequence[Event], rows: Sequence[int], brief: float, soft: float = 0.0
-) -> list[int]:
-    """Rows of a contact, without those that rounding decides whether to list.
-
-    A contact that opens and rests again within no time has not opened. One that rests after
-    impacts which are all too soft was as good as at rest before, and stays open here until it
-    moves again; so does one whose vibration dies away: its impacts get softer, but do not follow
-    each other faster, and go on as long as there are digits. The limit of a cascade after which
-    the contact does not rest is where the cascade was cut off.
-
-    Parameters
-    ----------
-    events : sequence of Event
-        Of a run, in order of time.
-    rows : sequence of int
-        Those of the contact (`rows_by_contact`).
-    brief : float
-        What is no time (s).
-    soft : float
-        Closing speeds up to this are too soft (m/s), beside all that are not listed.
+    A resting contact that takes part in an impact does not close by itself; the
+    impact is as loud as its fastest contact.
     """
-    kept: list[int] = []
-    flight: _Flight | None = None
-    died_away = False
-    for row in rows:
-        event = events[row]
-        if stands_by(event):
-            continue
-        rests = event.kind is EventKind.REST
-        if not rests and kept and events[kept[-1]].kind is EventKind.ACCUMULATION:
-            del kept[-1]
-        if rests:
-            left = flight.rows_left(len(kept), event.t, brief) if flight else None
-            if left is None and _dies_away([events[i] for i in kept[-3:]]):
-                left = len(kept) - 1
-            if left is not None:
-                # A flight that took no time leaves the contact as it was.
-                died_away = flight is None or left != flight.first or flight.hidden
-                del kept[left:]
-                flight = None
-                continue
-            flight = None
-        elif event.kind in ENDS_OF_REST:
-            flight = _Flight(len(kept), event.t, died_away)
-            if died_away:
-                died_away = False
-                continue
-        elif flight and event.kind is EventKind.IMPACT:
-            flight.quiet = flight.quiet and -event.gap_velocity_before <= soft
-        kept.append(row)
-    return kept
+    speed: dict[int, float] = {}
+    for event in events:
+        speed[event.group] = max(speed.get(event.group, 0.0), -event.gap_velocity_before)
+    return np.array([speed[event.group] for event in events])
 
 
 @dataclass
-class _Flight:
-    """From where a contact opens on: its first row, when, and whether that row is left out.
+class _Contact:
+    """What the events of a contact so far say of the next one."""
 
-    `quiet`: whether all impacts so far were too soft.
+    recent: list[int] = field(default_factory=list)
+    opened: int | None = None
+    loudest: float = math.inf
+    held: float = math.inf
+
+
+def speeds_of_events(events: Sequence[Event], brief: float) -> Floats:
+    """Closing speed (m/s) of the impacts that each event stands and falls with, shape (rows,).
+
+    Of an impact its loudness; of a rest the largest one since the contact opened, inf where it
+    never did, that of the rest before where nothing happened since; of the end of a rest, and of
+    the limit of a cascade, that of the rest. A flight of up to `brief` (s) is as loud as its
+    impacts, and goes on with the rest before it. Impacts that do not follow each other faster as
+    they get softer never end in a rest.
     """
-
-    first: int
-    t: float
-    hidden: bool
-    quiet: bool = True
-
-    def rows_left(self, rows: int, t: float, brief: float) -> int | None:
-        """Rows that are left where it ends by a rest at t (s) that is none; else None."""
-        if not self.quiet:
-            return None
-        if t - self.t <= brief:
-            return self.first
-        opened = self.first + (not self.hidden)
-        return opened if self.hidden or rows > opened else None
+    speeds = loudness(events)
+    contacts: dict[int, _Contact] = {}
+    for row, event in enumerate(events):
+        if stands_by(event):
+            speeds[row] = -math.inf
+            continue
+        at = contacts.setdefault(event.contact, _Contact())
+        if event.kind is EventKind.IMPACT:
+            at.loudest = max(at.loudest, -event.gap_velocity_before)
+        elif event.kind is EventKind.ACCUMULATION:
+            speeds[row], at.loudest = 0.0, max(at.loudest, 0.0)
+        elif event.kind is EventKind.REST:
+            short = at.opened is not None and event.t - events[at.opened].t <= brief
+            silent = 0.0 if short else at.held
+            speeds[row] = at.loudest if at.loudest >= 0.0 else silent
+            if _dies_away([events[i] for i in at.recent]):
+                speeds[row] = 0.0
+            if short and at.opened is not None:
+                speeds[at.opened] = min(speeds[row], speeds[at.opened])
+            else:
+                at.held = speeds[row]
+            if at.recent and events[at.recent[-1]].kind is EventKind.ACCUMULATION:
+                speeds[at.recent[-1]] = speeds[row]
+        elif event.kind in ENDS_OF_REST:
+            speeds[row], at.opened, at.loudest = at.held, row, -math.inf
+        at.recent = [*at.recent[-2:], row]
+    return speeds
 
 
 def _dies_away(last: Sequence[Event]) -> bool:
@@ -190,192 +115,63 @@ def _dies_away(last: Sequence[Event]) -> bool:
     return 0.0 < slower < 1.0 and sooner >= math.sqrt(slower)
 
 
-def soft_limits(*runs: Sequence[Event]) -> list[float]:
-    """Speeds (m/s) up to which impacts between two rests may be as good as none.
-
-    Two runs that see the same with one of them see the same: with one limit alone an impact
-    might lie above it in one run and below in the other.
-    """
-    closing = (-event.gap_velocity_before for events in runs for event in events)
-    fastest = max(closing, default=0.0)
-    return [part * fastest for part in (0.0, SOFT, MARGIN * SOFT)]
-
-
-def loudness(events: Sequence[Event]) -> Floats:
-    """Largest closing speed in the problem each row belongs to, shape (rows,) (m/s).
-
-    A resting contact that takes part in an impact does not close by itself; the
-    impact is as loud as its fastest contact.
-    """
-    speed: dict[int, float] = {}
-    for event in events:
-        speed[event.group] = max(speed.get(event.group, 0.0), -event.gap_velocity_before)
-    return np.array([speed[event.group] for event in events])
-
-
-def match_events(
-    ours: Sequence[Event], theirs: Sequence[Event], contacts: int, missing: float = MARGIN * SOFT
-) -> Matching:
-    """Pair the events of two runs.
+def weights_for(missing: float = MARGIN * SOFT) -> Weights:
+    """How events are weighed: what a run may lack weighs no more than one.
 
     Parameters
     ----------
-    ours, theirs : sequence of Event
-        In order of time.
-    contacts : int
-        Number of contacts of the scene.
     missing : float
-        Part of the fastest closing speed up to which an impact that one run lacks is no parting.
+        Part of the fastest closing speed up to which an impact that one run lacks is none that
+        counts.
     """
-    loud = [loudness(events) for events in (ours, theirs)]
-    fastest = max((float(x.max()) for x in loud if x.size), default=0.0)
-    parts = sorted({SOFT, missing / MARGIN, missing})
-    impact_limits = [part * fastest for part in parts]
-    limits = soft_limits(ours, theirs)
-    last = max((events[-1].t for events in (ours, theirs) if events), default=0.0)
-    first = min((events[0].t for events in (ours, theirs) if events), default=0.0)
-    near = TOGETHER * (last - first)
-    pairs: dict[int, int] = {}
-    partings: list[Parting] = []
-    touches = False
-    brief = BRIEF * (last - first)
-    of_contacts = (rows_by_contact(events, contacts) for events in (ours, theirs))
-    for our_rows, their_rows in zip(*of_contacts, strict=True):
-        tried = (
-            _match_contact(
-                _Rows(ours, lasting_rows(ours, our_rows, brief, limit), loud[0]),
-                _Rows(theirs, lasting_rows(theirs, their_rows, brief, limit), loud[1]),
-                impact_limits,
-                near,
-            )
-            for limit in limits
-        )
-        found = first_that(tried, lambda matching: matching.parting is None)
-        pairs.update(found.pairs)
-        touches = touches or found.touches
-        if found.parting is not None:
-            partings.append(found.parting)
-    partings.sort(key=lambda parting: parting.t)
-    first_of_all = partings[0] if partings else None
-    return Matching(pairs, first_of_all, touches, tuple(each.contact for each in partings))
+
+    def weigh(
+        kind: str, events: Sequence[Event], unit: float, fastest: float, _: object
+    ) -> Iterator[tuple[Event, float]]:
+        least = fastest * (missing if kind == EventKind.IMPACT else MARGIN * SOFT)
+        kinds = ENDS_OF_REST if kind == EventKind.DETACHMENT else (kind,)
+        for event, speed in zip(events, speeds_of_events(events, BRIEF * unit), strict=True):
+            if event.kind in kinds:
+                yield event, float(speed) / least
+
+    bands = ((1.0, math.inf), (1.0 / MARGIN, math.inf), (-TINY, 1.0))
+    return Weights(weigh, bands, 1.0)
 
 
-def first_that(tried: Iterable[Tried], agrees: Callable[[Tried], bool]) -> Tried:
-    """The first that agrees; where none does, the first of all."""
-    seen = []
-    for found in tried:
-        if agrees(found):
-            return found
-        seen.append(found)
-    return seen[0]
+def parted(paired: Paired) -> dict[int, Pair]:
+    """The first event of each contact that one run has and the other has not, in order of time."""
+    first: dict[int, Pair] = {}
+    for pair in paired.alone:
+        first.setdefault(pair.contact, pair)
+    return first
 
 
-@dataclass(frozen=True)
-class _Rows:
-    """Rows of one contact: positions in the events of a run, with their loudness."""
-
-    events: Sequence[Event]
-    rows: list[int]
-    loud: Floats
-
-    def episode(self, start: int) -> tuple[list[int], int]:
-        """Impacts from `start` on, and where the row is that ends them."""
-        end = start
-        while end < len(self.rows) and self.kind(end) is EventKind.IMPACT:
-            end += 1
-        return self.rows[start:end], end
-
-    def kind(self, position: int) -> EventKind:
-        """Kind of a row."""
-        return self.events[self.rows[position]].kind
-
-    def time(self, position: int) -> float:
-        """Time of a row (s)."""
-        return self.events[self.rows[position]].t
+def instead_of(pair: Pair, paired: Paired) -> str:
+    """The kind of what the other run has in the place of an event; "nothing" without one."""
+    others = (
+        (other.found if pair.reference else other.reference)
+        for other in paired.alone
+        if other.contact == pair.contact
+    )
+    return next((event.kind.value for event in others if event is not None), "nothing")
 
 
-def _match_contact(ours: _Rows, theirs: _Rows, limits: Sequence[float], near: float) -> Matching:
-    pairs: dict[int, int] = {}
-    first: Parting | None = None
-    touches = False
-    i = j = 0
-    while True:
-        one, i = ours.episode(i)
-        other, j = theirs.episode(j)
-        parting = _match_impacts((ours, one), (theirs, other), limits, pairs)
-        ended = (i == len(ours.rows), j == len(theirs.rows))
-        cascade = not any(ended) and ours.kind(i) is EventKind.ACCUMULATION
-        touches = touches or (len(one) != len(other) and not cascade)
-        if parting is None and not any(ended) and ours.kind(i) is theirs.kind(j):
-            pairs[ours.rows[i]] = theirs.rows[j]
-            i, j = i + 1, j + 1
-            continue
-        if parting is None and not all(ended):
-            parting = _parting(ours, theirs, i, j)
-        first = first or parting
-        again = _together(ours, theirs, i, j, near)
-        if again is None:
-            return Matching(pairs, first, touches)
-        i, j = again
+def touches(paired: Paired, *runs: Sequence[Event]) -> bool:
+    """Whether a run has impacts alone that are not the tail of a cascade.
 
-
-def _together(ours: _Rows, theirs: _Rows, i: int, j: int, near: float) -> tuple[int, int] | None:
-    """The next rows of both runs that are one event, None where there are none."""
-    places = [
-        (p + q, p, q)
-        for p in range(i, min(i + AHEAD, len(ours.rows)))
-        for q in range(j, min(j + AHEAD, len(theirs.rows)))
-        if ours.kind(p) is theirs.kind(q) and abs(ours.time(p) - theirs.time(q)) <= near
-    ]
-    if not places:
-        return None
-    _, p, q = min(places)
-    return p, q
-
-
-def _match_impacts(
-    ours: tuple[_Rows, list[int]],
-    theirs: tuple[_Rows, list[int]],
-    limits: Sequence[float],
-    pairs: dict[int, int],
-) -> Parting | None:
-    """Pair the impacts of an episode; the first loud one that has no partner.
-
-    Where there are more in one run, those are left out that are softer than the first of the
-    `limits` (m/s) which leaves only soft ones without a partner: softer than the last.
+    A contact that one run touches and the other does not.
     """
-    tried = []
-    for limit in [0.0, *limits]:
-        one, other = (
-            [row for row in rows if side.loud[row] > limit or limit == 0.0]
-            for side, rows in (ours, theirs)
-        )
-        if limit == 0.0 and len(one) != len(other):
-            continue
-        shared = min(len(one), len(other))
-        alone = [
-            side.events[row]
-            for (side, _), rows in ((ours, one), (theirs, other))
-            for row in rows[shared:]
-            if side.loud[row] > limits[-1]
-        ]
-        tried.append((dict(zip(one, other, strict=False)), alone))
-        if not alone:
-            break
-    paired, alone = tried[0] if tried[-1][1] else tried[-1]
-    pairs.update(paired)
-    if not alone:
-        return None
-    event = alone[0]
-    return Parting(float(event.t), event.contact, event.kind.value, "nothing")
-
-
-def _parting(ours: _Rows, theirs: _Rows, i: int, j: int) -> Parting:
-    """The earlier one of two rows of different kind."""
-    one = ours.events[ours.rows[i]] if i < len(ours.rows) else None
-    other = theirs.events[theirs.rows[j]] if j < len(theirs.rows) else None
-    if one is None or (other is not None and other.t < one.t):
-        one, other = other, one
-    assert one is not None
-    instead = other.kind.value if other else "nothing"
-    return Parting(float(one.t), one.contact, one.kind.value, instead)
+    impacts = [pair for pair in paired.of("impact").pairs if math.isnan(pair.shift)]
+    alone = {id(pair.reference or pair.found) for pair in impacts}
+    for events in runs if alone else ():
+        open_: set[int] = set()
+        for event in events:
+            if id(event) in alone:
+                open_.add(event.contact)
+            elif event.kind is EventKind.ACCUMULATION:
+                open_.discard(event.contact)
+            elif event.kind is not EventKind.IMPACT and event.contact in open_:
+                return True
+        if open_:
+            return True
+    return False

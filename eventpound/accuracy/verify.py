@@ -7,7 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from eventpound.accuracy.agreement import RoutesCompared, compare_routes
+from eventpound.accuracy.agreement import (
+    RoutesCompared,
+    compare_routes,
+    from_truth,
+    in_order,
+)
 from eventpound.accuracy.certificate import (
     SENSITIVE,
     Certificate,
@@ -18,7 +23,7 @@ from eventpound.accuracy.certified_quantities import certified_quantities
 from eventpound.accuracy.conditioning import Conditioning, conditioning
 from eventpound.accuracy.digits import DigitsOverTime, digits_over_time, positions
 from eventpound.accuracy.near_misses import grazes, near_misses
-from eventpound.accuracy.quantities import MOST_EVENTS, in_order, values_of
+from eventpound.accuracy.quantities import MOST_EVENTS
 from eventpound.accuracy.routes import (
     TIGHTEST,
     RouteFailure,
@@ -29,7 +34,7 @@ from eventpound.accuracy.routes import (
     shared_code,
     solve,
 )
-from eventpound.accuracy.sequences import match_events
+from eventpound.accuracy.sequences import instead_of
 from eventpound.case.case import Case
 from eventpound.errors import ComputationError, InputError
 from eventpound.given import checked, number, positive
@@ -189,13 +194,11 @@ def _conditioning(
     """
     route, stated = found.runs[found.reference].route, found.stated
     rtol = min(route.tight, TIGHTEST)
-    contacts = len(task.scene.contacts)
 
     def measure(scene: Scene) -> tuple[Floats, Floats]:
         known = scene is task.scene and rtol == route.tight
         recording = stated if known else solve(route, replace(task, scene=scene), rtol, patience)
-        rows = match_events(stated.events, recording.events, contacts).pairs
-        values = in_order(found.wanted, values_of(scene, recording, moments, rows))
+        values = in_order(found.truth, from_truth(found.truth, scene, recording, moments))
         return values, positions(recording.history, task.output_times)
 
     try:
@@ -226,7 +229,7 @@ def _certificate(
         )
     if conditions is None:
         warnings.append("runs with changed inputs failed: how inputs come through is not known")
-        unknown = np.full(len(found.wanted), np.nan)
+        unknown = np.full(len(found.truth.quantities), np.nan)
         conditions = Conditioning(unknown, unknown, unknown == 0.0, 0.0 * task.output_times)
     quantities = certified_quantities(task, found, conditions)
     parting = _parting(task, found)
@@ -250,12 +253,13 @@ def _certificate(
 
 
 def _parting(task: Task, found: RoutesCompared) -> PartedRoute | None:
-    parted = [
-        PartedRoute.of(run.route.label, m.parting, task.scene.contacts[m.parting.contact].name)
-        for run, m in zip(found.runs, found.matchings, strict=True)
-        if m.parting is not None
-    ]
-    return min(parted, key=lambda parting: parting.t, default=None)
+    first = min(found.partings, key=lambda parting: parting[1].t, default=None)
+    if first is None:
+        return None
+    route, pair, other = first
+    kind = (pair.reference or pair.found).kind.value
+    name = task.scene.contacts[pair.contact].name
+    return PartedRoute(route.label, pair.t, name, kind, instead_of(pair, other.events))
 
 
 def _digits(task: Task, found: RoutesCompared, conditions: Conditioning) -> DigitsOverTime:
