@@ -23,6 +23,7 @@ from itertools import pairwise
 import numpy as np
 
 from eventpound.accuracy.estimate import estimate_of, impacts_apart, rests_of_both
+from eventpound.accuracy.sequences import KINDS, weights_for
 from eventpound.errors import ComputationError
 from eventpound.motion.pulses import Cosine, Sine, TypeC
 from eventpound.response import Response
@@ -38,6 +39,7 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.scene.check import check_scene
+from eventpound.score import pair_events
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from tests.benchmarks.agreement import TooLongError
@@ -128,7 +130,10 @@ def differing(one: Response, other: Response, times: float) -> set[int]:
     allowed = times * UNSAID
     apart = impacts_apart(*events, len(one.scene.contacts))
     found = {int(j) for j in np.flatnonzero(apart > allowed)}
-    for j, rests in enumerate(rests_of_both(*events, one.task, allowed)):
+    length = one.task.end - one.task.start
+    paired = pair_events(*events, length, KINDS, weights=weights_for(allowed))
+    contacts = len(one.scene.contacts)
+    for j, rests in enumerate(rests_of_both(*events, paired, contacts, one.task.end)):
         off = abs(rests.our_time - rests.their_time) / one.task.end
         if rests.ours != rests.theirs or off > allowed:
             found.add(j)
