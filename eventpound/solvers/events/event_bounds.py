@@ -64,10 +64,18 @@ def _bounds(i: int, at: Places, a: Observed, b: Observed, h: float) -> tuple[flo
     """Bounds of quantity i in the step, by the Bernstein coefficients."""
     x, y = motion_of(i, at, a), motion_of(i, at, b)
     if is_motion(i, at):
-        quintic = quintic_bernstein(x, y, h)
-        return min(quintic), max(quintic)
+        return _quintic_bounds(x, y, h)
     cubic = cubic_bernstein(x[0], x[1], y[0], y[1], h)
     return min(cubic), max(cubic)
+
+
+@kernel
+def _quintic_bounds(
+    x: tuple[float, float, float], y: tuple[float, float, float], h: float
+) -> tuple[float, float]:
+    """Bounds of what has a value and two rates x at the start of the step and y at its end."""
+    quintic = quintic_bernstein(x, y, h)
+    return min(quintic), max(quintic)
 
 
 @kernel
@@ -107,12 +115,14 @@ def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, foun
 
 @kernel
 def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> bool:
-    any_found, at = False, watched.at
+    any_found = False
     for link in range(found.kink.size):
         found.kink[link] = False
         if watched.kink_low[link] == -np.inf and watched.kink_high[link] == np.inf:
             continue
-        low, high = _bounds(at.elongation + link, at, a, b, h)
+        # Of contact elements, which are links too, no extremes are kept.
+        x0, x1 = a.elongation[:, link], b.elongation[:, link]
+        low, high = _quintic_bounds((x0[0], x0[1], x0[2]), (x1[0], x1[1], x1[2]), h)
         doubt = DOUBT * (high - low)
         found.kink[link] = low - doubt < watched.kink_low[link]
         found.kink[link] = found.kink[link] or high + doubt > watched.kink_high[link]
