@@ -14,7 +14,7 @@ from eventpound.accuracy.routes import REFERENCE, Route, RouteRun
 from eventpound.accuracy.sequences import KINDS, parted, touches, weights_for
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
-from eventpound.score import Difference, Pair, Truth, difference
+from eventpound.score import UNIT_OF_TIME, Difference, Pair, Truth, difference
 from eventpound.solvers.base import Recording, Task
 
 AS_GOOD = 1e-14
@@ -73,7 +73,7 @@ def compare_routes(
     truth = Truth(
         quantities_of(task, stated, moments, events=True),
         stated.events,
-        task.end - task.start,
+        UNIT_OF_TIME * (task.end - task.start),
         weights=weights_for(),
         of_events=("t", *OF_IMPACTS),
     )

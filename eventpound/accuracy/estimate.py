@@ -21,7 +21,7 @@ from eventpound.accuracy.sequences import KINDS, instead_of, parted, weights_for
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
-from eventpound.score import Paired, Truth, difference
+from eventpound.score import UNIT_OF_TIME, Paired, Truth, difference
 from eventpound.simulation import Progress
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind
@@ -106,7 +106,7 @@ def estimate_errors(
     own = Truth(
         quantities_of(task, recording),
         recording.events,
-        task.end - task.start,
+        UNIT_OF_TIME * (task.end - task.start),
         weights=weights_for(allowed_part(task.rtol)),
     )
     found = difference(own, values_of(task.scene, other), other.events, KINDS)

@@ -3,8 +3,8 @@
 A certificate and an estimate ask of two exact solutions whether they are the same, so that any
 difference counts that rounding does not make. Rounding makes and unmakes the last impacts of a
 cascade, softer than `SOFT` of the fastest; rests that follow such impacts alone, with their ends;
-flights that take no time; and the limit of a cascade after which nothing rests. Everything is
-paired, however far apart; what weighs more than one must have a partner.
+flights that take no time; and the limit of a cascade after which nothing rests. What weighs more
+than one must have a partner.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.score import Pair, Paired, Weights
+from eventpound.score import UNIT_OF_TIME, Pair, Paired, Weights
 from eventpound.solvers.base import ENDS_OF_REST, Event, EventKind
 
 SOFT = 1e-6
@@ -130,7 +130,8 @@ def weights_for(missing: float = MARGIN * SOFT) -> Weights:
     ) -> Iterator[tuple[Event, float]]:
         least = fastest * (missing if kind == EventKind.IMPACT else MARGIN * SOFT)
         kinds = ENDS_OF_REST if kind == EventKind.DETACHMENT else (kind,)
-        for event, speed in zip(events, speeds_of_events(events, BRIEF * unit), strict=True):
+        brief = BRIEF * unit / UNIT_OF_TIME
+        for event, speed in zip(events, speeds_of_events(events, brief), strict=True):
             if event.kind in kinds:
                 yield event, float(speed) / least
 
@@ -147,11 +148,14 @@ def parted(paired: Paired) -> dict[int, Pair]:
 
 
 def instead_of(pair: Pair, paired: Paired) -> str:
-    """The kind of what the other run has in the place of an event; "nothing" without one."""
+    """The kind of what the other run has in the place of an event; "nothing" without one.
+
+    One of the same kind would have been its partner, were it not too far away.
+    """
     others = (
         (other.found if pair.reference else other.reference)
         for other in paired.alone
-        if other.contact == pair.contact
+        if other.contact == pair.contact and other.kind != pair.kind
     )
     return next((event.kind.value for event in others if event is not None), "nothing")
 

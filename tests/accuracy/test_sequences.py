@@ -11,7 +11,7 @@ from eventpound.accuracy.sequences import (
     touches,
     weights_for,
 )
-from eventpound.score import pair_events
+from eventpound.score import UNIT_OF_TIME, pair_events
 from eventpound.solvers.base import Event, EventKind
 
 
@@ -24,7 +24,7 @@ class _Matching(NamedTuple):
 
 def _matched(ours: list[Event], theirs: list[Event]) -> _Matching:
     """Rows of both in runs of 100 s; time, contact and kinds of the first parting."""
-    paired = pair_events(ours, theirs, 100.0, KINDS, weights=weights_for())
+    paired = pair_events(ours, theirs, 100.0 * UNIT_OF_TIME, KINDS, weights=weights_for())
     one, other = ({id(event): row for row, event in enumerate(side)} for side in (ours, theirs))
     both = [pair for pair in paired.pairs if not math.isnan(pair.shift)]
     first = parted(paired)
@@ -82,6 +82,13 @@ def test_first_difference_is_named_and_the_rest_taken_up_again():
     matching = _matched(ours, theirs)
     assert matching.pairs == {0: 0, 4: 1}
     assert matching.parting == (2.0, 0, "impact", "nothing")
+
+
+def test_runs_part_where_one_lacks_an_impact_that_it_has_more_much_later():
+    """Paired one after the other, all between the two would be the next one's."""
+    beats = [(float(t), IMPACT, 0, 1.0) for t in range(1, 91)]
+    ours, theirs = _events(*beats[:9], *beats[10:]), _events(*beats[:79], *beats[80:])
+    assert _matched(ours, theirs).parting == (10.0, 0, "impact", "nothing")
 
 
 def test_a_resting_contact_is_as_loud_as_the_impact_it_takes_part_in():

@@ -39,7 +39,7 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.scene.check import check_scene
-from eventpound.score import pair_events
+from eventpound.score import UNIT_OF_TIME, pair_events
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from tests.benchmarks.agreement import TooLongError
@@ -130,8 +130,8 @@ def differing(one: Response, other: Response, times: float) -> set[int]:
     allowed = times * UNSAID
     apart = impacts_apart(*events, len(one.scene.contacts))
     found = {int(j) for j in np.flatnonzero(apart > allowed)}
-    length = one.task.end - one.task.start
-    paired = pair_events(*events, length, KINDS, weights=weights_for(allowed))
+    unit = UNIT_OF_TIME * (one.task.end - one.task.start)
+    paired = pair_events(*events, unit, KINDS, weights=weights_for(allowed))
     contacts = len(one.scene.contacts)
     for j, rests in enumerate(rests_of_both(*events, paired, contacts, one.task.end)):
         off = abs(rests.our_time - rests.their_time) / one.task.end
