@@ -23,12 +23,7 @@ from eventpound.cli.progress import Watch
 from eventpound.scene import Scene
 from tests.motion.readers.writers import at2, motion
 
-ENDLESS = """\
-title = "longer than anybody waits"
-[excitation]
-kind = "harmonic"
-amplitude = "0.4 g"
-period = "0.8 s"
+DECK = """\
 [[body]]
 name = "deck"
 mass = "1000 t"
@@ -42,10 +37,17 @@ between = ["deck", "barrier"]
 name = "joint"
 gap = "1 cm"
 restitution = 0.7
-[run]
-duration = "{duration} s"
+"""
+ENDLESS = f"""\
+title = "longer than anybody waits"
+[excitation]
+kind = "harmonic"
+amplitude = "0.4 g"
+period = "0.8 s"
+{DECK}[run]
+duration = "{{duration}} s"
 output_step = "0.1 s"
-avoiding_gap = {avoiding_gap}
+avoiding_gap = {{avoiding_gap}}
 """
 SET = ["events.csv", "history.csv", "manifest.json", "summary.json"]
 SIGNALS = [signal.SIGINT, signal.SIGTERM]

@@ -25,7 +25,7 @@ from eventpound.errors import InputError
 from eventpound.input_files import matching_files, read_bytes
 from eventpound.results import write_together
 from eventpound.study.table import read_suite
-from tests.cli.test_hostile import ENDLESS
+from tests.cli.test_hostile import DECK, ENDLESS
 from tests.motion.readers.writers import at2, motion
 
 STUDY = """\
@@ -51,24 +51,8 @@ measure = "pi.omega_s"
 demand = "pi_um"
 records = "run"
 """
-SUITE = """\
-[excitation]
-kind = "record"
-suite = "{pattern}"
-[[body]]
-name = "deck"
-mass = "1000 t"
-[[spring]]
-between = ["ground", "deck"]
-name = "piers"
-law = "linear"
-period = "0.5 s"
-[[contact]]
-between = ["deck", "barrier"]
-name = "joint"
-gap = "1 cm"
-restitution = 0.7
-"""
+SUITE = '[excitation]\nkind = "record"\n{read}\n' + DECK
+OF_RECORD = SUITE.format(read='file = "records/0.AT2"')
 OUTSIDE = ["../evil", "/../../evil", "/tmp/evil", "a/b", "..", ".hidden", "a\\u0000b", "a\\nb", " "]
 
 
@@ -199,7 +183,7 @@ def suite(folder: Path, pattern: str, records: int = 3) -> Path:
     for number in range(records):
         text = at2(motion(60, 0.1, seed=number), 0.1).text
         (folder / "records" / f"{number}.AT2").write_text(text)
-    (folder / "case.toml").write_text(SUITE.format(pattern=pattern))
+    (folder / "case.toml").write_text(SUITE.format(read=f'suite = "{pattern}"'))
     return folder / "results"
 
 
@@ -261,9 +245,7 @@ def test_what_is_no_pattern(pattern, tmp_path):
 
 @pytest.mark.parametrize("key", ["seed", "first", "count"])
 def test_synthetic_motions_without_number(key, tmp_path, capsys):
-    text = SUITE.format(pattern="").replace(
-        'suite = ""', f"synthetic = {{ {key} = 9223372036854775808 }}"
-    )
+    text = SUITE.format(read=f"synthetic = {{ {key} = 9223372036854775808 }}")
     (tmp_path / "case.toml").write_text(text)
     assert main(["check", str(tmp_path)]) == 2
     assert "a whole number from 1 to" in capsys.readouterr().err
@@ -343,8 +325,7 @@ def open_folder() -> Iterator[Path]:
         folder = Path(name)
         folder.chmod(0o755)
         suite(folder, "records/*")
-        text = SUITE.format(pattern="").replace('suite = ""', 'file = "records/0.AT2"')
-        (folder / "case.toml").write_text(text)
+        (folder / "case.toml").write_text(OF_RECORD)
         yield folder
 
 
@@ -419,8 +400,7 @@ def test_full_disk_of_other_commands(command, tmp_path, capsys):
         "synthetic": ["records", "synthetic", str(out), "--count", "2"],
     }[command]
     if command in ("compare", "export"):
-        text = SUITE.format(pattern="").replace('suite = ""', 'file = "records/0.AT2"')
-        (tmp_path / "case.toml").write_text(text)
+        (tmp_path / "case.toml").write_text(OF_RECORD)
     with disk_of(300):
         assert main(words) == 2
     assert "File too large" in capsys.readouterr().err
@@ -465,8 +445,7 @@ def test_manifests_that_somebody_has_edited(kind, content, tmp_path, capsys):
         return
     suite(tmp_path, "records/*")
     if kind == "run":
-        text = SUITE.format(pattern="").replace('suite = ""', 'file = "records/0.AT2"')
-        (tmp_path / "case.toml").write_text(text)
+        (tmp_path / "case.toml").write_text(OF_RECORD)
     assert main(["run", str(tmp_path), "--no-figures"]) == 0
     name = "manifest.json" if kind == "run" else "suite.json"
     (results / name).write_text(content, encoding="latin-1")
@@ -478,8 +457,7 @@ def test_manifests_that_somebody_has_edited(kind, content, tmp_path, capsys):
 @pytest.mark.parametrize("content", MANIFESTS, ids=range(len(MANIFESTS)))
 def test_certificates_that_somebody_has_edited(content, tmp_path, capsys):
     suite(tmp_path, "")
-    text = SUITE.format(pattern="").replace('suite = ""', 'file = "records/0.AT2"')
-    (tmp_path / "case.toml").write_text(text)
+    (tmp_path / "case.toml").write_text(OF_RECORD)
     (tmp_path / "certificate.json").write_text(content, encoding="latin-1")
     assert main(["compare", str(tmp_path), "--rtol", "1e-4", "--repeats", "1"]) == 2
     assert "run eventpound verify again" in capsys.readouterr().err
