@@ -27,6 +27,23 @@ impact is missed or extra; what is found of other events decides no level. Exit 
 answer was judged, 2 where it cannot be.
 """
 
+# Chapters, most of which stand on those before them:
+#
+#     the problem                     what is given, and the certified answer
+#     the answer                      a program's files as a motion with events
+#     impacts in the rows             where none are listed
+#     which event is which            pairs of events of two runs
+#     how far two motions are apart   distances of their graphs
+#     the difference of two runs      numbers, events, motions
+#     numbers of an answer            extremes, final values, stated moments, overlap
+#     energy from nowhere
+#     the card of an answer           what is found of it, and which levels that passes
+#     a card in words
+#     pages and drawings              HTML and SVG
+#     the page of a card
+#     programs on many problems       what the package says of many cards
+#     the command
+
 from __future__ import annotations
 
 import argparse
@@ -35,7 +52,7 @@ import html
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -488,7 +505,28 @@ def _nearest(t: Floats, moments: Floats) -> Floats:
     return np.where(moments - t[right - 1] < t[right] - moments, right - 1, right)
 
 
-# ---------------------------------------------------------------- impacts
+# ---------------------------------------------------------------- impacts in the rows
+
+
+def impacts_of(problem: Problem, motion: Motion) -> list[Event] | None:
+    """Impacts of a motion, listed or read off its velocities; None where nobody knows."""
+    if "impact" in motion.reported:
+        return [event for event in motion.events if event.kind == "impact"]
+    return read_off(problem, motion)
+
+
+def read_off(problem: Problem, motion: Motion) -> list[Event] | None:
+    """Impacts read off the velocities of a motion; None where it has none."""
+    if motion.v is None:
+        return None
+    gaps, rates = problem.gaps(motion.u), problem.rates(motion.v)
+    length = float(np.abs(motion.u).max(initial=0.0))
+    found = [
+        Event("impact", t, j, before, after)
+        for j in range(gaps.shape[1])
+        for t, before, after in turns(motion.t, gaps[:, j], rates[:, j], length)
+    ]
+    return sorted(found, key=lambda impact: impact.t)
 
 
 def turns(t: Floats, gap: Floats, rate: Floats, length: float) -> list[tuple[float, float, float]]:
@@ -560,95 +598,7 @@ def _in_contact(t: Floats, gap: Floats, rate: Floats, k: int, slow: float) -> tu
     return entry, leaving
 
 
-def pair_times(reference: Floats, found: Floats, window: float) -> list[tuple[int, int]]:
-    """Pair the times of two sequences that do not decrease.
-
-    Of all pairings that keep the order and pair no two times further apart than the window w,
-    the one with the least sum of shifts and w/2 for each unpaired time, by dynamic programming
-    (Needleman and Wunsch 1970).
-
-    Parameters
-    ----------
-    reference, found : ndarray, shape (n,), (m,)
-        Times (s).
-    window : float
-        w (s), positive.
-    """
-    if reference.size == found.size and np.abs(reference - found).sum() <= window:
-        # Anything else leaves one of each alone.
-        return [(i, i) for i in range(found.size)]
-    pairs = []
-    every = np.sort(np.concatenate((reference, found)))
-    starts = every[np.flatnonzero(np.diff(every, prepend=-np.inf) > window)]
-    a, b = (np.append(np.searchsorted(x, starts), x.size) for x in (reference, found))
-    for i in range(starts.size):
-        # Stretches between which nothing can be paired.
-        x, y = reference[a[i] : a[i + 1]], found[b[i] : b[i + 1]]
-        if x.size * y.size > MOST_COSTS and window > np.finfo(float).eps * y[-1]:
-            near = pair_times(x, y, 0.1 * window)
-        else:
-            near = _cheapest(np.abs(x[:, None] - y), window)
-        pairs += [(int(a[i]) + j, int(b[i]) + k) for j, k in near]
-    return pairs
-
-
-def _cheapest(shifts: Floats, window: float) -> list[tuple[int, int]]:
-    """Pairs of least cost for the shifts of all pairs, shape (n, m)."""
-    cost = _costs(shifts, window)
-    i, j = shifts.shape
-    pairs = []
-    while i > 0 and j > 0:
-        together = cost[i - 1, j - 1] + shifts[i - 1, j - 1]
-        if together <= min(cost[i - 1, j], cost[i, j - 1]) + 0.5 * window:
-            pairs.append((i - 1, j - 1))
-            i, j = i - 1, j - 1
-        elif cost[i - 1, j] <= cost[i, j - 1]:
-            i -= 1
-        else:
-            j -= 1
-    return pairs[::-1]
-
-
-def _costs(shifts: Floats, window: float) -> Floats:
-    """Least cost of pairing the first i with the first j times, shape (n + 1, m + 1).
-
-    ``c_ij = min(c_(i-1)(j-1) + shift, c_(i-1)j + w/2, c_i(j-1) + w/2)``; a shift above w
-    never pays. Row by row, the last alternative is a running minimum.
-    """
-    alone = 0.5 * window
-    n, m = shifts.shape
-    steps = alone * np.arange(m + 1)
-    cost = np.empty((n + 1, m + 1))
-    cost[0] = steps
-    for i in range(1, n + 1):
-        best = cost[i - 1] + alone
-        best[1:] = np.minimum(best[1:], cost[i - 1, :-1] + shifts[i - 1])
-        cost[i] = np.minimum.accumulate(best - steps) + steps
-    return cost
-
-
-def impacts_of(problem: Problem, motion: Motion) -> list[Event] | None:
-    """Impacts of a motion, listed or read off its velocities; None where nobody knows."""
-    if "impact" in motion.reported:
-        return [event for event in motion.events if event.kind == "impact"]
-    return read_off(problem, motion)
-
-
-def read_off(problem: Problem, motion: Motion) -> list[Event] | None:
-    """Impacts read off the velocities of a motion; None where it has none."""
-    if motion.v is None:
-        return None
-    gaps, rates = problem.gaps(motion.u), problem.rates(motion.v)
-    length = float(np.abs(motion.u).max(initial=0.0))
-    found = [
-        Event("impact", t, j, before, after)
-        for j in range(gaps.shape[1])
-        for t, before, after in turns(motion.t, gaps[:, j], rates[:, j], length)
-    ]
-    return sorted(found, key=lambda impact: impact.t)
-
-
-# ---------------------------------------------------------------- the difference of two runs
+# ---------------------------------------------------------------- which event is which
 
 
 @dataclass(frozen=True, slots=True)
@@ -842,12 +792,6 @@ def _pair_within(
     return left, right, [(a[m][0], b[n][0], a[m][1]) for m, n in both]
 
 
-def _closing_speed(event: Any) -> float:
-    """Closing speed (m/s); where a program does not say it, it counts as fast."""
-    before = -event.gap_velocity_before
-    return math.inf if math.isnan(before) else before
-
-
 def weighed(
     kind: str, events: Sequence[Any], unit: float, fastest: float, covered: tuple[float, float]
 ) -> Iterator[tuple[Any, float]]:
@@ -871,6 +815,12 @@ def weighed(
                 yield event, math.inf
 
 
+def _closing_speed(event: Any) -> float:
+    """Closing speed (m/s); where a program does not say it, it counts as fast."""
+    before = -event.gap_velocity_before
+    return math.inf if math.isnan(before) else before
+
+
 def rests_of(events: Sequence[Any]) -> list[tuple[Any, Any]]:
     """First and last event of each rest; None for a beginning or an end that is not listed."""
     since: dict[int, Any] = {}
@@ -881,6 +831,76 @@ def rests_of(events: Sequence[Any]) -> list[tuple[Any, Any]]:
         elif event.kind in EVENTS["detachment"]:
             found.append((since.pop(event.contact, None), event))
     return found + [(began, None) for began in since.values()]
+
+
+def pair_times(reference: Floats, found: Floats, window: float) -> list[tuple[int, int]]:
+    """Pair the times of two sequences that do not decrease.
+
+    Of all pairings that keep the order and pair no two times further apart than the window w,
+    the one with the least sum of shifts and w/2 for each unpaired time, by dynamic programming
+    (Needleman and Wunsch 1970).
+
+    Parameters
+    ----------
+    reference, found : ndarray, shape (n,), (m,)
+        Times (s).
+    window : float
+        w (s), positive.
+    """
+    if reference.size == found.size and np.abs(reference - found).sum() <= window:
+        # Anything else leaves one of each alone.
+        return [(i, i) for i in range(found.size)]
+    pairs = []
+    every = np.sort(np.concatenate((reference, found)))
+    starts = every[np.flatnonzero(np.diff(every, prepend=-np.inf) > window)]
+    a, b = (np.append(np.searchsorted(x, starts), x.size) for x in (reference, found))
+    for i in range(starts.size):
+        # Stretches between which nothing can be paired.
+        x, y = reference[a[i] : a[i + 1]], found[b[i] : b[i + 1]]
+        if x.size * y.size > MOST_COSTS and window > np.finfo(float).eps * y[-1]:
+            near = pair_times(x, y, 0.1 * window)
+        else:
+            near = _cheapest(np.abs(x[:, None] - y), window)
+        pairs += [(int(a[i]) + j, int(b[i]) + k) for j, k in near]
+    return pairs
+
+
+def _cheapest(shifts: Floats, window: float) -> list[tuple[int, int]]:
+    """Pairs of least cost for the shifts of all pairs, shape (n, m)."""
+    cost = _costs(shifts, window)
+    i, j = shifts.shape
+    pairs = []
+    while i > 0 and j > 0:
+        together = cost[i - 1, j - 1] + shifts[i - 1, j - 1]
+        if together <= min(cost[i - 1, j], cost[i, j - 1]) + 0.5 * window:
+            pairs.append((i - 1, j - 1))
+            i, j = i - 1, j - 1
+        elif cost[i - 1, j] <= cost[i, j - 1]:
+            i -= 1
+        else:
+            j -= 1
+    return pairs[::-1]
+
+
+def _costs(shifts: Floats, window: float) -> Floats:
+    """Least cost of pairing the first i with the first j times, shape (n + 1, m + 1).
+
+    ``c_ij = min(c_(i-1)(j-1) + shift, c_(i-1)j + w/2, c_i(j-1) + w/2)``; a shift above w
+    never pays. Row by row, the last alternative is a running minimum.
+    """
+    alone = 0.5 * window
+    n, m = shifts.shape
+    steps = alone * np.arange(m + 1)
+    cost = np.empty((n + 1, m + 1))
+    cost[0] = steps
+    for i in range(1, n + 1):
+        best = cost[i - 1] + alone
+        best[1:] = np.minimum(best[1:], cost[i - 1, :-1] + shifts[i - 1])
+        cost[i] = np.minimum.accumulate(best - steps) + steps
+    return cost
+
+
+# ---------------------------------------------------------------- how far two motions are apart
 
 
 @dataclass(frozen=True, slots=True)
@@ -1050,6 +1070,9 @@ def _from_segments(points: Floats, curve: Floats, k: Floats) -> Floats:
     for p, q, h in zip(points, start, step, strict=True):
         total = total + (p - q - s * h) ** 2
     return np.sqrt(total)
+
+
+# ---------------------------------------------------------------- the difference of two runs
 
 
 @dataclass(frozen=True, slots=True)
@@ -1229,7 +1252,205 @@ def difference(
     )
 
 
-# ---------------------------------------------------------------- judging
+# ---------------------------------------------------------------- numbers of an answer
+
+
+def _values(
+    problem: Problem, history: Motion, crests: _Crests
+) -> tuple[dict[str, float], list[str]]:
+    """Numbers of a history by their names in the answer, and what it cannot say."""
+    values: dict[str, float] = {}
+    left_out = []
+    scale = {row[0]: row[4] for row in problem.answer["quantities"]}
+    coarse = []
+    for i, body in enumerate(problem.bodies):
+        size = scale.get(f"peaks.{body}.max", scale.get(f"peaks.{body}.min", problem.length))
+        if crests.beyond[i] > LEVELS["engineering"] * size:
+            coarse.append(body)
+            continue
+        values[f"peaks.{body}.max"], values[f"peaks.{body}.min"] = (
+            float(crests.highest[i]),
+            float(crests.lowest[i]),
+        )
+        for key, when in zip(("t_max", "t_min"), crests.when, strict=True):
+            values[f"peaks.{body}.{key}"] = float(when[i])
+    if coarse:
+        left_out.append(
+            f"peaks of {', '.join(coarse[:5])}: the rows are too far apart to tell them; "
+            "judged are the final values, the history at the stated moments and, with velocities, "
+            "the impacts"
+        )
+    for i, body in enumerate(problem.bodies):
+        values[f"final.{body}.u"] = float(history.u[-1, i])
+        if history.v is not None:
+            values[f"final.{body}.v"] = float(history.v[-1, i])
+    if history.v is None:
+        left_out.append("final velocities: there are no columns v.<body>")
+    for k, column in enumerate(problem.z_columns):
+        if history.z is not None:
+            values[f"final.{column[2:]}.z"] = float(history.z[-1, k])
+    if problem.z_columns and history.z is None:
+        left_out.append(f"hysteretic variables: there are no columns {problem.z_columns[0]} ...")
+    moments = np.array(problem.given["moments"])
+    for k, row in enumerate(_nearest(history.t, moments)):
+        for i, body in enumerate(problem.bodies):
+            values[f"history.{k}.{body}"] = float(history.u[row, i])
+    return values, left_out
+
+
+@dataclass(frozen=True)
+class _Crests:
+    """Extremes of every body, shape (N,), and by how much rows alone miss them (m)."""
+
+    highest: Floats
+    lowest: Floats
+    when: tuple[Floats, Floats]
+    beyond: Floats
+
+
+def _crests(history: Motion, impacts: list[Event] | None) -> _Crests:
+    """Extremes of the rows and of the cubics between them, but where an impact lies between."""
+    t, u, v = history.t, history.u, history.v
+    high, low = np.argmax(u, axis=0), np.argmin(u, axis=0)
+    columns = np.arange(u.shape[1])
+    highest, lowest = u[high, columns].copy(), u[low, columns].copy()
+    when = (t[high].copy(), t[low].copy())
+    beyond = np.zeros(u.shape[1])
+    if v is None:
+        for i in columns:
+            beyond[i] = max(_sag(t, u[:, i], int(high[i])), _sag(t, u[:, i], int(low[i])))
+        return _Crests(highest, lowest, when, beyond)
+    h = np.diff(t)
+    struck = _struck(t, impacts)
+    for i in columns:
+        turning = np.flatnonzero((h > 0.0) & ~struck & (v[:-1, i] * v[1:, i] < 0.0))
+        for k in turning:
+            s, value = _crest(h[k], u[k, i], u[k + 1, i], v[k, i], v[k + 1, i])
+            up = v[k, i] > 0.0
+            best = highest if up else lowest
+            if value > best[i] if up else value < best[i]:
+                beyond[i] = max(beyond[i], abs(value - u[[k, k + 1], i]).max())
+                best[i], when[0 if up else 1][i] = value, t[k] + s * h[k]
+    # A row lies below a crest by θ²/8 of it at least, on one side; the cubic errs by θ⁴/384.
+    size = np.maximum(np.abs(highest), np.abs(lowest))
+    beyond = beyond**2 / (6.0 * np.where(size > 0.0, size, 1.0))
+    return _Crests(highest, lowest, when, beyond)
+
+
+def _struck(t: Floats, impacts: list[Event] | None) -> Floats:
+    """Intervals between rows, shape (n - 1,), in or beside which an impact lies."""
+    struck = np.zeros(t.size - 1, dtype=bool)
+    for impact in impacts or []:
+        at = int(np.searchsorted(t, impact.t, side="right")) - 1
+        struck[max(at - 1, 0) : at + 2] = True
+    return struck
+
+
+def _crest(h: float, u0: float, u1: float, v0: float, v1: float) -> tuple[float, float]:
+    """Where, in parts of the step h, and how high the cubic turns whose ends move against."""
+    d = (u1 - u0) / h
+    c2, c3 = h * (3.0 * d - 2.0 * v0 - v1), h * (v0 + v1 - 2.0 * d)
+    # h v0 + 2 c2 s + 3 c3 s^2 = 0, the root between 0 and 1, without cancellation
+    root = math.sqrt(max(c2 * c2 - 3.0 * c3 * h * v0, 0.0))
+    q = -(c2 + math.copysign(root, c2))
+    roots = [q / (3.0 * c3) if c3 else math.inf, h * v0 / q if q else math.inf]
+    s = min((r for r in roots if 0.0 <= r <= 1.0), default=0.5)
+    return s, u0 + s * (h * v0 + s * (c2 + s * c3))
+
+
+def _sag(t: Floats, u: Floats, k: int) -> float:
+    """What a crest beside a row may exceed it by (m): θ²/8 of it, by how far its neighbours lie."""
+    sides = [abs(u[k] - u[j]) for j in (k - 1, k + 1) if 0 <= j < u.size and t[j] != t[k]]
+    return float(sum(sides)) / 8.0
+
+
+def _penetration(problem: Problem, history: Motion) -> float:
+    return abs(float(problem.gaps(history.u).min(initial=0.0))) / problem.length
+
+
+# ---------------------------------------------------------------- energy from nowhere
+
+
+def _created_energy(
+    problem: Problem, history: Motion, impacts: list[Event] | None
+) -> tuple[float | None, str]:
+    """The largest rise of kinetic and elastic energy less all work done, part of its largest.
+
+    Rows with an overlap are left out, where a contact element may hold energy of its own, and
+    those beside an impact, where a program may write a velocity between the two; and it is looked
+    at anew where the ground does between two rows what they do not show.
+    """
+    t, u, v = history.t, history.u, history.v
+    springs = problem.given["springs"]
+    if v is None:
+        return None, "there are no velocities"
+    if any(springs["strength"]) and history.z is None:
+        return None, "there are no hysteretic variables"
+    x = u @ problem.directions - np.array(springs["offset"])
+    k = np.where(x < 0.0, springs["compression"], springs["extension"])
+    stored = 0.5 * (v * v) @ problem.array("M") + 0.5 * (k * x * x).sum(axis=1)
+    done, unsure = _work(problem, history, v)
+    apart = (problem.gaps(u) >= -CLOSED * problem.length).all(axis=1)
+    struck = _struck(t, impacts)
+    apart[:-1] &= ~struck
+    apart[1:] &= ~struck
+    most = float(stored.max()) or 1.0
+    if not apart.any():
+        return None, "impacts or overlaps in every row"
+    if unsure[-1] > most:
+        return None, "the rows are too far apart"
+    kept = (stored + done - unsure)[apart]
+    parts = np.split(kept, np.searchsorted(np.flatnonzero(apart), _unseen(problem, t)))
+    rise = max(float(np.max(part - np.minimum.accumulate(part), initial=0.0)) for part in parts)
+    return rise / most, ""
+
+
+def _work(problem: Problem, history: Motion, v: Floats) -> tuple[Floats, Floats]:
+    """Work against ground, dashpots and hysteresis up to every row, and what it may be off by (J).
+
+    By Simpson's rule on the cubics between the rows; off by a tenth of what the trapezoid rule
+    makes of it otherwise.
+    """
+    t, u, z = history.t, history.u, history.z
+    yielding = problem.directions[:, problem.hysteretic]
+    strength = np.array(problem.given["springs"]["strength"])[problem.hysteretic]
+
+    def power(t: Floats, v: Floats, z: Floats | None) -> Floats:
+        p = problem.ground(t) * (v @ problem.array("M"))
+        p = p + np.einsum("ni,ij,nj->n", v, problem.array("C"), v)
+        return p if z is None else p + ((v @ yielding) * z) @ strength
+
+    first = np.flatnonzero(np.diff(t) > 0.0)
+    last = first + 1
+    h = t[last] - t[first]
+    v_mid = 1.5 * (u[last] - u[first]) / h[:, None] - 0.25 * (v[first] + v[last])
+    z_mid = None if z is None else 0.5 * (z[first] + z[last])
+    # A jump of the ground at a row belongs to the other side of it.
+    begins, ends = (
+        power(t[rows] + side * 1e-9 * h, v[rows], None if z is None else z[rows])
+        for rows, side in ((first, 1.0), (last, -1.0))
+    )
+    middle = power(0.5 * (t[first] + t[last]), v_mid, z_mid)
+    simpson = h * (begins + 4.0 * middle + ends) / 6.0
+    sums = np.zeros((2, t.size))
+    sums[0, last] = simpson
+    sums[1, last] = 0.1 * np.abs(simpson - 0.5 * h * (begins + ends))
+    return np.cumsum(sums[0]), np.cumsum(sums[1])
+
+
+def _unseen(problem: Problem, t: Floats) -> Floats:
+    """Rows before which the ground does what a parabola through three of its values misses."""
+    parts = (1e-9, 0.25, 0.5, 0.75, 1.0 - 1e-9)
+    at = [problem.ground(t[:-1] + part * np.diff(t)) for part in parts]
+    first, near, middle, far, last = at
+    off = np.maximum(
+        np.abs(near - (3.0 * first + 6.0 * middle - last) / 8.0),
+        np.abs(far - (3.0 * last + 6.0 * middle - first) / 8.0),
+    )
+    return np.flatnonzero(off > CREATED * np.max(np.abs(at), initial=0.0)) + 1
+
+
+# ---------------------------------------------------------------- the card of an answer
 
 
 @dataclass
@@ -1366,139 +1587,6 @@ def judge(problem: Problem, history: Motion, seconds: float | None = None) -> Ca
     return card
 
 
-def _impact_rows(problem: Problem, motion: Motion) -> list[dict[str, Any]]:
-    """Every impact of the answer beside that in the rows, with what restitution both come to."""
-
-    def row(event: Event | None) -> tuple[float | None, float | None, float | None]:
-        if event is None:
-            return None, None, None
-        before, after = event.gap_velocity_before, event.gap_velocity_after
-        return event.t, -before, -after / before if before < 0.0 else None
-
-    truth, contacts = problem.truth, problem.given["contacts"]
-    found = read_off(problem, motion) or []
-    keys = ("t", "speed", "restitution")
-    return [
-        {"contact": contacts[p.contact]}
-        | dict(zip(keys, row(p.reference), strict=True))
-        | {f"{key}_found": x for key, x in zip(keys, row(p.found), strict=True)}
-        for p in pair_events(truth.events, found, truth.unit).listed
-    ]
-
-
-def _digits(part: float) -> float:
-    return round(min(max(-math.log10(max(part, 1e-16)), 0.0), 16.0) + 0.0, 1)
-
-
-@dataclass(frozen=True)
-class _Crests:
-    """Extremes of every body, shape (N,), and by how much rows alone miss them (m)."""
-
-    highest: Floats
-    lowest: Floats
-    when: tuple[Floats, Floats]
-    beyond: Floats
-
-
-def _crests(history: Motion, impacts: list[Event] | None) -> _Crests:
-    """Extremes of the rows and of the cubics between them, but where an impact lies between."""
-    t, u, v = history.t, history.u, history.v
-    high, low = np.argmax(u, axis=0), np.argmin(u, axis=0)
-    columns = np.arange(u.shape[1])
-    highest, lowest = u[high, columns].copy(), u[low, columns].copy()
-    when = (t[high].copy(), t[low].copy())
-    beyond = np.zeros(u.shape[1])
-    if v is None:
-        for i in columns:
-            beyond[i] = max(_sag(t, u[:, i], int(high[i])), _sag(t, u[:, i], int(low[i])))
-        return _Crests(highest, lowest, when, beyond)
-    h = np.diff(t)
-    struck = _struck(t, impacts)
-    for i in columns:
-        turning = np.flatnonzero((h > 0.0) & ~struck & (v[:-1, i] * v[1:, i] < 0.0))
-        for k in turning:
-            s, value = _crest(h[k], u[k, i], u[k + 1, i], v[k, i], v[k + 1, i])
-            up = v[k, i] > 0.0
-            best = highest if up else lowest
-            if value > best[i] if up else value < best[i]:
-                beyond[i] = max(beyond[i], abs(value - u[[k, k + 1], i]).max())
-                best[i], when[0 if up else 1][i] = value, t[k] + s * h[k]
-    # A row lies below a crest by θ²/8 of it at least, on one side; the cubic errs by θ⁴/384.
-    size = np.maximum(np.abs(highest), np.abs(lowest))
-    beyond = beyond**2 / (6.0 * np.where(size > 0.0, size, 1.0))
-    return _Crests(highest, lowest, when, beyond)
-
-
-def _struck(t: Floats, impacts: list[Event] | None) -> Floats:
-    """Intervals between rows, shape (n - 1,), in or beside which an impact lies."""
-    struck = np.zeros(t.size - 1, dtype=bool)
-    for impact in impacts or []:
-        at = int(np.searchsorted(t, impact.t, side="right")) - 1
-        struck[max(at - 1, 0) : at + 2] = True
-    return struck
-
-
-def _crest(h: float, u0: float, u1: float, v0: float, v1: float) -> tuple[float, float]:
-    """Where, in parts of the step h, and how high the cubic turns whose ends move against."""
-    d = (u1 - u0) / h
-    c2, c3 = h * (3.0 * d - 2.0 * v0 - v1), h * (v0 + v1 - 2.0 * d)
-    # h v0 + 2 c2 s + 3 c3 s^2 = 0, the root between 0 and 1, without cancellation
-    root = math.sqrt(max(c2 * c2 - 3.0 * c3 * h * v0, 0.0))
-    q = -(c2 + math.copysign(root, c2))
-    roots = [q / (3.0 * c3) if c3 else math.inf, h * v0 / q if q else math.inf]
-    s = min((r for r in roots if 0.0 <= r <= 1.0), default=0.5)
-    return s, u0 + s * (h * v0 + s * (c2 + s * c3))
-
-
-def _sag(t: Floats, u: Floats, k: int) -> float:
-    """What a crest beside a row may exceed it by (m): θ²/8 of it, by how far its neighbours lie."""
-    sides = [abs(u[k] - u[j]) for j in (k - 1, k + 1) if 0 <= j < u.size and t[j] != t[k]]
-    return float(sum(sides)) / 8.0
-
-
-def _values(
-    problem: Problem, history: Motion, crests: _Crests
-) -> tuple[dict[str, float], list[str]]:
-    """Numbers of a history by their names in the answer, and what it cannot say."""
-    values: dict[str, float] = {}
-    left_out = []
-    scale = {row[0]: row[4] for row in problem.answer["quantities"]}
-    coarse = []
-    for i, body in enumerate(problem.bodies):
-        size = scale.get(f"peaks.{body}.max", scale.get(f"peaks.{body}.min", problem.length))
-        if crests.beyond[i] > LEVELS["engineering"] * size:
-            coarse.append(body)
-            continue
-        values[f"peaks.{body}.max"], values[f"peaks.{body}.min"] = (
-            float(crests.highest[i]),
-            float(crests.lowest[i]),
-        )
-        for key, when in zip(("t_max", "t_min"), crests.when, strict=True):
-            values[f"peaks.{body}.{key}"] = float(when[i])
-    if coarse:
-        left_out.append(
-            f"peaks of {', '.join(coarse[:5])}: the rows are too far apart to tell them; "
-            "judged are the final values, the history at the stated moments and, with velocities, "
-            "the impacts"
-        )
-    for i, body in enumerate(problem.bodies):
-        values[f"final.{body}.u"] = float(history.u[-1, i])
-        if history.v is not None:
-            values[f"final.{body}.v"] = float(history.v[-1, i])
-    if history.v is None:
-        left_out.append("final velocities: there are no columns v.<body>")
-    for k, column in enumerate(problem.z_columns):
-        if history.z is not None:
-            values[f"final.{column[2:]}.z"] = float(history.z[-1, k])
-    if problem.z_columns and history.z is None:
-        left_out.append(f"hysteretic variables: there are no columns {problem.z_columns[0]} ...")
-    moments = np.array(problem.given["moments"])
-    for k, row in enumerate(_nearest(history.t, moments)):
-        for i, body in enumerate(problem.bodies):
-            values[f"history.{k}.{body}"] = float(history.u[row, i])
-    return values, left_out
-
-
 def _counts(problem: Problem, events: Paired, kind: str, known: bool) -> dict[str, Any]:
     """Events of a kind in numbers; shifts in parts of `UNIT_OF_TIME` of the run.
 
@@ -1526,87 +1614,28 @@ def _counts(problem: Problem, events: Paired, kind: str, known: bool) -> dict[st
     }  # fmt: skip
 
 
-def _penetration(problem: Problem, history: Motion) -> float:
-    return abs(float(problem.gaps(history.u).min(initial=0.0))) / problem.length
+def _impact_rows(problem: Problem, motion: Motion) -> list[dict[str, Any]]:
+    """Every impact of the answer beside that in the rows, with what restitution both come to."""
+
+    def row(event: Event | None) -> tuple[float | None, float | None, float | None]:
+        if event is None:
+            return None, None, None
+        before, after = event.gap_velocity_before, event.gap_velocity_after
+        return event.t, -before, -after / before if before < 0.0 else None
+
+    truth, contacts = problem.truth, problem.given["contacts"]
+    found = read_off(problem, motion) or []
+    keys = ("t", "speed", "restitution")
+    return [
+        {"contact": contacts[p.contact]}
+        | dict(zip(keys, row(p.reference), strict=True))
+        | {f"{key}_found": x for key, x in zip(keys, row(p.found), strict=True)}
+        for p in pair_events(truth.events, found, truth.unit).listed
+    ]
 
 
-def _created_energy(
-    problem: Problem, history: Motion, impacts: list[Event] | None
-) -> tuple[float | None, str]:
-    """The largest rise of kinetic and elastic energy less all work done, part of its largest.
-
-    Rows with an overlap are left out, where a contact element may hold energy of its own, and
-    those beside an impact, where a program may write a velocity between the two; and it is looked
-    at anew where the ground does between two rows what they do not show.
-    """
-    t, u, v = history.t, history.u, history.v
-    springs = problem.given["springs"]
-    if v is None:
-        return None, "there are no velocities"
-    if any(springs["strength"]) and history.z is None:
-        return None, "there are no hysteretic variables"
-    x = u @ problem.directions - np.array(springs["offset"])
-    k = np.where(x < 0.0, springs["compression"], springs["extension"])
-    stored = 0.5 * (v * v) @ problem.array("M") + 0.5 * (k * x * x).sum(axis=1)
-    done, unsure = _work(problem, history, v)
-    apart = (problem.gaps(u) >= -CLOSED * problem.length).all(axis=1)
-    struck = _struck(t, impacts)
-    apart[:-1] &= ~struck
-    apart[1:] &= ~struck
-    most = float(stored.max()) or 1.0
-    if not apart.any():
-        return None, "impacts or overlaps in every row"
-    if unsure[-1] > most:
-        return None, "the rows are too far apart"
-    kept = (stored + done - unsure)[apart]
-    parts = np.split(kept, np.searchsorted(np.flatnonzero(apart), _unseen(problem, t)))
-    rise = max(float(np.max(part - np.minimum.accumulate(part), initial=0.0)) for part in parts)
-    return rise / most, ""
-
-
-def _work(problem: Problem, history: Motion, v: Floats) -> tuple[Floats, Floats]:
-    """Work against ground, dashpots and hysteresis up to every row, and what it may be off by (J).
-
-    By Simpson's rule on the cubics between the rows; off by a tenth of what the trapezoid rule
-    makes of it otherwise.
-    """
-    t, u, z = history.t, history.u, history.z
-    yielding = problem.directions[:, problem.hysteretic]
-    strength = np.array(problem.given["springs"]["strength"])[problem.hysteretic]
-
-    def power(t: Floats, v: Floats, z: Floats | None) -> Floats:
-        p = problem.ground(t) * (v @ problem.array("M"))
-        p = p + np.einsum("ni,ij,nj->n", v, problem.array("C"), v)
-        return p if z is None else p + ((v @ yielding) * z) @ strength
-
-    first = np.flatnonzero(np.diff(t) > 0.0)
-    last = first + 1
-    h = t[last] - t[first]
-    v_mid = 1.5 * (u[last] - u[first]) / h[:, None] - 0.25 * (v[first] + v[last])
-    z_mid = None if z is None else 0.5 * (z[first] + z[last])
-    # A jump of the ground at a row belongs to the other side of it.
-    begins, ends = (
-        power(t[rows] + side * 1e-9 * h, v[rows], None if z is None else z[rows])
-        for rows, side in ((first, 1.0), (last, -1.0))
-    )
-    middle = power(0.5 * (t[first] + t[last]), v_mid, z_mid)
-    simpson = h * (begins + 4.0 * middle + ends) / 6.0
-    sums = np.zeros((2, t.size))
-    sums[0, last] = simpson
-    sums[1, last] = 0.1 * np.abs(simpson - 0.5 * h * (begins + ends))
-    return np.cumsum(sums[0]), np.cumsum(sums[1])
-
-
-def _unseen(problem: Problem, t: Floats) -> Floats:
-    """Rows before which the ground does what a parabola through three of its values misses."""
-    parts = (1e-9, 0.25, 0.5, 0.75, 1.0 - 1e-9)
-    at = [problem.ground(t[:-1] + part * np.diff(t)) for part in parts]
-    first, near, middle, far, last = at
-    off = np.maximum(
-        np.abs(near - (3.0 * first + 6.0 * middle - last) / 8.0),
-        np.abs(far - (3.0 * last + 6.0 * middle - first) / 8.0),
-    )
-    return np.flatnonzero(off > CREATED * np.max(np.abs(at), initial=0.0)) + 1
+def _digits(part: float) -> float:
+    return round(min(max(-math.log10(max(part, 1e-16)), 0.0), 16.0) + 0.0, 1)
 
 
 def _why_not(card: Card, level: float) -> list[str]:
@@ -1636,7 +1665,7 @@ def _why_not(card: Card, level: float) -> list[str]:
     return why + [f"{what} not judged" for what in missing]
 
 
-# ---------------------------------------------------------------- words
+# ---------------------------------------------------------------- a card in words
 
 
 def card_text(card: Card) -> str:
@@ -1698,7 +1727,7 @@ def event_words(card: Card) -> dict[str, str]:
     return said
 
 
-# ---------------------------------------------------------------- pictures
+# ---------------------------------------------------------------- pages and drawings
 
 COLOURS = {None: "#c0392b", "engineering": "#e08e0b", "research": "#2e86c1", "reference": "#1e8449"}
 LINES = ("#1f4e79", "#b9770e", "#7d3c98", "#117a65", "#922b21", "#5d6d7e", "#2e4053", "#af601a")
@@ -1848,6 +1877,109 @@ def _length_unit(size: float) -> tuple[float, str]:
     return (1.0, "m") if size >= 2.0 else (1e2, "cm") if size >= 0.02 else (1e3, "mm")
 
 
+# ---------------------------------------------------------------- the page of a card
+
+
+def card_page(problem: Problem, history: Motion, card: Card) -> str:
+    """A card as a page."""
+    worst = sorted(card.deviations, key=lambda q: -q.error)[:20]
+    rows = [
+        [
+            html.escape(q.quantity.name), f"{q.quantity.value:.6g}", f"{q.value:.6g}",
+            f"{q.value - q.quantity.value:+.1e}", q.quantity.unit, f"{q.error:.1e}",
+            f"{q.floor:.1e}", f"{_digits(max(q.error, q.floor)):.1f}",
+        ]
+        for q in worst
+    ]  # fmt: skip
+    head = ["quantity", "certified", "found", "error", "unit", "part of its scale", "floor",
+            "digits"]  # fmt: skip
+    parts = [
+        f"<p>{html.escape(problem.given['tests'])}</p>",
+        f"<p>Hardest level passed: {badge(card.passed)}</p>",
+        _verdicts(card),
+        digits_picture(card),
+        _facts(card),
+        "<h2>Motion</h2>",
+        motion_picture(problem, history),
+        '<p class="small">Lines: the answer judged. Circles: certified displacements. '
+        "Red: certified impacts. Green: certified rests.</p>",
+        *_impacts_part(problem, card),
+        "<h2>Events</h2>",
+        _events_table(problem, card),
+        "<h2>Largest errors</h2>",
+        table(head, rows, 1),
+    ]
+    return page(f"{card.problem}: score card", parts)
+
+
+def _verdicts(card: Card) -> str:
+    """Levels with everything that keeps an answer from them."""
+    rows = []
+    for level, reasons in card.reasons.items():
+        said = "".join(f"<li>{html.escape(why)}</li>" for why in reasons)
+        verdict = f"<ul>{said}</ul>" if reasons else "passed"
+        rows.append([level if reasons else badge(level), f"{LEVELS[level]:g}", verdict])
+    return table(["level", "error allowed", ""], rows)
+
+
+def _facts(card: Card) -> str:
+    """What is judged beside the numbers, and what is not judged."""
+    rows = [["deepest overlap", f"{card.penetration:.1e} of the largest displacement"]]
+    if card.energy is not None:
+        rows.append(["energy from nowhere", f"{card.energy:.1e} of the largest"])
+    if card.seconds is not None:
+        rows.append(["processor time", f"{card.seconds:.3g} s"])
+    rows += [["not judged", html.escape(what)] for what in card.not_judged]
+    return table(["beside the numbers", ""], rows)
+
+
+def _impacts_part(problem: Problem, card: Card, most: int = 40) -> list[str]:
+    """Every impact: when, how fast, and with which effective restitution."""
+    if not card.impact_rows:
+        return []
+
+    def cell(value: float | None, form: str, missing: str = "") -> str:
+        return missing if value is None else f"{value:{form}}"
+
+    rows = []
+    for r in card.impact_rows[:most]:
+        shift = None if None in (r["t"], r["t_found"]) else r["t_found"] - r["t"]
+        rows.append([
+            html.escape(r["contact"]),
+            cell(r["t"], ".5f", "extra"), cell(r["t_found"], ".5f", "missed"), cell(shift, "+.1e"),
+            cell(r["speed"], ".4g"), cell(r["speed_found"], ".4g"),
+            cell(r["restitution"], ".3f"), cell(r["restitution_found"], ".3f"),
+        ])  # fmt: skip
+    head = ["contact", "t (s)", "found (s)", "shift (s)", "closes with (m/s)", "found (m/s)",
+            "restitution", "found"]  # fmt: skip
+    more = len(card.impact_rows) - most
+    return [
+        "<h2>Impacts</h2>",
+        restitution_picture(problem, card),
+        '<p class="small">Effective restitution: how many times faster the gap opens than it '
+        "closed. Circles: certified; dots: in the rows of the answer judged, whatever else it "
+        "lists.</p>",
+        table(head, rows, 1),
+        f'<p class="small">and {more} more in the JSON file.</p>' if more > 0 else "",
+    ]
+
+
+def _events_table(problem: Problem, card: Card) -> str:
+    """Events by their kinds; those that are neither expected nor found are left out."""
+    rows = []
+    for kind, found in {"impact": card.impacts, **card.events}.items():
+        if not (found["expected"] or found["extra"]):
+            continue
+        unknown = found["matched"] is None
+        shift = found["largest_shift"]
+        late = "" if shift is None else f"{shift * UNIT_OF_TIME * problem.duration:.1e}"
+        counts = ["not reported"] if unknown else [f"{found['matched']}"]
+        counts += ["" if unknown else f"{found[key]}" for key in ("missed", "extra")]
+        rows.append([f"{kind}s", f"{found['expected']}", *counts, late])
+    head = ["events", "expected", "matched", "missed", "extra", "largest shift (s)"]
+    return table(head, rows, 1) if rows else "<p>None.</p>"
+
+
 def motion_picture(problem: Problem, history: Motion, most: int = 4) -> str:
     """Displacements of an answer, the certified ones as circles, impacts as ticks."""
     shown = problem.bodies[:most]
@@ -1917,146 +2049,7 @@ def digits_picture(card: Card) -> str:
     )
 
 
-def work_picture(lines: dict[str, list[Card]], width: float = 900.0, height: float = 380.0) -> str:
-    """Digits against time, a line a program, a point a step size or tolerance."""
-    timed = {name: [c for c in cards if c.seconds] for name, cards in lines.items()}
-    seconds = [c.seconds for cards in timed.values() for c in cards if c.seconds]
-    if not seconds:
-        return '<p class="small">Nothing was timed.</p>'
-    low, high = math.floor(math.log10(min(seconds))), math.ceil(math.log10(max(seconds)) + 1e-9)
-    axes = Axes((low, max(high, low + 1)), (0.0, 16.0), width, height)
-    ends: list[tuple[float, float, str]] = []
-    for i, (name, cards) in enumerate(timed.items()):
-        if not cards:
-            continue
-        colour = LINES[i % len(LINES)]
-        dash = "" if i < len(LINES) else 'stroke-dasharray="4 3"'
-        points = [(math.log10(c.seconds), c.fewest) for c in cards if c.seconds]
-        axes.line([p[0] for p in points], [p[1] for p in points], colour, dash)
-        for (x, y), card in zip(points, cards, strict=True):
-            axes.dot(x, y, colour, filled=not (card.impacts["missed"] or card.impacts["extra"]))
-        ends.append((*points[-1], name))
-    if len(lines) > 1:
-        _name_ends(axes, ends)
-    decades = {float(k): f"1e{k}" for k in range(low, max(high, low + 1) + 1)}
-    return axes.svg(
-        decades, {float(k): f"{k}" for k in range(0, 17, 4)}, "processor time (s)", "fewest digits"
-    )
-
-
-def _events_table(problem: Problem, card: Card) -> str:
-    """Events by their kinds; those that are neither expected nor found are left out."""
-    rows = []
-    for kind, found in {"impact": card.impacts, **card.events}.items():
-        if not (found["expected"] or found["extra"]):
-            continue
-        unknown = found["matched"] is None
-        shift = found["largest_shift"]
-        late = "" if shift is None else f"{shift * UNIT_OF_TIME * problem.duration:.1e}"
-        counts = ["not reported"] if unknown else [f"{found['matched']}"]
-        counts += ["" if unknown else f"{found[key]}" for key in ("missed", "extra")]
-        rows.append([f"{kind}s", f"{found['expected']}", *counts, late])
-    head = ["events", "expected", "matched", "missed", "extra", "largest shift (s)"]
-    return table(head, rows, 1) if rows else "<p>None.</p>"
-
-
-def _name_ends(axes: Axes, ends: list[tuple[float, float, str]]) -> None:
-    """Names at points, moved up where they would lie on each other."""
-    taken: list[tuple[float, float]] = []
-    for x, y, name in sorted(ends, key=lambda end: end[1]):
-        across, down = axes.place(x, y + 0.4)
-        for a, b in taken:
-            if abs(a - across) < 95.0 and down > b - 12.0:
-                down = b - 12.0
-        taken.append((across, down))
-        axes.marks.append(f'<text x="{across:.1f}" y="{down:.1f}">{html.escape(name)}</text>')
-
-
-def _verdicts(card: Card) -> str:
-    """Levels with everything that keeps an answer from them."""
-    rows = []
-    for level, reasons in card.reasons.items():
-        said = "".join(f"<li>{html.escape(why)}</li>" for why in reasons)
-        verdict = f"<ul>{said}</ul>" if reasons else "passed"
-        rows.append([level if reasons else badge(level), f"{LEVELS[level]:g}", verdict])
-    return table(["level", "error allowed", ""], rows)
-
-
-def _facts(card: Card) -> str:
-    """What is judged beside the numbers, and what is not judged."""
-    rows = [["deepest overlap", f"{card.penetration:.1e} of the largest displacement"]]
-    if card.energy is not None:
-        rows.append(["energy from nowhere", f"{card.energy:.1e} of the largest"])
-    if card.seconds is not None:
-        rows.append(["processor time", f"{card.seconds:.3g} s"])
-    rows += [["not judged", html.escape(what)] for what in card.not_judged]
-    return table(["beside the numbers", ""], rows)
-
-
-def _impacts_part(problem: Problem, card: Card, most: int = 40) -> list[str]:
-    """Every impact: when, how fast, and with which effective restitution."""
-    if not card.impact_rows:
-        return []
-
-    def cell(value: float | None, form: str, missing: str = "") -> str:
-        return missing if value is None else f"{value:{form}}"
-
-    rows = []
-    for r in card.impact_rows[:most]:
-        shift = None if None in (r["t"], r["t_found"]) else r["t_found"] - r["t"]
-        rows.append([
-            html.escape(r["contact"]),
-            cell(r["t"], ".5f", "extra"), cell(r["t_found"], ".5f", "missed"), cell(shift, "+.1e"),
-            cell(r["speed"], ".4g"), cell(r["speed_found"], ".4g"),
-            cell(r["restitution"], ".3f"), cell(r["restitution_found"], ".3f"),
-        ])  # fmt: skip
-    head = ["contact", "t (s)", "found (s)", "shift (s)", "closes with (m/s)", "found (m/s)",
-            "restitution", "found"]  # fmt: skip
-    more = len(card.impact_rows) - most
-    return [
-        "<h2>Impacts</h2>",
-        restitution_picture(problem, card),
-        '<p class="small">Effective restitution: how many times faster the gap opens than it '
-        "closed. Circles: certified; dots: in the rows of the answer judged, whatever else it "
-        "lists.</p>",
-        table(head, rows, 1),
-        f'<p class="small">and {more} more in the JSON file.</p>' if more > 0 else "",
-    ]
-
-
-def card_page(problem: Problem, history: Motion, card: Card) -> str:
-    """A card as a page."""
-    worst = sorted(card.deviations, key=lambda q: -q.error)[:20]
-    rows = [
-        [
-            html.escape(q.quantity.name), f"{q.quantity.value:.6g}", f"{q.value:.6g}",
-            f"{q.value - q.quantity.value:+.1e}", q.quantity.unit, f"{q.error:.1e}",
-            f"{q.floor:.1e}", f"{_digits(max(q.error, q.floor)):.1f}",
-        ]
-        for q in worst
-    ]  # fmt: skip
-    head = ["quantity", "certified", "found", "error", "unit", "part of its scale", "floor",
-            "digits"]  # fmt: skip
-    parts = [
-        f"<p>{html.escape(problem.given['tests'])}</p>",
-        f"<p>Hardest level passed: {badge(card.passed)}</p>",
-        _verdicts(card),
-        digits_picture(card),
-        _facts(card),
-        "<h2>Motion</h2>",
-        motion_picture(problem, history),
-        '<p class="small">Lines: the answer judged. Circles: certified displacements. '
-        "Red: certified impacts. Green: certified rests.</p>",
-        *_impacts_part(problem, card),
-        "<h2>Events</h2>",
-        _events_table(problem, card),
-        "<h2>Largest errors</h2>",
-        table(head, rows, 1),
-    ]
-    return page(f"{card.problem}: score card", parts)
-
-
-# ---------------------------------------------------------------- programs
+# ---------------------------------------------------------------- programs on many problems
 
 
 def best_of(cards: list[Card]) -> Card:
@@ -2064,6 +2057,13 @@ def best_of(cards: list[Card]) -> Card:
     order: list[str | None] = [None, *LEVELS]
     hardest = max(cards, key=lambda card: order.index(card.passed))
     return hardest if hardest.passed else cards[-1]
+
+
+def solved(ladders: Iterable[list[Card]]) -> dict[str, int]:
+    """How many problems a program solves to each level or a harder one."""
+    passed = [best_of(cards).passed for cards in ladders]
+    levels = list(LEVELS)
+    return {level: sum(p in levels[i:] for p in passed) for i, level in enumerate(levels)}
 
 
 def ladder_text(cards: list[Card]) -> str:
@@ -2092,33 +2092,17 @@ def ladder_text(cards: list[Card]) -> str:
 
 def count_text(ladders: list[list[Card]]) -> str:
     """How many problems a program solves to each level."""
-    passed = [best_of(cards).passed for cards in ladders]
-    levels = list(LEVELS)
-    parts = []
-    for i, level in enumerate(levels):
-        parts.append(f"{sum(p in levels[i:] for p in passed)} {level}")
-    return f"of {len(passed)} problems {', '.join(parts)}"
-
-
-def _found(event: dict[str, Any] | None) -> str:
-    """Matched of expected events in few characters; empty where there are none."""
-    if event is None or not (event["expected"] or event["extra"]):
-        return ""
-    if event["matched"] is None:
-        return "not reported"
-    extra = f", {event['extra']} extra" if event["extra"] else ""
-    return f"{event['matched']}/{event['expected']}{extra}"
+    parts = [f"{count} {level}" for level, count in solved(ladders).items()]
+    return f"of {len(ladders)} problems {', '.join(parts)}"
 
 
 def set_page(title: str, found: dict[str, dict[str, list[Card]]], limit: float) -> str:
     """Programs (by name) on problems (by name), cards from coarse to fine, as a page."""
     problems = list(next(iter(found.values()), {}))
-    levels = list(LEVELS)
-    summary = []
-    for label, by_problem in found.items():
-        passed = [best_of(cards).passed for cards in by_problem.values()]
-        counts = [str(sum(p in levels[i:] for p in passed)) for i in range(len(levels))]
-        summary.append([html.escape(label), *counts])
+    summary = [
+        [html.escape(label), *map(str, solved(by_problem.values()).values())]
+        for label, by_problem in found.items()
+    ]
     rows = []
     for name in problems:
         cells = [f'<a href="#{name}">{name}</a>']
@@ -2130,7 +2114,7 @@ def set_page(title: str, found: dict[str, dict[str, list[Card]]], limit: float) 
         rows.append(cells)
     parts = [
         f"<p>Solved to each level, of {len(problems)} problems:</p>",
-        table(["program", *levels], summary),
+        table(["program", *LEVELS], summary),
         "<p>Hardest level passed at any step or tolerance, by its digits; what keeps it from the "
         f"next is shown by the pointer. A run may take {limit:g} s.</p>",
         table(["problem", *(html.escape(label) for label in found)], rows),
@@ -2150,6 +2134,58 @@ def set_page(title: str, found: dict[str, dict[str, list[Card]]], limit: float) 
             for label in found for card in found[label][name]
         ]))  # fmt: skip
     return page(title, parts)
+
+
+def _found(event: dict[str, Any] | None) -> str:
+    """Matched of expected events in few characters; empty where there are none."""
+    if event is None or not (event["expected"] or event["extra"]):
+        return ""
+    if event["matched"] is None:
+        return "not reported"
+    extra = f", {event['extra']} extra" if event["extra"] else ""
+    return f"{event['matched']}/{event['expected']}{extra}"
+
+
+def work_picture(lines: dict[str, list[Card]], width: float = 900.0, height: float = 380.0) -> str:
+    """Digits against time, a line a program, a point a step size or tolerance."""
+    timed = {name: [c for c in cards if c.seconds] for name, cards in lines.items()}
+    seconds = [c.seconds for cards in timed.values() for c in cards if c.seconds]
+    if not seconds:
+        return '<p class="small">Nothing was timed.</p>'
+    low, high = math.floor(math.log10(min(seconds))), math.ceil(math.log10(max(seconds)) + 1e-9)
+    axes = Axes((low, max(high, low + 1)), (0.0, 16.0), width, height)
+    ends: list[tuple[float, float, str]] = []
+    for i, (name, cards) in enumerate(timed.items()):
+        if not cards:
+            continue
+        colour = LINES[i % len(LINES)]
+        dash = "" if i < len(LINES) else 'stroke-dasharray="4 3"'
+        points = [(math.log10(c.seconds), c.fewest) for c in cards if c.seconds]
+        axes.line([p[0] for p in points], [p[1] for p in points], colour, dash)
+        for (x, y), card in zip(points, cards, strict=True):
+            axes.dot(x, y, colour, filled=not (card.impacts["missed"] or card.impacts["extra"]))
+        ends.append((*points[-1], name))
+    if len(lines) > 1:
+        _name_ends(axes, ends)
+    decades = {float(k): f"1e{k}" for k in range(low, max(high, low + 1) + 1)}
+    return axes.svg(
+        decades, {float(k): f"{k}" for k in range(0, 17, 4)}, "processor time (s)", "fewest digits"
+    )
+
+
+def _name_ends(axes: Axes, ends: list[tuple[float, float, str]]) -> None:
+    """Names at points, moved up where they would lie on each other."""
+    taken: list[tuple[float, float]] = []
+    for x, y, name in sorted(ends, key=lambda end: end[1]):
+        across, down = axes.place(x, y + 0.4)
+        for a, b in taken:
+            if abs(a - across) < 95.0 and down > b - 12.0:
+                down = b - 12.0
+        taken.append((across, down))
+        axes.marks.append(f'<text x="{across:.1f}" y="{down:.1f}">{html.escape(name)}</text>')
+
+
+# ---------------------------------------------------------------- the command
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -121,12 +121,11 @@ def best_sentence(cards: list[score.Card]) -> str:
 
 def tables(found: Found, problems: tuple[ProblemFolder, ...]) -> Iterator[str]:
     """The tables of docs/league.md."""
-    levels = list(score.LEVELS)
-    yield "| program | " + " | ".join(levels) + " | " + " | ".join(CAUSES) + " |"
-    yield "| --- " * (1 + len(levels) + len(CAUSES)) + "|"
+    yield "| program | " + " | ".join([*score.LEVELS, *CAUSES]) + " |"
+    yield "| --- " * (1 + len(score.LEVELS) + len(CAUSES)) + "|"
     for label, by_problem in found.items():
         best = [score.best_of(cards) for cards in by_problem.values()]
-        counts = [str(sum(b.passed in levels[i:] for b in best)) for i in range(len(levels))]
+        counts = [str(count) for count in score.solved(by_problem.values()).values()]
         causes = Counter(_cause(b.levels["engineering"]) for b in best if not b.passed)
         cells = [str(causes[cause] or "") for cause in CAUSES]
         yield f"| {label} | " + " | ".join(counts + cells) + " |"
