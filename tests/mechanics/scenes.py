@@ -8,7 +8,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.model import Model, assemble
-from eventpound.mechanics.observables import Bodies, view
+from eventpound.mechanics.observables import Bodies, Observed, view
 from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce
 from eventpound.motion.base import Family
 from eventpound.scene import (
@@ -23,6 +23,7 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
+from tests.mechanics.dense import Answer, direction
 
 LEDGER = 3
 
@@ -148,3 +149,17 @@ def instant(scene: Scene, resting: list[int], rng: np.random.Generator, *, ledge
         v,
         model.z0.copy(),
     )
+
+
+def assert_contacts(seen: Observed, at: Instant, expected: Answer, squeezed: bool) -> np.ndarray:
+    """What is observed of contacts is what full matrices give; their forces (N) are returned."""
+    force = np.zeros(at.model.contacts)
+    force[at.resting] = expected.contact_force
+    # In a squeezed row they are unique but for a constant; those expected have the mean 0.
+    told = seen.contact_force[0] - (seen.contact_force[0].mean() if squeezed else 0.0)
+    np.testing.assert_allclose(told, force, atol=1e-10)
+    for j, contact in enumerate(at.scene.contacts):
+        W = direction(at.scene, contact.left, contact.right)
+        gaps = (contact.gap + W @ at.u, W @ at.v, W @ expected.acceleration)
+        np.testing.assert_allclose(seen.gap[:, j], gaps, atol=1e-11)
+    return force

@@ -18,8 +18,8 @@ from eventpound.mechanics.descriptor_observation import observe_descriptor
 from eventpound.mechanics.ground_frame import NO_FRAME, frame_motion
 from eventpound.mechanics.observables import Observed, blank
 from eventpound.motion.forcing import ground_acceleration
-from tests.mechanics.dense import direction, rates
-from tests.mechanics.scenes import LEDGER, Instant, random_instant
+from tests.mechanics.dense import rates
+from tests.mechanics.scenes import LEDGER, Instant, assert_contacts, random_instant
 
 # A dozen terms of order ten and a saddle-point matrix of condition below 1e4.
 TOLERANCE = 1e-11
@@ -59,15 +59,7 @@ def test_observed_values(squeezed: bool) -> None:
         )
         np.testing.assert_allclose(seen.z[1], expected.z_rate, atol=TOLERANCE)
         np.testing.assert_allclose(rate[d.ledger :], expected.ledger, atol=TOLERANCE)
-        force = np.zeros(at.model.contacts)
-        force[at.resting] = expected.contact_force
-        # In a squeezed row they are unique but for a constant; those expected have the mean 0.
-        told = seen.contact_force[0] - (seen.contact_force[0].mean() if squeezed else 0.0)
-        np.testing.assert_allclose(told, force, atol=1e-10)
-        for j, contact in enumerate(at.scene.contacts):
-            W = direction(at.scene, contact.left, contact.right)
-            gaps = (contact.gap + W @ at.u, W @ at.v, W @ expected.acceleration)
-            np.testing.assert_allclose(seen.gap[:, j], gaps, atol=TOLERANCE)
+        assert_contacts(seen, at, expected, squeezed)
 
 
 @pytest.mark.parametrize("squeezed", [False, True])

@@ -9,8 +9,8 @@ from eventpound.mechanics.observables import Observed, blank, observe
 from eventpound.mechanics.reduced import motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_acceleration
-from tests.mechanics.dense import direction, rates
-from tests.mechanics.scenes import Instant, random_instant
+from tests.mechanics.dense import rates
+from tests.mechanics.scenes import Instant, assert_contacts, random_instant
 
 
 def _observe(at: Instant, tau: float, y: np.ndarray) -> Observed:
@@ -33,17 +33,8 @@ def test_values(squeezed: bool) -> None:
         np.testing.assert_allclose(seen.v, at.v, atol=1e-14)
         np.testing.assert_allclose(seen.z[0], at.z, atol=1e-15)
         np.testing.assert_allclose(seen.acceleration[0], expected.acceleration + ground, atol=1e-11)
-        force = np.zeros(at.model.contacts)
-        force[at.resting] = expected.contact_force
-        # In a squeezed row they are unique but for a constant; those expected have the mean 0.
-        told = seen.contact_force[0] - (seen.contact_force[0].mean() if squeezed else 0.0)
-        np.testing.assert_allclose(told, force, atol=1e-10)
-        for j, contact in enumerate(at.scene.contacts):
-            W = direction(at.scene, contact.left, contact.right)
-            gaps = (contact.gap + W @ at.u, W @ at.v, W @ expected.acceleration)
-            np.testing.assert_allclose(seen.gap[:, j], gaps, atol=1e-11)
-            if j in at.resting:
-                assert not seen.gap[:, j].any()
+        force = assert_contacts(seen, at, expected, squeezed)
+        assert not seen.gap[:, at.resting].any()
         # The ground takes what the bodies and their inertia do not: Newton's third law.
         barrier = sum(
             force[j] * ((c.left == "barrier") * 1.0 - (c.right == "barrier") * 1.0)
