@@ -139,6 +139,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     (f"{_EVENTS}.instant", "steps by series from instant to instant", _LOOP),
     (f"{_EVENTS}.short_series", "the series that carry the motion after events", _LOOP),
     (LOCATION, "location of events and extremes in a step", _LOOP),
+    ("eventpound.solvers.sundials.loop", "the loop over the steps of SUNDIALS", _LOOP - {LOCAL}),
 )
 """Module, what it does, and the formulations that run through it."""
 SHARED_AT_POINTS = {
@@ -164,7 +165,7 @@ SHARED_BY_METHODS = {
     f"{_MECHANICS}.reduced": "the equations of motion",
     f"{_MECHANICS}.observables": "forces and accelerations of a state",
     f"{_EVENTS}.reversals": "reversals at which steps end",
-    "eventpound.solvers.sundials.stepping": "the loop over the steps of CVODE",
+    "eventpound.solvers.sundials.stepping": "how a step of CVODE is taken",
 }
 """What the methods of one solver share besides."""
 

@@ -49,8 +49,8 @@ if library.library() is None:
     pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
 
 from eventpound.solvers.sundials import integrators
-from eventpound.solvers.sundials.callback_data import steps_to_roots
 from eventpound.solvers.sundials.compiled_cvode import DirectCvode
+from eventpound.solvers.sundials.loop import steps_to_roots
 
 SUNDIALS_ROOTS = {"events": "sundials"}
 
@@ -277,7 +277,7 @@ def test_through_scikit_sundae_every_search_has_a_log_of_its_own(monkeypatch, so
     logged: list[int] = []
     original = integrators.Wrapped._step
 
-    def watched(self: Any, stop: float, first: int) -> Any:
+    def watched(self: Any, stop: float) -> Any:
         step = self._present.step
 
         def counted(*given: Any) -> Any:
@@ -287,7 +287,7 @@ def test_through_scikit_sundae_every_search_has_a_log_of_its_own(monkeypatch, so
 
         with monkeypatch.context() as patched:
             patched.setattr(self, "_present", type("Present", (), {"step": staticmethod(counted)}))
-            return original(self, stop, first)
+            return original(self, stop)
 
     monkeypatch.setattr(integrators.Wrapped, "_step", watched)
     bodies, wall = (Body("b", 1.0, 0.0, -1.0),), Contact("wall", BARRIER, "b", 0.5, 1.0)

@@ -8,36 +8,28 @@ part of it.
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import types
 
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_of
 from eventpound.mechanics.observables import Observed, blank
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import callback, in_python, kernel, scalar_kernel
+from eventpound.numerics.compiled import callback, in_python, kernel
 from eventpound.numerics.lending import change_loan, on_loan, type_of_loan
 from eventpound.solvers.events.event_bounds import Watched
-from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
     lift,
     marks_of,
     noise_of,
-    on_the_root,
     root_functions,
     values_and_rates,
 )
-from eventpound.solvers.events.step_check import CLEAR, HAPPENED, Examination
-from eventpound.tolerances import EPS
 
-ROOT_RETURN = 2
-"""Flag of CVODE and IDA where one of their root functions, if they have any, has a root."""
-BRACKET = 100.0
-"""Width of the bracket that SUNDIALS leaves of a root, in roundings of ``|t| + |h|``."""
 _FALLING, _RISING = -1, 1
 CALLS, FRESH = 0, 1
 """Places of `Roots.counts`: how often the functions were asked for; whether they are still to be
@@ -64,28 +56,26 @@ class Roots(NamedTuple):
 _CALLBACKS: dict[tuple[Any, Any], Any] = {}
 
 
-def address_of(function: Callable[..., Any], given: Any, signature: Callable[[Any], Any]) -> int:
+def address_of(
+    function: Callable[..., Any], given: Any, pointers: int, *, reals: int = 1, after: int = 0
+) -> int:
     """Address of a function that SUNDIALS calls, compiled when it is first asked for.
 
     Parameters
     ----------
     function : callable
-        In Numba's part of Python.
+        In Numba's part of Python, of numbers, then addresses, what it is handed, more addresses.
     given : named tuple
         What it is handed, on loan.
-    signature : callable
-        Numba's signature of the function for a type of what it is handed.
+    pointers, reals, after : int
+        How many addresses and numbers come before what it is handed, and addresses after it.
     """
     kind = type_of_loan(given)
     if (function, kind) not in _CALLBACKS:
-        _CALLBACKS[function, kind] = callback(function, signature(kind))
+        before = (types.float64,) * reals + (types.intp,) * pointers
+        signature = types.intc(*before, kind, *(types.intp,) * after)
+        _CALLBACKS[function, kind] = callback(function, signature)
     return int(_CALLBACKS[function, kind].address)
-
-
-@scalar_kernel
-def at_bounds(end: float, steps: int, bounds: Bounds) -> bool:
-    """Whether the step that ends at the local time `end` (s) is the last."""
-    return end >= bounds.stop or steps == bounds.most
 
 
 def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int = 0) -> Roots:
@@ -155,88 +145,9 @@ class RootFunctions:
         roots = Roots(counts, forces, watched, noise, lifted, pairs, seen)
         change_loan(self.loan, roots)
 
-    def set_up(
-        self,
-        initialise: Callable[[int, int, int], int],
-        set_direction: Callable[[int, int], int],
-        memory: int,
-        callback: int,
-    ) -> None:
-        """Make SUNDIALS look for the roots: where values fall, and where their rates rise.
-
-        Parameters
-        ----------
-        initialise, set_direction : callable
-            ``CVodeRootInit`` and ``CVodeSetRootDirection``, or IDA's.
-        memory, callback : int
-            Addresses of the object and of the functions.
-        """
-        flag = initialise(memory, 2 * self.count, callback)
-        if flag == 0 and self.count:
-            directions = np.array(self.directions, ctypes.c_int)
-            flag = set_direction(memory, directions.ctypes.data)
-        if flag != 0:
-            raise MemoryError(f"SUNDIALS could not set up its search for roots (flag {flag})")
-
     def marks(self) -> tuple[Bools, Bools, Bools]:
         """What happened where values have fallen: closing (K,), released (K,), kinked (L,)."""
         return marks_of(self._mode.watched, self.loan.pairs[:, 0] < 0.0)
-
-
-Numbers = tuple[int, int, float, float, int, float, int]
-"""A flag of SUNDIALS, then those of a `Stretch`."""
-Steps = Callable[[float, int, float, Bounds, Examination], Numbers]
-"""The compiled loop of an integrator."""
-AtRoot = Callable[[float, float, Floats, float, Floats], tuple[int, float]]
-"""What a root at a time (s) means: `eventpound.solvers.sundials.stepping.at_root` from its second
-argument on."""
-
-
-@scalar_kernel
-def before_root(start: float, tau: float) -> float:
-    """Start of the bracket of a root at `tau` (s) of a step from `start` (s)."""
-    return tau - BRACKET * EPS * (abs(tau) + tau - start)
-
-
-@kernel
-def first_zero(roots: Roots, start: float, tau: float, whole: float) -> float:
-    """`on_the_root` for a root at `tau` (s) of a step from `start` to `whole` (s)."""
-    reach = BRACKET * EPS * (abs(whole) + whole - start)
-    return on_the_root(roots.pairs, roots.noise, start, tau, reach)
-
-
-def steps_to_roots(
-    steps: Steps,
-    at_root: AtRoot,
-    tau: float,
-    first: int,
-    excess: float,
-    bounds: Bounds,
-    e: Examination,
-) -> Numbers:
-    """Steps as of `eventpound.solvers.events.integrator.Integrator.advance`, and up to an event.
-
-    Parameters
-    ----------
-    steps : callable
-        The compiled loop of an integrator.
-    at_root : callable
-        What one of its roots means.
-    tau, first, excess, bounds, e
-        Of `Integrator.advance`.
-    """
-    taken = 0
-    while True:
-        rest = bounds._replace(most=bounds.most - taken)
-        flag, row, start, end, verdict, excess, done = steps(tau, first, excess, rest, e)
-        taken += done
-        if flag != ROOT_RETURN:
-            return flag, row, start, end, verdict, excess, taken
-        verdict, end = at_root(start, end, e.z_bound, max(e.z_allowed, excess), e.y[1 - row])
-        if verdict != CLEAR:
-            return flag, row, start, end, verdict, excess, taken + int(verdict == HAPPENED)
-        # The bottom of a dip that stays above zero: the step goes on.
-        tau, first = start, row
 
 
 @kernel

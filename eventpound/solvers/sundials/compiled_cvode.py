@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import numpy as np
 from sksundae._cy_cvode import CVMESSAGES
 
-from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
+from eventpound.mechanics.ground_frame import to_frame
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
-from eventpound.solvers.events.dense import NO_GAPS, Dense
-from eventpound.solvers.events.integrator import Bounds, Start, Stretch
-from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.step_check import Examination
-from eventpound.solvers.sundials.callback_data import (
-    RootFunctions,
-)
+from eventpound.solvers.sundials.callback_data import address_of
 from eventpound.solvers.sundials.integrators import Direct
+from eventpound.solvers.sundials.loop import Numbers
 from eventpound.solvers.sundials.memory import CvodeMemory, Layout, layout
 from eventpound.solvers.sundials.stepping import (
     NEVER,
@@ -29,7 +26,7 @@ from eventpound.solvers.sundials.stepping import (
     at_root,
     derivatives,
     right_hand_side,
-    root_callback,
+    root_functions,
 )
 
 
@@ -51,58 +48,42 @@ class DirectCvode(Direct):
     def __init__(self, library: Any, rtol: float, method: str) -> None:
         super().__init__()
         self.library, self.rtol, self.method = library, rtol, method
-        self._memories: dict[Any, tuple[CvodeMemory, Handles]] = {}
-        self._mode: Mode
-        self._frame = NO_FRAME
-        self._memory: CvodeMemory
         self._handles: Handles
 
-    def start(self, start: Start) -> None:
-        """Begin at the local time `tau` (s) with state `y`."""
-        mode, forcing, frame, y, atol, tau = start
-        self._mode, self._forcing, self._frame = mode, forcing, frame
-        if self._roots is not None:
-            self._roots.point_to(mode)
-        system, roots = mode.directed, self._present_roots
+    def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
+        mode, forcing, frame, roots = self._mode, self._forcing, self._frame, self._present_roots
+        system = mode.directed
         system.direction[:] = 0.0
         self._hand(Given(self._calls, system, mode.bodies, forcing, frame, roots))
-        self._memory, self._handles = self._memory_for(layout(system, frame, self.rtol, atol))
-        state = self._memory.state
-        state[:] = y
-        in_python(to_frame)(frame, forcing.start + tau, 1.0, system.iq, system.iv, state)
-        self._memory.start(tau)
+        memory, self._handles = self._memory_for(layout(system, frame, self.rtol, atol))
+        memory.state[:] = y
+        in_python(to_frame)(frame, forcing.start + tau, 1.0, system.iq, system.iv, memory.state)
+        memory.start(tau)
         self._handles.reached[TURNED], self._handles.spent[0] = NEVER, 0
         if self._roots is not None:
-            self._look_for_roots(self._roots)
-        self.starts += 1
+            callback = address_of(root_functions, self._given, 2)
+            memory.find_roots(callback, self._roots.directions)
 
     def _memory_for(self, plan: Layout) -> tuple[CvodeMemory, Handles]:
         given = self._given
         if plan.key not in self._memories:
-            callback, data = right_hand_side(given), given.address
+            callback, data = address_of(right_hand_side, given, 2), given.address
             memory = CvodeMemory(self.library, self.method, plan, callback, data)
             numbers = np.zeros(2), memory.look, given, self.rtol, np.zeros(1, np.int64)
             handles = on_loan(Handles(memory.address, memory.vector, *numbers))
             self._memories[plan.key] = memory, handles
-        return self._memories[plan.key]
+        found: tuple[CvodeMemory, Handles] = self._memories[plan.key]
+        return found
 
-    def _look_for_roots(self, roots: RootFunctions) -> None:
-        roots.set_up(
-            self.library.CVodeRootInit,
-            self.library.CVodeSetRootDirection,
-            self._memory.address,
-            root_callback(self._given),
-        )
-
-    def advance(
+    def _steps(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
-    ) -> Stretch:
-        """Accepted steps, up to the first that is not clear or the bounds."""
-        steps, root = partial(advance, self._handles), partial(at_root, self._handles)
-        return self._stretch_of(steps, root, tau, first, excess, bounds, e)
+    ) -> Numbers:
+        return advance(self._handles, tau, first, excess, bounds, e)
 
-    def dense(self, start: float, end: float) -> Dense:
-        """The last step on CVODE's own polynomial."""
-        memory = self._memory
-        Y = derivatives(memory.address, memory.look, end, self._mode.system.size)
-        return Dense(Y, end, start, end, self._frame, False, NO_GAPS)
+    def _at_root(
+        self, start: float, tau: float, bound: Floats, allowed: float, y: Floats
+    ) -> tuple[int, float]:
+        return at_root(self._handles, start, tau, bound, allowed, y)
+
+    def _derivatives(self, t: float) -> Floats:
+        return derivatives(self._handles, t)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
 
 from eventpound.mechanics.descriptor_motion import (
     Problem,
@@ -18,25 +17,10 @@ from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel, loop_kernel
-from eventpound.numerics.lending import lend
 from eventpound.solvers.events.integrator import Bounds, last_time
-from eventpound.solvers.events.recorder import PASSED, is_due, write_row
-from eventpound.solvers.events.roots import any_fell
 from eventpound.solvers.events.run import Dynamics
-from eventpound.solvers.events.step_check import (
-    BEYOND_BOUND,
-    CLEAR,
-    HAPPENED,
-    NOT_FINITE,
-    Examination,
-)
-from eventpound.solvers.sundials.callback_data import (
-    ROOT_RETURN,
-    Roots,
-    address_of,
-    at_bounds,
-    first_zero,
-)
+from eventpound.solvers.events.step_check import Examination
+from eventpound.solvers.sundials.callback_data import Roots
 from eventpound.solvers.sundials.descriptor_steps import (
     Followed,
     Tolerances,
@@ -47,6 +31,7 @@ from eventpound.solvers.sundials.descriptor_steps import (
     to_clusters,
 )
 from eventpound.solvers.sundials.library import (
+    ONE_STEP,
     array_pointer,
     ida_current_time,
     ida_get_dky,
@@ -56,14 +41,18 @@ from eventpound.solvers.sundials.library import (
     ida_solve,
     matrix_data,
 )
+from eventpound.solvers.sundials.loop import (
+    ROOT_RETURN,
+    Numbers,
+    carry_on,
+    root_at,
+    write_samples,
+)
 from eventpound.solvers.sundials.root_values import descriptor_roots
 
 if ida_library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.
     raise ImportError("the SUNDIALS library cannot be reached from compiled code")
-
-ONE_STEP = 2
-"""SUNDIALS' IDA_ONE_STEP."""
 
 
 class Given(NamedTuple):
@@ -81,8 +70,8 @@ class Handles(NamedTuple):
     """Addresses of an IDA object and its vectors; where times and drifts are put; on loan.
 
     look: a vector for interpolated unknowns. state, rate: values of the first two vectors.
-    given: what its callbacks are handed. reached (1,): where IDA is (s). drift (2,), acceleration:
-    of `Followed`. time: the scene's own T (s).
+    given: what its callbacks are handed. mode: the loop's. reached (1,): where IDA is (s).
+    followed: whose steps. time: the scene's own T (s).
     """
 
     memory: int
@@ -92,13 +81,13 @@ class Handles(NamedTuple):
     state: int
     rate: int
     given: Given
+    mode: Dynamics
     reached: Floats
-    drift: Floats
-    acceleration: float
+    followed: Followed
     time: float
 
 
-def _residual(tau: float, y: int, rate: int, out: int, given: Given) -> int:
+def residual_function(tau: float, y: int, rate: int, out: int, given: Given) -> int:
     """IDA's callback, an `IDAResFn`."""
     given.calls[0] += 1
     problem, size = given.problem, given.problem.d.size
@@ -112,7 +101,7 @@ def _residual(tau: float, y: int, rate: int, out: int, given: Given) -> int:
     return 0
 
 
-def _jacobian(
+def jacobian_function(
     tau: float,
     cj: float,
     y: int,
@@ -133,96 +122,72 @@ def _jacobian(
     return 0
 
 
-_address, _real = types.intp, types.float64
-
-
-def residual_callback(given: Given) -> int:
-    """Address of the residual."""
-    three = _address, _address, _address
-    return address_of(_residual, given, lambda kind: types.intc(_real, *three, kind))
-
-
-def jacobian_callback(given: Given) -> int:
-    """Address of the Jacobian."""
-    three, four = (_address,) * 3, (_address,) * 4
-    return address_of(_jacobian, given, lambda kind: types.intc(_real, _real, *four, kind, *three))
-
-
 @loop_kernel
 def advance(
     handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
-) -> tuple[int, int, float, float, int, float, int]:
+) -> Numbers:
     """Steps from `tau` (s), each examined, as `Integrator.advance` says.
 
     IDA's last flag, then the numbers of the `Stretch`.
-
-    No step goes beyond a sample of a record.
     """
-    problem, forcing = handles.given.problem, e.forcing
-    followed = lend(Followed(problem, handles.drift, handles.acceleration))
-    state = array_at(array_pointer(handles.vector), problem.d.size, np.float64)
-    origin, start, steps = forcing.start, tau, 0
-    while True:
-        stop = last_time(start, True, bounds, forcing)
-        ida_set_stop_time(handles.memory, stop)
-        flag = ida_solve(
-            handles.memory,
-            stop,
-            handles.reached.ctypes.data,
-            handles.vector,
-            handles.rate_vector,
-            ONE_STEP,
-        )
-        end = handles.reached[0]
-        if flag < 0 or end <= start:
-            return flag, first, start, end, CLEAR, excess, steps
-        if flag == ROOT_RETURN:
-            return flag, first, start, end, CLEAR, excess, steps
-        y = relative_to_ground(end, state, problem)
-        verdict, reached = examine_descriptor(
-            start, end, first, max(e.z_allowed, excess), y, e, followed
-        )
-        if verdict in (NOT_FINITE, BEYOND_BOUND):
-            return flag, first, start, end, verdict, reached, steps
-        excess, steps = reached, steps + 1
-        if verdict == CLEAR and is_due(origin + end, e.record.journal):
-            _write_samples(handles, start, end, e)
-        if verdict != CLEAR or at_bounds(end, steps, bounds):
-            return flag, first, start, end, verdict, excess, steps
-        start, first = end, 1 - first
+    return carry_on(_take, _check, _write, handles, tau, first, excess, bounds, e)
 
 
 @kernel
-def _write_samples(handles: Handles, start: float, end: float, e: Examination) -> None:
-    """History at the output times of a step, on IDA's own polynomial."""
-    journal, problem, seen = e.record.journal, handles.given.problem, e.looks[4]
-    origin = e.forcing.start
+def _take(
+    handles: Handles, start: float, first: int, bounds: Bounds, e: Examination
+) -> tuple[int, float, bool]:
+    """A step from `start` (s), not beyond a sample of a record; see `carry_on`."""
+    stop = last_time(start, True, bounds, e.forcing)
+    ida_set_stop_time(handles.memory, stop)
+    flag = ida_solve(
+        handles.memory,
+        stop,
+        handles.reached.ctypes.data,
+        handles.vector,
+        handles.rate_vector,
+        ONE_STEP,
+    )
+    end = handles.reached[0]
+    return flag, end, not (flag < 0 or end <= start or flag == ROOT_RETURN)
+
+
+@kernel
+def _check(
+    handles: Handles, start: float, end: float, first: int, allowed: float, e: Examination
+) -> tuple[int, float]:
+    """`examine_descriptor`."""
+    problem = handles.given.problem
+    state = array_at(handles.state, problem.d.size, np.float64)
+    y = relative_to_ground(end, state, problem)
+    return examine_descriptor(start, end, first, allowed, y, e, handles.followed)
+
+
+@kernel
+def _write(handles: Handles, start: float, end: float, e: Examination) -> None:
+    """History at the output times of a step."""
+    write_samples(_show, handles, start, end, e)
+
+
+@kernel
+def _show(handles: Handles, tau: float, seen: Observed, e: Examination) -> None:
+    """Observe the motion at `tau` (s) of the last step."""
+    problem = handles.given.problem
     y = array_at(array_pointer(handles.look), problem.d.size, np.float64)
-    while is_due(origin + end, journal):
-        t = journal.times[journal.cursor[PASSED]]
-        if t >= origin + start:
-            tau = max(t - origin, start)
-            ida_get_dky(handles.memory, tau, 0, handles.look)
-            to_moving_frame(problem, tau, -1.0, y)
-            look_at_descriptor(tau, y, problem, seen)
-            write_row(t, seen, journal)
-        journal.cursor[PASSED] += 1
+    ida_get_dky(handles.memory, tau, 0, handles.look)
+    to_moving_frame(problem, tau, -1.0, y)
+    look_at_descriptor(tau, y, problem, seen)
 
 
 @kernel
 def begin(
-    handles: Handles,
-    tau: float,
-    clusters: Floats,
-    mode: Dynamics,
-    tolerances: Tolerances,
-    scratch: Observed,
+    handles: Handles, tau: float, clusters: Floats, tolerances: Tolerances, scratch: Observed
 ) -> float:
     """`begin_descriptor` of the state and the rates of `handles`, from the loop's state.
 
-    `mode`: the loop's; `scratch` is overwritten.
+    `scratch` is overwritten.
     """
-    problem = handles.given.problem
+    problem, mode = handles.given.problem, handles.mode
     size = problem.d.size
     y = array_at(handles.state, size, np.float64)
     rate = array_at(handles.rate, size, np.float64)
@@ -231,7 +196,7 @@ def begin(
 
 
 @kernel
-def derivatives(handles: Handles, t: float, mode: Dynamics) -> Floats:
+def derivatives(handles: Handles, t: float) -> Floats:
     """Coefficients of IDA's own polynomial of its last step about `t` (s), as the loop knows it.
 
     Parameters
@@ -240,15 +205,14 @@ def derivatives(handles: Handles, t: float, mode: Dynamics) -> Floats:
         The IDA object; the state that it interpolates is overwritten.
     t : float
         Local time (s).
-    mode : Dynamics
-        The loop's.
 
     Returns
     -------
     ndarray, shape (order + 1, size)
         ``y^(k) / k!`` of the clusters, in the moving frame.
     """
-    memory, look, system = handles.memory, handles.look, mode.system
+    memory, look, mode = handles.memory, handles.look, handles.mode
+    system = mode.system
     order = np.zeros(1, np.int32)
     ida_last_order(memory, order.ctypes.data)
     y = array_at(array_pointer(look), handles.given.problem.d.size, np.float64)
@@ -262,7 +226,7 @@ def derivatives(handles: Handles, t: float, mode: Dynamics) -> Floats:
     return Y
 
 
-def _root_functions(tau: float, y: int, rate: int, out: int, given: Given) -> int:
+def root_functions(tau: float, y: int, rate: int, out: int, given: Given) -> int:
     """IDA's callback, an `IDARootFn`."""
     size, count = given.problem.d.size, given.roots.noise.size
     state = relative_to_ground(tau, array_at(array_pointer(y), size, np.float64), given.problem)
@@ -271,42 +235,40 @@ def _root_functions(tau: float, y: int, rate: int, out: int, given: Given) -> in
     return 0
 
 
-def root_callback(given: Given) -> int:
-    """Address of the root functions."""
-    three = types.intp, types.intp, types.intp
-    return address_of(_root_functions, given, lambda kind: types.intc(types.float64, *three, kind))
+@kernel
+def _values(handles: Handles, tau: float) -> Roots:
+    """Root functions at `tau` (s), where IDA is."""
+    given, roots = handles.given, handles.given.roots
+    state = array_at(handles.state, given.problem.d.size, np.float64)
+    y = relative_to_ground(tau, state, given.problem)
+    descriptor_roots(tau, y, given.problem, roots, roots.pairs.reshape(2 * roots.noise.size))
+    return roots
+
+
+@kernel
+def _whole_step(handles: Handles) -> tuple[float, Floats]:
+    """End of IDA's whole step (s), and every z there."""
+    whole, d = np.empty(1), handles.given.problem.d
+    ida_current_time(handles.memory, whole.ctypes.data)
+    ida_get_dky(handles.memory, whole[0], 0, handles.look)
+    last = array_at(array_pointer(handles.look), d.size, np.float64)
+    first = 2 * d.mass.size
+    return whole[0], last[first : first + d.hysteretic].copy()
+
+
+@kernel
+def _put(handles: Handles, tau: float, clusters: Floats) -> None:
+    """Fill in the loop's state at `tau` (s) of the last step, relative to the ground."""
+    problem, mode = handles.given.problem, handles.mode
+    ida_get_dky(handles.memory, tau, 0, handles.look)
+    look = array_at(array_pointer(handles.look), problem.d.size, np.float64)
+    y = relative_to_ground(tau, look, problem)
+    to_clusters(y, 1.0, mode.system, mode.bodies, clusters)
 
 
 @kernel
 def at_root(
-    handles: Handles,
-    mode: Dynamics,
-    start: float,
-    tau: float,
-    bound: Floats,
-    allowed: float,
-    clusters: Floats,
+    handles: Handles, start: float, tau: float, bound: Floats, allowed: float, clusters: Floats
 ) -> tuple[int, float]:
-    """`eventpound.solvers.sundials.stepping.at_root` for IDA.
-
-    `clusters` (size,): a state of the loop's `mode`.
-    """
-    given, memory = handles.given, handles.memory
-    roots, size = given.roots, given.problem.d.size
-    y = relative_to_ground(tau, array_at(handles.state, size, np.float64), given.problem)
-    functions = roots.pairs.reshape(2 * roots.noise.size)
-    descriptor_roots(tau, y, given.problem, roots, functions)
-    if not any_fell(roots.pairs):
-        return CLEAR, tau
-    whole = np.empty(1)
-    ida_current_time(memory, whole.ctypes.data)
-    ida_get_dky(memory, whole[0], 0, handles.look)
-    last = array_at(array_pointer(handles.look), size, np.float64)
-    for h in range(bound.size):
-        if abs(last[2 * mode.bodies.mass.size + h]) - bound[h] > allowed:
-            return BEYOND_BOUND, whole[0]
-    end = first_zero(roots, start, tau, whole[0])
-    ida_get_dky(memory, end, 0, handles.look)
-    y = relative_to_ground(end, last, given.problem)
-    to_clusters(y, 1.0, mode.system, mode.bodies, clusters)
-    return HAPPENED, end
+    """`root_at` for IDA."""
+    return root_at(_values, _whole_step, _put, handles, start, tau, bound, allowed, clusters)

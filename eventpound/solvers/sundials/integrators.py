@@ -11,58 +11,41 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.mechanics.descriptor_motion import Problem
+from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.model import Model
+from eventpound.mechanics.observables import blank
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import change_loan, on_loan
-from eventpound.solvers.events.integrator import StandstillError, Stretch
-from eventpound.solvers.events.roots import any_fell
-from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
-from eventpound.solvers.sundials.callback_data import (
-    NO_ROOTS,
+from eventpound.solvers.events.dense import NO_GAPS, NODES, Dense, from_values
+from eventpound.solvers.events.integrator import Bounds, StandstillError, Start, Stretch
+from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.step_check import Examination
+from eventpound.solvers.sundials.callback_data import NO_ROOTS, RootFunctions, Roots
+from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
+from eventpound.solvers.sundials.descriptor_steps import Followed, look_at_start
+from eventpound.solvers.sundials.loop import (
     ROOT_RETURN,
-    AtRoot,
-    RootFunctions,
-    Roots,
-    Steps,
-    first_zero,
+    Numbers,
+    carry_on,
+    root_at,
     steps_to_roots,
 )
 
-
-def _could_not_continue(
-    name: str, message: str, origin: float, stretch: Stretch
-) -> StandstillError:
-    """The error of an integrator that stands still.
-
-    Parameters
-    ----------
-    name : str
-        Of the integrator.
-    message : str
-        SUNDIALS' own.
-    origin : float
-        Time from which the local ones count (s).
-    stretch : Stretch
-        Its steps.
-    """
-    return StandstillError(
-        f"{name} could not continue ({message.rstrip('.')}); "
-        "try a larger rtol, or look at the state written so far",
-        origin + stretch.start,
-        stretch,
-    )
+_FAILED = -1
 
 
-class Direct:
-    """Duties of an `eventpound.solvers.events.integrator.Integrator` that both do alike.
+class _Duties:
+    """An `eventpound.solvers.events.integrator.Integrator`, but for the calls of the library.
 
     Attributes
     ----------
     name : str
         What SUNDIALS calls the solver.
     messages : mapping of int to str
-        What its flags mean.
+        What its negative flags mean.
     """
 
     name: str
@@ -70,10 +53,80 @@ class Direct:
 
     def __init__(self) -> None:
         self.starts = 0
+        self._mode: Mode
+        self._forcing: Forcing
+        self._frame = NO_FRAME
+        self._roots: RootFunctions | None = None
+
+    @property
+    def finds_events(self) -> bool:
+        """Whether its own root finder does."""
+        return self._roots is not None
+
+    @property
+    def happened(self) -> tuple[Bools, Bools, Bools] | None:
+        """What its root finder has found at the end of the last step."""
+        return self._roots.marks() if self._roots is not None else None
+
+    def find_events(self, model: Model, length: float) -> None:
+        """Let its own root finder find events, for the whole run."""
+        self._roots = RootFunctions(model, length)
+
+    def start(self, start: Start) -> None:
+        """Begin at the local time `tau` (s) with state `y`."""
+        mode, forcing, frame, y, atol, tau = start
+        self._mode, self._forcing, self._frame = mode, forcing, frame
+        if self._roots is not None:
+            self._roots.point_to(mode)
+        self._begin(tau, y, atol)
+        self.starts += 1
+
+    def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
+        """`start`, in the present mode."""
+        raise NotImplementedError
+
+    def advance(
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
+    ) -> Stretch:
+        """Accepted steps, up to the first that is not clear or the bounds.
+
+        Raises
+        ------
+        StandstillError
+            Where the solver could not go on.
+        """
+        done = steps_to_roots(self._steps, self._at_root, tau, first, excess, bounds, e)
+        flag, stretch = done[0], Stretch(*done[1:])
+        if flag < 0:
+            raise StandstillError(
+                f"{self.name} could not continue ({self.messages[flag].rstrip('.')}); "
+                "try a larger rtol, or look at the state written so far",
+                self._forcing.start + stretch.start,
+                stretch,
+            )
+        return stretch
+
+    def _steps(
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
+    ) -> Numbers:
+        """`carry_on`."""
+        raise NotImplementedError
+
+    def _at_root(
+        self, start: float, tau: float, bound: Floats, allowed: float, y: Floats
+    ) -> tuple[int, float]:
+        """`root_at`."""
+        raise NotImplementedError
+
+
+class Direct(_Duties):
+    """What compiled calls of CVODE and IDA have in common."""
+
+    def __init__(self) -> None:
+        super().__init__()
         self._calls = np.zeros(2, np.int64)
         self._given: Any = None
-        self._forcing: Forcing
-        self._roots: RootFunctions | None = None
+        self._memories: dict[Any, Any] = {}
 
     def _hand(self, given: Any) -> None:
         """Let the callbacks be handed this, always at the same address."""
@@ -87,20 +140,6 @@ class Direct:
         return NO_ROOTS if self._roots is None else self._roots.loan
 
     @property
-    def finds_events(self) -> bool:
-        """Whether its own root finder does."""
-        return self._roots is not None
-
-    @property
-    def happened(self) -> tuple[Bools, Bools, Bools] | None:
-        """What its root finder has found at the end of the last step."""
-        return self._roots.marks() if self._roots is not None else None
-
-    def find_events(self, model: Model, length: float) -> None:
-        """Let its own root finder find events, for the whole run."""
-        self._roots = RootFunctions(model, length)
-
-    @property
     def rhs_calls(self) -> int:
         """Calls of the right-hand side or residual, those for Jacobians included."""
         return int(self._calls[0])
@@ -110,70 +149,38 @@ class Direct:
         """Jacobians, of which compiled steps keep count."""
         return int(self._calls[1])
 
-    def _stretch_of(self, steps: Steps, at_root: AtRoot, *given: Any) -> Stretch:
-        """What compiled steps came to, up to an event where its own root finder finds them.
+    def dense(self, start: float, end: float) -> Dense:
+        """The last step on SUNDIALS' own polynomial, as the loop knows it."""
+        return Dense(self._derivatives(end), end, start, end, self._frame, False, NO_GAPS)
 
-        `given` are the arguments of `Integrator.advance`; `steps_to_roots` has the others.
-
-        Raises
-        ------
-        StandstillError
-            Where the solver could not go on.
-        """
-        done = steps(*given) if self._roots is None else steps_to_roots(steps, at_root, *given)
-        flag, stretch = done[0], Stretch(*done[1:])
-        if flag < 0:
-            raise _could_not_continue(self.name, self.messages[flag], self._forcing.start, stretch)
-        return stretch
+    def _derivatives(self, t: float) -> Floats:
+        """Coefficients of that about the local time t (s)."""
+        raise NotImplementedError
 
 
-class Wrapped:
-    """Duties of an `eventpound.solvers.events.integrator.Integrator` that both do alike.
+class Wrapped(_Duties):
+    """What CVODE and IDA have in common through scikit-sundae.
 
     Where its own root finder finds events, each start is one of a new object: scikit-sundae keeps
     the log of roots on the function that it is given, for good.
-
-    Attributes
-    ----------
-    name : str
-        What SUNDIALS calls the solver.
     """
 
-    name: str
-
     def __init__(self) -> None:
+        super().__init__()
         self.rhs_calls = 0
         self.jacobian_calls = 0
-        self.starts = 0
-        self._forcing: Forcing
         self._present: Any = None
         self._time = 0.0
         self._looked_back = False
         self._spent = 0
-        self._roots: RootFunctions | None = None
-        self._at_root = False
         # Functions where the last step was left, and the end of SUNDIALS' whole step.
         self._left = np.empty(0)
         self._whole: tuple[float, Floats] = 0.0, self._left
 
-    @property
-    def finds_events(self) -> bool:
-        """Whether its own root finder does."""
-        return self._roots is not None
-
-    @property
-    def happened(self) -> tuple[Bools, Bools, Bools] | None:
-        """What its root finder has found at the end of the last step."""
-        return self._roots.marks() if self._roots is not None else None
-
-    def find_events(self, model: Model, length: float) -> None:
-        """Let its own root finder find events, for the whole run."""
-        self._roots = RootFunctions(model, length)
-
     def _begun_at(self, tau: float) -> None:
         """The present object has been started at the local time `tau` (s)."""
         self._time = tau
-        self._looked_back = self._at_root = False
+        self._looked_back = False
         self._spent = 0
         self._whole = -np.inf, self._left
 
@@ -214,42 +221,73 @@ class Wrapped:
         y: Floats = self._present.step(tau, "normal").y
         return y
 
-    def _step(self, stop: float, first: int) -> tuple[float, Floats]:
-        """One accepted step, not beyond `stop` (s): time reached and unknowns there.
-
-        `first` is the row of the state it starts from.
-        """
+    def _step(self, stop: float) -> tuple[int, float, Floats]:
+        """One accepted step, not beyond `stop` (s): a flag, time reached and unknowns there."""
         repeats, self._looked_back = self._looked_back, False
         result = self._present.step(stop, "onestep", stop)
         if repeats and result.success and result.t == self._time:
             # After interpolating, SUNDIALS first hands out the end of its last step again.
             result = self._present.step(stop, "onestep", stop)
         if not result.success:
-            stretch = Stretch(first, self._time, self._time, CLEAR, 0.0, 0)
-            raise _could_not_continue(self.name, result.message, self._forcing.start, stretch)
+            self.messages = {_FAILED: result.message}
+            return _FAILED, self._time, result.y
         self._time = result.t
-        self._at_root = result.status == ROOT_RETURN
         self.jacobian_calls += result.njev - self._spent
         self._spent = result.njev
         if self._left.size:
             self._values(result.t, result.y.copy(), self._left)
-        return result.t, self._relative(result.t, result.y)
+        flag = ROOT_RETURN if result.status == ROOT_RETURN else 0
+        return flag, result.t, self._relative(result.t, result.y)
 
-    def _what_root(
-        self, start: float, tau: float, bound: Floats, allowed: float, clusters: Floats
+    def _steps(
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
+    ) -> Numbers:
+        """One step: its history is left to a second look."""
+        own = type(self)
+        one = bounds._replace(most=1)
+        return in_python(carry_on)(
+            own._take, own._check, own._write, self, tau, first, excess, one, e
+        )
+
+    def _take(
+        self, start: float, first: int, bounds: Bounds, e: Examination
+    ) -> tuple[int, float, bool]:
+        """Of `carry_on`."""
+        raise NotImplementedError
+
+    def _check(
+        self, start: float, end: float, first: int, allowed: float, e: Examination
     ) -> tuple[int, float]:
-        """`eventpound.solvers.sundials.stepping.at_root`, where the last step was left."""
+        """Of `carry_on`."""
+        raise NotImplementedError
+
+    def _write(self, start: float, end: float, e: Examination) -> None:
+        """Of `carry_on`: nothing."""
+
+    def _at_root(
+        self, start: float, tau: float, bound: Floats, allowed: float, y: Floats
+    ) -> tuple[int, float]:
+        """`root_at`, where the last step was left."""
+        own = type(self)
+        return in_python(root_at)(
+            own._values_left, own._whole_step, own._put, self, start, tau, bound, allowed, y
+        )
+
+    def _values_left(self, tau: float) -> Roots:
+        """Of `root_at`."""
         assert self._roots is not None
         roots = self._roots.loan
         roots.pairs[:] = self._left.reshape(-1, 2)
-        if not any_fell(roots.pairs):
-            return CLEAR, tau
+        return roots
+
+    def _whole_step(self) -> tuple[float, Floats]:
+        """Of `root_at`."""
         whole, last = self._whole
-        if (np.abs(self._z_of(last)) - bound > allowed).any():
-            return BEYOND_BOUND, whole
-        end = first_zero(roots, start, tau, whole)
-        clusters[:] = self._clusters(end, self._relative(end, self._interpolated(end)))
-        return HAPPENED, end
+        return whole, self._z_of(last)
+
+    def _put(self, tau: float, y: Floats) -> None:
+        """Of `root_at`."""
+        y[:] = self._clusters(tau, self._relative(tau, self._interpolated(tau)))
 
     def _z_of(self, y: Floats) -> Floats:
         """Every z, (H,), of unknowns; zero for those that they leave out."""
@@ -258,3 +296,59 @@ class Wrapped:
     def _clusters(self, tau: float, y: Floats) -> Floats:
         """The state of the clusters of unknowns, both relative to the ground."""
         raise NotImplementedError
+
+    def dense(self, start: float, end: float) -> Dense:
+        """The last step on SUNDIALS' own polynomial, from its values."""
+        times = end - (end - start) * NODES
+        values = np.array([self._in_frame(tau, self._interpolated(tau)) for tau in times])
+        return from_values(values, start, end, self._frame)
+
+    def _in_frame(self, tau: float, y: Floats) -> Floats:
+        """The state of the clusters of unknowns, both in the moving frame."""
+        raise NotImplementedError
+
+
+class InDescriptorForm(_Duties):
+    """What IDA's two ways have in common.
+
+    Parameters
+    ----------
+    modes : DescriptorModes
+        The forms that the scene takes.
+
+    Attributes
+    ----------
+    drift : ndarray, shape (2,)
+        Largest gap (m) and gap rate (m/s) of a resting contact at the end of any step, as IDA
+        left them.
+    """
+
+    name = "IDA"
+
+    def __init__(self, modes: DescriptorModes) -> None:
+        super().__init__()
+        self.scales, self.drift = modes.scales, np.zeros(2)
+        self._modes = modes
+        self._scratch = on_loan(blank(*modes.model.counts))
+        self._own: DescriptorMode
+        self._problem: Problem
+        self._followed: Followed
+        self._begun: float | None = None
+
+    def start(self, start: Start) -> None:
+        """Begin with the clusters in the state given; the tolerances are those of the run."""
+        self._own = self._modes.of(start.mode)
+        self._problem = on_loan(Problem(self._own.descriptor, start.forcing, start.frame))
+        self._followed = on_loan(Followed(self._problem, self.drift, self.scales.acceleration))
+        super().start(start)
+        self._begun = start.tau
+
+    def advance(
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
+    ) -> Stretch:
+        """Accepted steps, up to the first that is not clear or the bounds."""
+        if self._begun == tau:
+            # The loop has looked at the start of the segment by the equations of its clusters.
+            look_at_start(tau, e.y[first], self._mode.dynamics, self._problem, e.looks[first])
+        self._begun = None
+        return super().advance(tau, first, excess, bounds, e)

@@ -22,6 +22,8 @@ from numba import types
 from eventpound.numerics.compiled import INTERPRETED
 
 PREFIX = "eventpound_"
+ONE_STEP = 2
+"""SUNDIALS' CV_ONE_STEP and IDA_ONE_STEP."""
 _CVODE_COMPILED: list[str] = []
 """Functions of CVODE, and of vectors, that compiled code calls."""
 _IDA_COMPILED: list[str] = []

@@ -129,6 +129,15 @@ class _Memory:
         pointer = ctypes.cast(address, ctypes.POINTER(ctypes.c_double))
         return np.ctypeslib.as_array(pointer, (size,))
 
+    def find_roots(self, callback: int, directions: list[int]) -> None:
+        """Look for the roots of functions, the callback's, that pass zero this way each."""
+        own, count = self._own, len(directions)
+        flag = getattr(own, self.prefix + "RootInit")(self.address, count, callback)
+        if flag == 0 and count:
+            ways = np.array(directions, ctypes.c_int).ctypes.data
+            flag = getattr(own, self.prefix + "SetRootDirection")(self.address, ways)
+        self._set_up((flag,))
+
     def _set_up(self, flags: Iterable[int]) -> None:
         """Go through calls that return a flag."""
         for flag in flags:

@@ -10,32 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
+from eventpound.mechanics.ground_frame import to_frame
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.dense import NODES, Dense, from_values
-from eventpound.solvers.events.integrator import Bounds, Start, Stretch, last_time
-from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.reversals import (
     NEGLIGIBLE,
     first_reversal,
     may_reverse,
     take_directions,
 )
-from eventpound.solvers.events.step_check import (
-    BEYOND_BOUND,
-    CLEAR,
-    NOT_FINITE,
-    Examination,
-    examine,
-    rate_at,
-)
-from eventpound.solvers.sundials.callback_data import (
-    ROOT_RETURN,
-    Numbers,
-    before_root,
-    steps_to_roots,
-)
+from eventpound.solvers.events.step_check import Examination, examine, rate_at
 from eventpound.solvers.sundials.integrators import Wrapped
+from eventpound.solvers.sundials.loop import ROOT_RETURN, before_root
 from eventpound.solvers.sundials.memory import MOST_STEPS, layout
 from eventpound.solvers.sundials.root_values import cluster_roots
 
@@ -58,8 +44,6 @@ class WrappedCvode(Wrapped):
         self.rtol = rtol
         self.method = method
         self._objects: dict[Any, Any] = {}
-        self._mode: Mode
-        self._frame = NO_FRAME
         self._arguments: tuple[Any, ...] = ()
         self._directions = np.empty(0)
         self._turned = False
@@ -89,21 +73,15 @@ class WrappedCvode(Wrapped):
             )
         return self._objects[plan.key]
 
-    def start(self, start: Start) -> None:
-        """Begin at the local time `tau` (s) with state `y`."""
-        mode, forcing, frame, y, atol, tau = start
-        self._mode, self._forcing, self._frame = mode, forcing, frame
-        system = mode.directed
+    def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
+        system = self._mode.directed
         self._directions = system.direction
         self._directions[:] = 0.0
-        self._arguments = system, forcing, frame
-        if self._roots is not None:
-            self._roots.point_to(mode)
+        self._arguments = system, self._forcing, self._frame
         self._present = self._object(atol)
-        self._begin(tau, y)
-        self.starts += 1
+        self._begin_anew(tau, y)
 
-    def _begin(self, tau: float, y: Floats) -> None:
+    def _begin_anew(self, tau: float, y: Floats) -> None:
         """Begin at the local time `tau` (s) without a past."""
         system, inner = self._mode.system, y.copy()
         to_frame(self._frame, self._forcing.start + tau, 1.0, system.iq, system.iv, inner)
@@ -130,54 +108,43 @@ class WrappedCvode(Wrapped):
     def _clusters(self, tau: float, y: Floats) -> Floats:
         return y
 
-    def advance(
-        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
-    ) -> Stretch:
-        """One accepted step and its examination."""
-        return Stretch(
-            *steps_to_roots(self._advance, self._what_root, tau, first, excess, bounds, e)[1:]
-        )
+    def _in_frame(self, tau: float, y: Floats) -> Floats:
+        return y
 
-    def _advance(
-        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
-    ) -> Numbers:
-        """The step, or its part up to a root."""
-        stop = last_time(tau, bounds.at_samples, bounds, self._forcing)
-        system, before = self._mode.system, e.y[first]
+    def _take(
+        self, start: float, first: int, bounds: Bounds, e: Examination
+    ) -> tuple[int, float, bool]:
+        """A step from `start` (s) up to where a link reverses."""
+        before = e.y[first]
         if self._turned:
-            self._begin(tau, before)
-        take_directions(before, system, self.rtol, self._directions)
-        end, after = self._step(stop, first)
-        if end <= tau:
-            return 0, first, tau, end, CLEAR, excess, 0
-        turned = self._first_reversal(tau, end, first, after, e)
+            self._begin_anew(start, before)
+        take_directions(before, self._mode.system, self.rtol, self._directions)
+        flag, end, after = self._step(last_time(start, bounds.at_samples, bounds, self._forcing))
+        if flag < 0 or end <= start:
+            return flag, end, False
+        turned = self._first_reversal(start, end, first, flag, after, e)
         if turned < np.inf:
-            end, self._turned = turned, True
+            flag, end, self._turned = 0, turned, True
             after = self._relative(turned, self._interpolated(turned))
         e.y[1 - first] = after
-        if self._at_root and not self._turned:
-            return ROOT_RETURN, first, tau, end, CLEAR, excess, 0
-        verdict, excess = examine(tau, end, first, max(e.z_allowed, excess), e)
-        accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
-        return 0, first, tau, end, verdict, excess, int(accepted)
+        return flag, end, flag != ROOT_RETURN
+
+    def _check(
+        self, start: float, end: float, first: int, allowed: float, e: Examination
+    ) -> tuple[int, float]:
+        return examine(start, end, first, allowed, e)
 
     def _first_reversal(
-        self, start: float, end: float, first: int, after: Floats, e: Examination
+        self, start: float, end: float, first: int, flag: int, after: Floats, e: Examination
     ) -> float:
         """Where in a step a link reverses (s); inf for nowhere, or not before the root at its end.
 
         A root may be a reversal, and what it means is seen with the direction before it.
         """
         last, allowed = end, NEGLIGIBLE * self.rtol
-        if self._at_root:
+        if flag == ROOT_RETURN:
             last, allowed = before_root(start, end), 0.0
         given = self._mode.system, self._directions
         if not may_reverse(e.y[first], e.rate[first], after, end - start, *given, allowed):
             return np.inf
         return first_reversal(self.dense(start, end), last, e.forcing.start, *given)
-
-    def dense(self, start: float, end: float) -> Dense:
-        """The last step on CVODE's own polynomial, from its values."""
-        times = end - (end - start) * NODES
-        values = np.array([self._interpolated(tau) for tau in times])
-        return from_values(values, start, end, self._frame)

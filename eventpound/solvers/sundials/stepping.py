@@ -5,42 +5,25 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
 
 from eventpound.mechanics.ground_frame import to_frame
-from eventpound.mechanics.observables import Bodies, observe
+from eventpound.mechanics.observables import Bodies, Observed, observe
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
 from eventpound.numerics.compiled import kernel, loop_kernel
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds, last_time
-from eventpound.solvers.events.recorder import PASSED, is_due, write_row
 from eventpound.solvers.events.reversals import (
     NEGLIGIBLE,
     first_reversal,
     may_reverse,
     take_directions,
 )
-from eventpound.solvers.events.roots import any_fell
-from eventpound.solvers.events.step_check import (
-    BEYOND_BOUND,
-    CLEAR,
-    HAPPENED,
-    NOT_FINITE,
-    Examination,
-    examine,
-    rate_at,
-)
-from eventpound.solvers.sundials.callback_data import (
-    ROOT_RETURN,
-    Roots,
-    address_of,
-    at_bounds,
-    before_root,
-    first_zero,
-)
+from eventpound.solvers.events.step_check import Examination, examine, rate_at
+from eventpound.solvers.sundials.callback_data import Roots
 from eventpound.solvers.sundials.library import (
+    ONE_STEP,
     array_pointer,
     current_time,
     cvode,
@@ -51,14 +34,20 @@ from eventpound.solvers.sundials.library import (
     reinit,
     set_stop_time,
 )
+from eventpound.solvers.sundials.loop import (
+    ROOT_RETURN,
+    Numbers,
+    before_root,
+    carry_on,
+    root_at,
+    write_samples,
+)
 from eventpound.solvers.sundials.root_values import cluster_roots
 
 if library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.
     raise ImportError("the SUNDIALS library cannot be reached from compiled code")
 
-ONE_STEP = 2
-"""SUNDIALS' CV_ONE_STEP."""
 REACHED, TURNED = 0, 1
 """Places of `Handles.reached`: where CVODE is, and where a link has reversed last (s)."""
 NEVER = -1.0
@@ -97,7 +86,7 @@ class Handles(NamedTuple):
     spent: Ints
 
 
-def _right_hand_side(tau: float, y: int, rate: int, given: Given) -> int:
+def right_hand_side(tau: float, y: int, rate: int, given: Given) -> int:
     """CVODE's callback, a `CVRhsFn`."""
     given.calls[0] += 1
     state = array_at(array_pointer(y), given.system.size, np.float64)
@@ -106,60 +95,65 @@ def _right_hand_side(tau: float, y: int, rate: int, given: Given) -> int:
     return 0
 
 
-def right_hand_side(given: Given) -> int:
-    """Address of the right-hand side."""
-    two = types.intp, types.intp
-    return address_of(_right_hand_side, given, lambda kind: types.intc(types.float64, *two, kind))
-
-
 @loop_kernel
 def advance(
     handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
-) -> tuple[int, int, float, float, int, float, int]:
+) -> Numbers:
     """Steps from `tau` (s), each examined, as `Integrator.advance` says.
 
     CVODE's last flag, then the numbers of the `Stretch`.
     """
-    done = _steps(handles, tau, first, excess, bounds, e)
+    done = carry_on(_take, _check, _write, handles, tau, first, excess, bounds, e)
     _count_jacobians(handles)
     return done
 
 
 @kernel
-def _steps(
-    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
-) -> tuple[int, int, float, float, int, float, int]:
-    """`advance`, its Jacobians not counted."""
-    system, forcing = e.dynamics.system, e.forcing
-    state = array_at(array_pointer(handles.vector), system.size, np.float64)
-    direction = handles.given.system.direction
-    origin, start, steps = forcing.start, tau, 0
-    while True:
-        if handles.reached[TURNED] == start:
-            _begin_anew(handles, start, first, e)
-        take_directions(e.y[first], system, handles.rtol, direction)
-        stop = last_time(start, bounds.at_samples, bounds, forcing)
-        set_stop_time(handles.memory, stop)
-        flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
-        end = handles.reached[REACHED]
-        if flag < 0 or end <= start:
-            return flag, first, start, end, CLEAR, excess, steps
-        copy_numbers(state, e.y[1 - first])
-        to_frame(e.frame, origin + end, -1.0, system.iq, system.iv, e.y[1 - first])
-        turned = _to_reversal(handles, start, end, first, flag, e, direction)
-        if turned < np.inf:
-            flag, end = 0, turned
-        elif flag == ROOT_RETURN:
-            return flag, first, start, end, CLEAR, excess, steps
-        verdict, reached = examine(start, end, first, max(e.z_allowed, excess), e)
-        if verdict in (NOT_FINITE, BEYOND_BOUND):
-            return flag, first, start, end, verdict, reached, steps
-        excess, steps = reached, steps + 1
-        if verdict == CLEAR and is_due(origin + end, e.record.journal):
-            _write_samples(handles, start, end, e)
-        if verdict != CLEAR or at_bounds(end, steps, bounds):
-            return flag, first, start, end, verdict, excess, steps
-        start, first = end, 1 - first
+def _take(
+    handles: Handles, start: float, first: int, bounds: Bounds, e: Examination
+) -> tuple[int, float, bool]:
+    """A step from `start` (s) up to where a link reverses; see `carry_on`."""
+    system, direction = e.dynamics.system, handles.given.system.direction
+    if handles.reached[TURNED] == start:
+        _begin_anew(handles, start, first, e)
+    take_directions(e.y[first], system, handles.rtol, direction)
+    stop = last_time(start, bounds.at_samples, bounds, e.forcing)
+    set_stop_time(handles.memory, stop)
+    flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
+    end = handles.reached[REACHED]
+    if flag < 0 or end <= start:
+        return flag, end, False
+    copy_numbers(array_at(array_pointer(handles.vector), system.size, np.float64), e.y[1 - first])
+    to_frame(e.frame, e.forcing.start + end, -1.0, system.iq, system.iv, e.y[1 - first])
+    turned = _to_reversal(handles, start, end, first, flag, e, direction)
+    if turned < np.inf:
+        return 0, turned, True
+    return flag, end, flag != ROOT_RETURN
+
+
+@kernel
+def _check(
+    handles: Handles, start: float, end: float, first: int, allowed: float, e: Examination
+) -> tuple[int, float]:
+    """`examine`."""
+    return examine(start, end, first, allowed, e)
+
+
+@kernel
+def _write(handles: Handles, start: float, end: float, e: Examination) -> None:
+    """History at the output times of a step."""
+    write_samples(_show, handles, start, end, e)
+
+
+@kernel
+def _show(handles: Handles, tau: float, seen: Observed, e: Examination) -> None:
+    """Observe the motion at `tau` (s) of the last step."""
+    system = e.dynamics.system
+    y = array_at(array_pointer(handles.look), system.size, np.float64)
+    get_dky(handles.memory, tau, 0, handles.look)
+    to_frame(e.frame, e.forcing.start + tau, -1.0, system.iq, system.iv, y)
+    # Nothing in a line depends on rates: any will do.
+    observe(tau, y, e.rate[0], system, e.dynamics.bodies, e.forcing, seen)
 
 
 @kernel
@@ -206,60 +200,38 @@ def _to_reversal(
     if not may_reverse(before, rate, after, end - start, system, direction, allowed):
         return np.inf
     origin = e.forcing.start
-    Y = derivatives(handles.memory, handles.look, end, system.size)
+    Y = derivatives(handles, end)
     dense = Dense(Y, end, start, end, e.frame, False, Y[:0])
     turned = first_reversal(dense, last, origin, system, direction)
     if turned < np.inf:
-        get_dky(handles.memory, turned, 0, handles.look)
-        copy_numbers(array_at(array_pointer(handles.look), system.size, np.float64), after)
-        to_frame(e.frame, origin + turned, -1.0, system.iq, system.iv, after)
+        _put(handles, turned, after)
         handles.reached[TURNED] = turned
     return turned
 
 
 @kernel
-def _write_samples(handles: Handles, start: float, end: float, e: Examination) -> None:
-    """History at the output times of a step, on CVODE's own polynomial."""
-    journal, forcing, mode = e.record.journal, e.forcing, e.dynamics
-    system, origin = mode.system, forcing.start
-    y = array_at(array_pointer(handles.look), system.size, np.float64)
-    seen = e.looks[4]
-    while is_due(origin + end, journal):
-        t = journal.times[journal.cursor[PASSED]]
-        if t >= origin + start:
-            tau = max(t - origin, start)
-            get_dky(handles.memory, tau, 0, handles.look)
-            to_frame(e.frame, origin + tau, -1.0, system.iq, system.iv, y)
-            # Nothing in a line depends on rates: any will do.
-            observe(tau, y, e.rate[0], system, mode.bodies, forcing, seen)
-            write_row(t, seen, journal)
-        journal.cursor[PASSED] += 1
-
-
-@kernel
-def derivatives(memory: int, vector: int, t: float, size: int) -> Floats:
+def derivatives(handles: Handles, t: float) -> Floats:
     """Coefficients of CVODE's own polynomial of its last step about `t` (s).
 
     Parameters
     ----------
-    memory, vector : int
-        Addresses of a CVODE object and of a vector, which is overwritten.
+    handles : Handles
+        The CVODE object; the state that it interpolates is overwritten.
     t : float
         Local time (s).
-    size : int
-        Of the state.
 
     Returns
     -------
     ndarray, shape (order + 1, size)
         ``y^(k) / k!``.
     """
+    memory, look, size = handles.memory, handles.look, handles.given.system.size
     order = np.zeros(1, np.int32)
     last_order(memory, order.ctypes.data)
     Y, factorial = np.empty((order[0] + 1, size)), 1.0
-    y = array_at(array_pointer(vector), size, np.float64)
+    y = array_at(array_pointer(look), size, np.float64)
     for k in range(order[0] + 1):
-        get_dky(memory, t, k, vector)
+        get_dky(memory, t, k, look)
         factorial *= max(k, 1)
         for i in range(size):
             Y[k, i] = y[i] / factorial
@@ -274,67 +246,48 @@ def _roots_at(tau: float, y: Floats, given: Given, out: Floats) -> None:
     cluster_roots(tau, state, system, given.bodies, forcing, given.roots, out)
 
 
-def _root_functions(tau: float, y: int, out: int, given: Given) -> int:
+def root_functions(tau: float, y: int, out: int, given: Given) -> int:
     """CVODE's callback, a `CVRootFn`."""
     state = array_at(array_pointer(y), given.system.size, np.float64)
     _roots_at(tau, state, given, array_at(out, 2 * given.roots.noise.size, np.float64))
     return 0
 
 
-def root_callback(given: Given) -> int:
-    """Address of the root functions."""
-    two = types.intp, types.intp
-    return address_of(_root_functions, given, lambda kind: types.intc(types.float64, *two, kind))
+@kernel
+def _values(handles: Handles, tau: float) -> Roots:
+    """Root functions at `tau` (s), where CVODE is."""
+    given, roots = handles.given, handles.given.roots
+    state = array_at(array_pointer(handles.vector), given.system.size, np.float64)
+    _roots_at(tau, state, given, roots.pairs.reshape(2 * roots.noise.size))
+    return roots
 
 
 @kernel
-def _leapt(y: Floats, bodies: Bodies, bound: Floats, allowed: float) -> bool:
-    """Whether a |z| exceeds its bound by more than is allowed."""
-    leapt = False
-    for h in range(bound.size):
-        place = bodies.z_of[h]
-        leapt = leapt or (place >= 0 and abs(y[place]) - bound[h] > allowed)
-    return leapt
+def _whole_step(handles: Handles) -> tuple[float, Floats]:
+    """End of CVODE's whole step (s), and every z there; zero for those that do not move."""
+    whole, places = np.empty(1), handles.given.bodies.z_of
+    current_time(handles.memory, whole.ctypes.data)
+    get_dky(handles.memory, whole[0], 0, handles.look)
+    last = array_at(array_pointer(handles.look), handles.given.system.size, np.float64)
+    z = np.zeros(places.size)
+    for h in range(places.size):
+        if places[h] >= 0:
+            z[h] = last[places[h]]
+    return whole[0], z
+
+
+@kernel
+def _put(handles: Handles, tau: float, y: Floats) -> None:
+    """Fill in the state at `tau` (s) of the last step, relative to the ground."""
+    given, system = handles.given, handles.given.system
+    get_dky(handles.memory, tau, 0, handles.look)
+    copy_numbers(array_at(array_pointer(handles.look), system.size, np.float64), y)
+    to_frame(given.frame, given.forcing.start + tau, -1.0, system.iq, system.iv, y)
 
 
 @kernel
 def at_root(
     handles: Handles, start: float, tau: float, bound: Floats, allowed: float, y: Floats
 ) -> tuple[int, float]:
-    """What CVODE's return with a root at `tau` (s) means, and where its step ends (s).
-
-    Parameters
-    ----------
-    handles : Handles
-        The CVODE object; the state that it interpolates is overwritten.
-    start, tau : float
-        Start of the step, and the root (s).
-    bound, allowed : ndarray, shape (H,), and float
-        Of every |z|, and by how much it may be exceeded at the end of CVODE's whole step.
-    y : ndarray, shape (size,)
-        State where the value was zero, relative to the ground; overwritten where one fell.
-
-    Returns
-    -------
-    verdict : int
-        CLEAR at the bottom of a dip that stays above zero, HAPPENED or BEYOND_BOUND.
-    end : float
-        Where the value was zero, or the end of a step that leapt over the knee of the hysteresis.
-    """
-    given, memory, look = handles.given, handles.memory, handles.look
-    system, roots = given.system, given.roots
-    state = array_at(array_pointer(handles.vector), system.size, np.float64)
-    _roots_at(tau, state, given, roots.pairs.reshape(2 * roots.noise.size))
-    if not any_fell(roots.pairs):
-        return CLEAR, tau
-    whole = np.empty(1)
-    current_time(memory, whole.ctypes.data)
-    get_dky(memory, whole[0], 0, look)
-    last = array_at(array_pointer(look), system.size, np.float64)
-    if _leapt(last, given.bodies, bound, allowed):
-        return BEYOND_BOUND, whole[0]
-    end = first_zero(roots, start, tau, whole[0])
-    get_dky(memory, end, 0, look)
-    y[:] = last
-    to_frame(given.frame, given.forcing.start + end, -1.0, system.iq, system.iv, y)
-    return HAPPENED, end
+    """`root_at` for CVODE."""
+    return root_at(_values, _whole_step, _put, handles, start, tau, bound, allowed, y)
