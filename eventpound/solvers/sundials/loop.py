@@ -9,11 +9,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.recorder import PASSED, is_due, write_row
+from eventpound.solvers.events.reversals import NEGLIGIBLE, first_reversal, may_reverse
 from eventpound.solvers.events.roots import any_fell, on_the_root
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
@@ -107,6 +111,49 @@ def write_samples(
 def before_root(start: float, tau: float) -> float:
     """Start of the bracket of a root at `tau` (s) of a step from `start` (s)."""
     return tau - BRACKET * EPS * (abs(tau) + tau - start)
+
+
+@kernel
+def reversal_in(
+    dense: Callable[[Any, float, float], Dense],
+    handles: Any,
+    start: float,
+    end: float,
+    first: int,
+    flag: int,
+    rtol: float,
+    direction: Floats,
+    e: Examination,
+) -> float:
+    """When in a step from `start` to `end` a link reverses (s, local); inf where none does.
+
+    A root at its end may be a reversal, and what it means is seen with the direction before it.
+
+    Parameters
+    ----------
+    dense : callable
+        The step on the integrator's own polynomial.
+    handles
+        What that is handed.
+    start, end : float
+        Of the step (s, local).
+    first, flag : int
+        Row of the state at its start, and SUNDIALS' flag at its end.
+    rtol : float
+        Of the motion: by a part of it z may err at a reversal that is left alone.
+    direction : ndarray, shape (A,)
+        Of each link; updated.
+    e : Examination
+        The segment, with the states at both ends.
+    """
+    before, after, rate, system = e.y[first], e.y[1 - first], e.rate[first], e.dynamics.system
+    # Reversals after `last` are left alone.
+    last, allowed = end, NEGLIGIBLE * rtol
+    if flag == ROOT_RETURN:
+        last, allowed = before_root(start, end), 0.0
+    if not may_reverse(before, rate, after, end - start, system, direction, allowed):
+        return np.inf
+    return first_reversal(dense(handles, start, end), last, e.forcing.start, system, direction)
 
 
 @kernel

@@ -12,16 +12,12 @@ import numpy as np
 
 from eventpound.mechanics.ground_frame import to_frame
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.integrator import Bounds, last_time
-from eventpound.solvers.events.reversals import (
-    NEGLIGIBLE,
-    first_reversal,
-    may_reverse,
-    take_directions,
-)
+from eventpound.solvers.events.reversals import take_directions
 from eventpound.solvers.events.step_check import Examination, examine, rate_at
 from eventpound.solvers.sundials.integrators import Wrapped
-from eventpound.solvers.sundials.loop import ROOT_RETURN, before_root
+from eventpound.solvers.sundials.loop import ROOT_RETURN, reversal_in
 from eventpound.solvers.sundials.memory import MOST_STEPS, layout
 from eventpound.solvers.sundials.root_values import cluster_roots
 
@@ -119,32 +115,21 @@ class WrappedCvode(Wrapped):
         if self._turned:
             self._begin_anew(start, before)
         take_directions(before, self._mode.system, self.rtol, self._directions)
-        flag, end, after = self._step(last_time(start, bounds.at_samples, bounds, self._forcing))
+        stop = last_time(start, bounds.at_samples, bounds, self._forcing)
+        flag, end, after = self._step(stop)
         if flag < 0 or end <= start:
             return flag, end, False
-        turned = self._first_reversal(start, end, first, flag, after, e)
-        if turned < np.inf:
-            flag, end, self._turned = 0, turned, True
-            after = self._relative(turned, self._interpolated(turned))
         e.y[1 - first] = after
+        turned = in_python(reversal_in)(
+            type(self).dense, self, start, end, first, flag, self.rtol, self._directions, e
+        )
+        if turned < np.inf:
+            self._turned = True
+            self._put(turned, e.y[1 - first])
+            return 0, turned, True
         return flag, end, flag != ROOT_RETURN
 
     def _check(
         self, start: float, end: float, first: int, allowed: float, e: Examination
     ) -> tuple[int, float]:
         return examine(start, end, first, allowed, e)
-
-    def _first_reversal(
-        self, start: float, end: float, first: int, flag: int, after: Floats, e: Examination
-    ) -> float:
-        """Where in a step a link reverses (s); inf for nowhere, or not before the root at its end.
-
-        A root may be a reversal, and what it means is seen with the direction before it.
-        """
-        last, allowed = end, NEGLIGIBLE * self.rtol
-        if flag == ROOT_RETURN:
-            last, allowed = before_root(start, end), 0.0
-        given = self._mode.system, self._directions
-        if not may_reverse(e.y[first], e.rate[first], after, end - start, *given, allowed):
-            return np.inf
-        return first_reversal(self.dense(start, end), last, e.forcing.start, *given)

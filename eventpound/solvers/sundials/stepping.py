@@ -14,12 +14,7 @@ from eventpound.numerics.borrowing import array_at, copy_numbers
 from eventpound.numerics.compiled import kernel, loop_kernel
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds, last_time
-from eventpound.solvers.events.reversals import (
-    NEGLIGIBLE,
-    first_reversal,
-    may_reverse,
-    take_directions,
-)
+from eventpound.solvers.events.reversals import take_directions
 from eventpound.solvers.events.step_check import Examination, examine, rate_at
 from eventpound.solvers.sundials.callback_data import Roots
 from eventpound.solvers.sundials.library import (
@@ -37,8 +32,8 @@ from eventpound.solvers.sundials.library import (
 from eventpound.solvers.sundials.loop import (
     ROOT_RETURN,
     Numbers,
-    before_root,
     carry_on,
+    reversal_in,
     root_at,
     write_samples,
 )
@@ -125,8 +120,10 @@ def _take(
         return flag, end, False
     copy_numbers(array_at(array_pointer(handles.vector), system.size, np.float64), e.y[1 - first])
     to_frame(e.frame, e.forcing.start + end, -1.0, system.iq, system.iv, e.y[1 - first])
-    turned = _to_reversal(handles, start, end, first, flag, e, direction)
+    turned = reversal_in(_dense, handles, start, end, first, flag, handles.rtol, direction, e)
     if turned < np.inf:
+        _put(handles, turned, e.y[1 - first])
+        handles.reached[TURNED] = turned
         return 0, turned, True
     return flag, end, flag != ROOT_RETURN
 
@@ -178,35 +175,10 @@ def _count_jacobians(handles: Handles) -> None:
 
 
 @kernel
-def _to_reversal(
-    handles: Handles,
-    start: float,
-    end: float,
-    first: int,
-    flag: int,
-    e: Examination,
-    direction: Floats,
-) -> float:
-    """Where in a step a link reverses (s), whose state is then that at its end; inf for nowhere.
-
-    `flag` is CVODE's. A root, if that says so, may be a reversal, and what it means is seen with
-    the direction before it.
-    """
-    # Reversals after `last` are left alone; where one is, z may err by `allowed`.
-    last, allowed = end, NEGLIGIBLE * handles.rtol
-    if flag == ROOT_RETURN:
-        last, allowed = before_root(start, end), 0.0
-    before, after, rate, system = e.y[first], e.y[1 - first], e.rate[first], e.dynamics.system
-    if not may_reverse(before, rate, after, end - start, system, direction, allowed):
-        return np.inf
-    origin = e.forcing.start
+def _dense(handles: Handles, start: float, end: float) -> Dense:
+    """The last step on CVODE's own polynomial."""
     Y = derivatives(handles, end)
-    dense = Dense(Y, end, start, end, e.frame, False, Y[:0])
-    turned = first_reversal(dense, last, origin, system, direction)
-    if turned < np.inf:
-        _put(handles, turned, after)
-        handles.reached[TURNED] = turned
-    return turned
+    return Dense(Y, end, start, end, handles.given.frame, False, Y[:0])
 
 
 @kernel
