@@ -1568,7 +1568,7 @@ def judge(problem: Problem, history: Motion, seconds: float | None = None) -> Ca
     card.deviations = found.quantities
     for group in ("peaks", "final", "history"):
         worst = found.worst(group)
-        card.digits[group] = None if worst is None else _digits(max(worst.error, worst.floor))
+        card.digits[group] = None if worst is None else digits_of(max(worst.error, worst.floor))
         card.worst[group] = "" if worst is None else worst.quantity.name
     card.impacts = _counts(problem, found.events, "impact", impacts is not None)
     if impacts is None:
@@ -1577,7 +1577,7 @@ def judge(problem: Problem, history: Motion, seconds: float | None = None) -> Ca
         kind: _counts(problem, found.events, kind, kind in history.reported) for kind in EVENTS
     }
     shift = card.impacts["largest_shift"]
-    card.digits["impacts"] = None if shift is None else _digits(shift)
+    card.digits["impacts"] = None if shift is None else digits_of(shift)
     card.penetration = _penetration(problem, history)
     card.energy, why = _created_energy(problem, history, impacts)
     if why:
@@ -1634,7 +1634,10 @@ def _impact_rows(problem: Problem, motion: Motion) -> list[dict[str, Any]]:
     ]
 
 
-def _digits(part: float) -> float:
+def digits_of(part: float) -> float:
+    """Decimal digits that an error of this part of the scale leaves, to a tenth, 0 to 16."""
+    if not math.isfinite(part):
+        return 0.0
     return round(min(max(-math.log10(max(part, 1e-16)), 0.0), 16.0) + 0.0, 1)
 
 
@@ -1719,7 +1722,7 @@ def event_words(card: Card) -> dict[str, str]:
                 said[kind] = f"{found['expected']} expected, not reported"
         elif found["expected"] or found["extra"]:
             shift = found["largest_shift"]
-            digits = "" if shift is None else f", {_digits(shift):.1f} digits"
+            digits = "" if shift is None else f", {digits_of(shift):.1f} digits"
             said[kind] = (
                 f"{found['expected']} expected, {found['matched']} matched, "
                 f"{found['missed']} missed, {found['extra']} extra{digits}"
@@ -1887,7 +1890,7 @@ def card_page(problem: Problem, history: Motion, card: Card) -> str:
         [
             html.escape(q.quantity.name), f"{q.quantity.value:.6g}", f"{q.value:.6g}",
             f"{q.value - q.quantity.value:+.1e}", q.quantity.unit, f"{q.error:.1e}",
-            f"{q.floor:.1e}", f"{_digits(max(q.error, q.floor)):.1f}",
+            f"{q.floor:.1e}", f"{digits_of(max(q.error, q.floor)):.1f}",
         ]
         for q in worst
     ]  # fmt: skip

@@ -12,6 +12,7 @@ from eventpound.accuracy.conditioning import Conditioning
 from eventpound.accuracy.left_out import displaced, time_to_limits
 from eventpound.accuracy.quantities import row_of, scales_of_task
 from eventpound.accuracy.routes import REFERENCE
+from eventpound.score import digits_of
 from eventpound.solvers.base import Task
 from eventpound.tolerances import ATTAINED_ANEW
 
@@ -41,7 +42,7 @@ def certified_quantities(
         bound, slope = float(bounds.bound[i]), float(conditions.largest_slope[i])
         confirmed = float(bounds.confirmed[i])
         width = bound if np.isfinite(bound) else confirmed
-        digits = _digits_of(width / quantity.scale)
+        digits = digits_of(width / quantity.scale)
         holds = bool(np.isfinite(bound)) and digits >= FEWEST_DIGITS
         certified.append(
             CertifiedQuantity(
@@ -87,13 +88,6 @@ def _refuse_after_parting(found: RoutesCompared, bounds: ErrorBounds) -> None:
         if row >= 0 and events[row].t >= found.parted_from:
             bounds.bound[i] = np.nan
             bounds.limit[i] = Limit.PARTED
-
-
-def _digits_of(part: float) -> float:
-    """Decimal digits that an error of this part of the scale leaves, to a tenth, 0 to 16."""
-    if not np.isfinite(part):
-        return 0.0
-    return round(float(np.clip(-np.log10(max(part, 1e-16)), 0.0, 16.0)), 1)
 
 
 def _widen_times(task: Task, found: RoutesCompared, bounds: ErrorBounds) -> None:
