@@ -89,9 +89,14 @@ class KernelStore:
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep a kernel, in the first folder that can be written.
 
-        Where there is none that is said once, and the kernel serves this process only.
+        Where there is none that is said once, and the kernel serves this process only. So does
+        one that takes a kernel: the type of that tells where it lies, not what it was made of.
         """
+        from numba.core.types import Dispatcher
+
         if result.library.has_dynamic_globals:
+            return
+        if any(isinstance(each, Dispatcher) for each in result.signature.args):
             return
         trouble: Exception | None = None
         try:

@@ -7,8 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from numba.core.registry import CPUDispatcher
 
-from eventpound.numerics.compiled import store
+from eventpound.numerics import compiled
+from eventpound.numerics.compiled import sources, store
 from tests.numerics.compiled.modules import imported, in_a_process, written
 
 
@@ -78,12 +80,30 @@ def test_what_is_out_of_date_is_taken_away(kept):
     file, path = kept
     file.write_text(file.read_text().replace("2.0 * x", "4.0 * x"))
     store.source_stamp.cache_clear()
-    from eventpound.numerics.compiled import sources
-
     sources._text_and_imports.cache_clear()
     assert imported(file).doubled(1.5) == 6.0
     assert not path.exists()
     assert len(list(path.parent.glob("kernels.doubled-*"))) == 1
+
+
+def test_a_kernel_that_takes_another_is_never_out_of_date(tmp_path, monkeypatch):
+    """In Numba's own way one is told by where it lies, which another may do in the next process."""
+    monkeypatch.setattr(compiled, "PLAIN", True)
+    monkeypatch.setattr(CPUDispatcher, "__repr__", lambda self: "one of them, at the same address")
+    files = [tmp_path / f"{name}.py" for name in ("taken", "takes")]
+    files[1].write_text(
+        "from eventpound.numerics.compiled import kernel\n\n\n"
+        "@kernel\ndef applied(rule, x):\n    return rule(x)\n"
+    )
+    for factor in (2.0, 4.0):
+        files[0].write_text(
+            "from eventpound.numerics.compiled import kernel\n\n\n"
+            f"@kernel\ndef rule(x):\n    return {factor} * x\n"
+        )
+        sources._text_and_imports.cache_clear()
+        sources.source_stamp.cache_clear()
+        taken, takes = (imported(file, file.stem) for file in files)
+        assert takes.applied(taken.rule, 1.5) == factor * 1.5
 
 
 def test_kernels_beside_sources_that_cannot_be_written_are_used(kept, monkeypatch, tmp_path):
