@@ -14,7 +14,9 @@ class OptionWarning(UserWarning):
 def warn_caller(text: str, category: type[Warning]) -> None:
     """Warn of what the first caller from outside of the package asked for."""
     level, frame = 1, sys._getframe()
-    while frame.f_back and frame.f_globals["__name__"].startswith(("eventpound.", "functools")):
+    # Code that was handed to `exec` with globals of its own has no name.
+    inside = ("eventpound.", "functools")
+    while frame.f_back and frame.f_globals.get("__name__", "").startswith(inside):
         level, frame = level + 1, frame.f_back
     warnings.warn(text, category, stacklevel=level)
 

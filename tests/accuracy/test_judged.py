@@ -58,6 +58,13 @@ def test_a_run_of_few_steps_warns_that_its_error_is_not_known() -> None:
     assert "the limit of" in found.error_estimate["failed"]
 
 
+def test_code_without_a_name_is_warned_too() -> None:
+    """As a notebook's or a debugger's, which `exec` runs with globals of its own."""
+    code = "from eventpound.warned import warn_caller; warn_caller('said', UserWarning)"
+    with pytest.warns(UserWarning, match="said"):
+        exec(code, {})
+
+
 def test_it_is_made_where_it_is_asked_for() -> None:
     with (
         pytest.warns(AccuracyWarning, match="impacts at contact 'joint' have other speeds"),
