@@ -18,6 +18,7 @@ from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.given import number
 from eventpound.motion.base import LARGEST, SMALLEST
+from eventpound.scene.contact_law import Element
 from eventpound.scene.scene import Scene
 from eventpound.units import Dimension
 
@@ -36,7 +37,7 @@ _ATOL = {
 }
 # Solvers' own keys that have a dimension; any other is taken as it is.
 _SETTINGS = {"time_step": Dimension.TIME, "contact_stiffness": Dimension.STIFFNESS}
-HERTZIAN = ("hertz", "hertz-damp", "jankowski")
+HERTZIAN = tuple(element.word for element in Element if element.hertzian)
 """Values of ``contact`` with which ``contact_stiffness`` is that of a force k δ^1.5."""
 
 
