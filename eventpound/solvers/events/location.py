@@ -326,9 +326,9 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
     for i in range(PARTS + 1):
         times[i] = start + (end - start) * i / PARTS if i < PARTS else end
         look(times[i], step)
-        for k in range(peak.size):
+        for k in range(running.at.displacement, running.at.end):
             seen[0, i, k], seen[1, i, k], _ = motion_of(k, running.at, step.seen)
-    for k in range(peak.size):
+    for k in range(running.at.displacement, running.at.end):
         if not peak[k]:
             continue
         sought = Sought(_MONITORED, k, 0.0, 1.0, running.rounding[k])
