@@ -60,22 +60,18 @@ class Found(NamedTuple):
 
 
 @kernel
-def _bounds(i: int, at: Places, a: Observed, b: Observed, h: float) -> tuple[float, float]:
-    """Bounds of quantity i in the step, by the Bernstein coefficients."""
-    x, y = motion_of(i, at, a), motion_of(i, at, b)
-    if is_motion(i, at):
-        return _quintic_bounds(x, y, h)
+def _bounds(
+    x: tuple[float, float, float], y: tuple[float, float, float], h: float, motion: bool
+) -> tuple[float, float]:
+    """Bounds in the step, by the Bernstein coefficients, of what is x and y at its ends.
+
+    x and y are a value and two rates; only that of a `motion` has the second.
+    """
+    if motion:
+        quintic = quintic_bernstein(x, y, h)
+        return min(quintic), max(quintic)
     cubic = cubic_bernstein(x[0], x[1], y[0], y[1], h)
     return min(cubic), max(cubic)
-
-
-@kernel
-def _quintic_bounds(
-    x: tuple[float, float, float], y: tuple[float, float, float], h: float
-) -> tuple[float, float]:
-    """Bounds of what has a value and two rates x at the start of the step and y at its end."""
-    quintic = quintic_bernstein(x, y, h)
-    return min(quintic), max(quintic)
 
 
 @kernel
@@ -87,9 +83,9 @@ def _may_peak(i: int, a: Observed, b: Observed, h: float, running: Running) -> b
     rounding.
     """
     start, end = motion_of(i, running.at, a), motion_of(i, running.at, b)
-    low, high = _bounds(i, running.at, a, b, h)
-    rounding = running.rounding[i]
-    flat = FLAT_TURN * rounding if is_motion(i, running.at) else rounding
+    rounding, motion = running.rounding[i], is_motion(i, running.at)
+    low, high = _bounds(start, end, h, motion)
+    flat = FLAT_TURN * rounding if motion else rounding
     margin = DOUBT * (high - low) + rounding
     turns = start[1] * end[1] < 0.0 and max(abs(start[1]), abs(end[1])) * h > flat
     above = (turns or high > max(start[0], end[0]) + flat) and (high + margin > running.maximum[i])
@@ -104,10 +100,12 @@ def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, foun
         found.closing[j] = False
         found.detaching[j] = False
         if watched.open_contacts[j]:
-            low, high = _bounds(at.gap + j, at, a, b, h)
+            i = at.gap + j
+            low, high = _bounds(motion_of(i, at, a), motion_of(i, at, b), h, True)
             found.closing[j] = low <= DOUBT * (high - low)
         elif watched.unlocked[j]:
-            low, high = _bounds(at.contact_force + j, at, a, b, h)
+            i = at.contact_force + j
+            low, high = _bounds(motion_of(i, at, a), motion_of(i, at, b), h, False)
             found.detaching[j] = low - DOUBT * (high - low) < -watched.force_noise
         any_found = any_found or found.closing[j] or found.detaching[j]
     return any_found
@@ -122,7 +120,7 @@ def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: 
             continue
         # Of contact elements, which are links too, no extremes are kept.
         x0, x1 = a.elongation[:, link], b.elongation[:, link]
-        low, high = _quintic_bounds((x0[0], x0[1], x0[2]), (x1[0], x1[1], x1[2]), h)
+        low, high = _bounds((x0[0], x0[1], x0[2]), (x1[0], x1[1], x1[2]), h, True)
         doubt = DOUBT * (high - low)
         found.kink[link] = low - doubt < watched.kink_low[link]
         found.kink[link] = found.kink[link] or high + doubt > watched.kink_high[link]
