@@ -75,7 +75,8 @@ class BatchResponse(Runs):
     between : callable, optional
         Gives what only close rows tell, of one run (`eventpound.quantities.between`).
     apart : callable, optional
-        Gives the gaps that would have avoided contact (m), shape (n, K).
+        Gives the gaps that would have avoided contact (m) of those contacts whose numbers it is
+        given, (n, their number): a run in which only these cannot close.
     stated : Stated
         Numbers that some quantities are about.
     struck : ContactNumbers, optional

@@ -93,7 +93,7 @@ class Response:
             stated=self.stated,
             free=self._free,
             between=lambda: self._motion_between,
-            apart=lambda: self._avoiding_gaps,
+            apart=self._avoiding_gaps,
         )
         keep_recording(many, 0, self.recording)
         return many
@@ -156,8 +156,14 @@ class Response:
         return self._of_scene(replace(self.scene, contacts=()))
 
     @cached_property
-    def _avoiding_gaps(self) -> Floats:
-        return avoiding_gaps(self.scene, lambda scene: self._of_scene(scene).runs)
+    def _avoided(self) -> dict[tuple[int, ...], Floats]:
+        return {}
+
+    def _avoiding_gaps(self, widened: tuple[int, ...]) -> Floats:
+        if widened not in self._avoided:
+            found = avoiding_gaps(self.scene, widened, lambda scene: self._of_scene(scene).runs)
+            self._avoided[widened] = found
+        return self._avoided[widened]
 
     def _of_scene(self, scene: Scene) -> Response:
         """The same run of another scene."""

@@ -49,6 +49,7 @@ class Stated:
             yield "threshold_speed", "contacts.<contact>.impacts_faster"
         if self.avoiding_gap:
             yield "avoiding_gap", "contacts.<contact>.avoiding_gap"
+            yield "avoiding_gap", "contacts.<contact>.avoiding_gap_alone"
 
 
 DEFAULTS = Stated()
@@ -184,7 +185,7 @@ class Case:
     carried: Mapping[str, float] = field(default_factory=dict)
 
     def apart(self, scene: Scene) -> Case:
-        """The same of a scene without contacts, of which nothing is asked beyond what it gives."""
+        """The same of another scene, of which nothing is asked beyond what it gives."""
         return replace(self, scene=scene, run=replace(self.run, stated=DEFAULTS))
 
     def __repr__(self) -> str:

@@ -31,9 +31,10 @@ class Source(StrEnum):
     BETWEEN = "further runs with rows close together, where it is named"
     FREE = "one more run, without contact, where it is named"
     APART = "one more run, in which no contact can close, where it is named"
+    APART_ALONE = "one more run for each contact, in which it alone cannot close, where it is named"
 
 
-FROM_FURTHER = (Source.FREE, Source.APART)
+FROM_FURTHER = (Source.FREE, Source.APART, Source.APART_ALONE)
 """What needs a run of another scene."""
 FROM_ONE = (Source.FORCES, Source.LAWS, Source.ENERGY, Source.BETWEEN)
 """What needs all of a run, not its extremes only."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from eventpound.quantities import values as v
 from eventpound.quantities.base import Quantity, Source, column, of_contact, six_of, sum_of
+from eventpound.scene.separation import is_between_bodies, is_between_structures
 from eventpound.units import Dimension
 
 D = Dimension
@@ -52,6 +53,9 @@ LISTED: tuple[Quantity, ...] = (
     Quantity(_SPRING + "ductility", "ductility", D.NUMBER,
              "Largest elongation of either sign over the yield displacement (Bouc-Wen springs).",
              v.ductility, only=v.is_hysteretic),
+    Quantity(_SPRING + "residual_elongation", "residual elongation", D.LENGTH,
+             "Elongation when the run ends: what is left if the motion has died down by then.",
+             v.residual_elongation, only=v.moves_with_bodies),
     Quantity(_SPRING + "drift_ratio", "drift ratio", D.NUMBER,
              "Largest elongation of either sign over the height of the storey, where it is given.",
              v.peak_drift_ratio, only=v.has_height),
@@ -67,6 +71,9 @@ LISTED: tuple[Quantity, ...] = (
     Quantity("impacts", "impacts", D.NUMBER,
              "Impacts of all contacts, with those that accumulations stand for.",
              sum_of("impacts"), kind=int),
+    Quantity("impacts_faster", "impacts above the threshold", D.NUMBER,
+             "Impacts of all contacts that close faster than threshold_speed.",
+             v.impacts_faster, Source.CONTACTS, v.has_contacts, kind=int),
     Quantity("resting_time", "resting time", D.TIME, "Time at rest, the sum of all contacts.",
              sum_of("resting_time")),
     Quantity(_CONTACT + "impacts", "impacts", D.NUMBER,
@@ -109,9 +116,21 @@ LISTED: tuple[Quantity, ...] = (
     Quantity(_CONTACT + "largest_gap", "largest opening", D.LENGTH,
              "Largest opening of the gap: of a seat, how far it is used up.",
              column("largest_gap")),
+    Quantity(_CONTACT + "seat_used", "seat width used", D.LENGTH,
+             "Largest opening beyond the gap at rest: what a seat loses.", v.seat_used),
     Quantity(_CONTACT + "avoiding_gap", "gap without contact", D.LENGTH,
-             "Smallest gap that would have avoided contact.", v.avoiding_gap, Source.APART,
-             tabled=False),
+             "Smallest gap that would have avoided contact, where no other contact closes either.",
+             v.avoiding_gap, Source.APART, tabled=False),
+    Quantity(_CONTACT + "avoiding_gap_alone", "gap without contact here", D.LENGTH,
+             "Smallest gap that would have avoided this contact, where the others stay as they "
+             "are and strike.", v.avoiding_gap_alone, Source.APART_ALONE, tabled=False),
+    *(Quantity(_CONTACT + rule, f"peaks without contact, {called}", D.LENGTH,
+               f"Distance by {text} of the peaks of its two ends without contact{where}.",
+               value, Source.FREE, only, tabled=False)
+      for rule, called, text, where, value, only in (
+          ("absolute_sum", "sum", "the sum", "", v.absolute_sum_of_peaks, is_between_bodies),
+          ("srss", "SRSS", "SRSS", "", v.srss_of_peaks, is_between_bodies),
+          ("cqc", "CQC", "CQC", ", of two structures", v.cqc_of_peaks, is_between_structures))),
     Quantity(_CONTACT + "estimated_force", "impact force (estimate)", D.FORCE,
              "Estimate only: force of the strongest impact if the contact were a spring of the "
              "contact_stiffness of [run], J sqrt(k/m)/2 with the reduced mass m of the two bodies.",

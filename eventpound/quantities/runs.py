@@ -44,7 +44,7 @@ class Runs:
     scales: ScaleColumns | None = None
     free: Callable[[str], Floats | None] | None = None
     between: Callable[[], Between] | None = None
-    apart: Callable[[], Floats] | None = None
+    apart: Callable[[tuple[int, ...]], Floats] | None = None
     stated: Stated = DEFAULTS
     struck: ContactNumbers | None = None
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.distinct import distinct
 from eventpound.quantities.base import SIX, Value, name_of
 from eventpound.quantities.runs import Runs
 from eventpound.scene.elastic_laws import elastic_force, reduced
+from eventpound.scene.parameters import places_of, with_values
 from eventpound.scene.scene import Scene
+from eventpound.scene.separation import absolute_sum, correlation, cqc, srss
 from eventpound.scene.spring import GROUND, Hysteretic
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes
@@ -95,9 +98,80 @@ def amplification(many: Runs, i: int) -> Floats:
         return own / free
 
 
+def has_contacts(scene: Scene, _: int) -> bool:
+    """Whether anything can touch."""
+    return bool(scene.contacts)
+
+
+def impacts_faster(many: Runs, _: int) -> Floats:
+    """Impacts of all contacts above the threshold."""
+    return np.asarray(many.contact_numbers.impacts_faster.sum(axis=1))
+
+
+def moves_with_bodies(scene: Scene, i: int) -> bool:
+    """Whether no end of spring i is a support, which may move on at the end."""
+    return not {support.name for support in scene.supports}.intersection(scene.springs[i].between)
+
+
+def residual_elongation(many: Runs, i: int) -> Floats:
+    """Elongation of spring i at the end (m)."""
+    u = {body.name: many.u[:, k] for k, body in enumerate(many.scene.bodies)} | {GROUND: 0.0}
+    first, second = many.scene.springs[i].between
+    return np.asarray(u[second] - u[first])
+
+
+def seat_used(many: Runs, i: int) -> Floats:
+    """Largest opening of contact i beyond its gap at rest (m)."""
+    contact = many.scene.contacts[i]
+    gap = many.parameters.get(f"contact.{contact.name}.gap", contact.gap)
+    return np.maximum(many.largest_gap[:, i] - gap, 0.0)
+
+
 def avoiding_gap(many: Runs, i: int) -> Floats:
-    """Smallest gap that would have avoided contact i (m)."""
-    return many.t * np.nan if many.apart is None else many.apart()[:, i]
+    """Smallest gap that would have avoided contact i, were the others avoided, too (m)."""
+    every = tuple(range(len(many.scene.contacts)))
+    return many.t * np.nan if many.apart is None else many.apart(every)[:, i]
+
+
+def avoiding_gap_alone(many: Runs, i: int) -> Floats:
+    """Smallest gap that would have avoided contact i, the others as they are (m)."""
+    return many.t * np.nan if many.apart is None else many.apart((i,))[:, 0]
+
+
+def absolute_sum_of_peaks(many: Runs, i: int) -> Floats:
+    """Sum of the peaks of the ends of contact i without contact (m)."""
+    return absolute_sum(*_peaks_of_ends(many, i))
+
+
+def srss_of_peaks(many: Runs, i: int) -> Floats:
+    """SRSS of the peaks of the ends of contact i without contact (m)."""
+    return srss(*_peaks_of_ends(many, i))
+
+
+def cqc_of_peaks(many: Runs, i: int) -> Floats:
+    """CQC of the peaks of the ends of contact i without contact (m)."""
+    return cqc(*_peaks_of_ends(many, i), _correlations(many, i))
+
+
+def _peaks_of_ends(many: Runs, i: int) -> tuple[Floats, Floats]:
+    """Peaks of the left and of the right end of contact i without contact (m)."""
+    found = [many.t * 0.0, many.t * 0.0]
+    for body, opens in many.scene.contacts[i].direction:
+        peak = None if many.free is None else many.free(f"peaks.{body}.abs_max")
+        found[opens > 0.0] += np.nan if peak is None else abs(opens) * peak
+    return found[0], found[1]
+
+
+def _correlations(many: Runs, i: int) -> Floats:
+    """Correlation of the two structures at contact i in each run."""
+    places = places_of(many.scene)
+    numbers = {places[key]: v for key, v in many.parameters.items() if key in places}
+    still = {
+        place: v for place, v in numbers.items() if place.kind in ("body", "spring", "dashpot")
+    }
+    first, which = distinct(list(still.values()), many.t.size)
+    own = [with_values(many.scene, {p: float(v[k]) for p, v in still.items()}) for k in first]
+    return np.array([correlation(scene, i) for scene in own])[which]
 
 
 def of_scales(key: str) -> Value:

@@ -5,7 +5,7 @@ Either by `Sweep` or not at all: rows that cannot be run say why, and stop no ot
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -153,9 +153,11 @@ def results_of(
     sweep = Sweep(rows, _of_sweep(scene, wanted, ""))
     own, rows = sweep.run(workers, progress), sweep.rows
 
-    def instead(other: Scene, kept: Wanted) -> tuple[BatchResponse, Ints]:
-        """Runs without contact; those that differ in their contacts only are one run."""
-        fewer, which = _without_contacts(rows, other)
+    def instead(
+        other: Scene, kept: Wanted, struck: Collection[str] = ()
+    ) -> tuple[BatchResponse, Ints]:
+        """Runs of another scene; those that differ in contacts that it has not are one run."""
+        fewer, which = _without_contacts(rows, other, struck)
         return Sweep(fewer, kept).run(workers), which
 
     @cache
@@ -169,24 +171,29 @@ def results_of(
         return None if values is None else values[which]
 
     @cache
-    def apart() -> Floats:
+    def apart(widened: tuple[int, ...]) -> Floats:
         which: list[Ints] = []
+        struck = {c.name for i, c in enumerate(scene.contacts) if i not in widened}
 
         def run(other: Scene) -> BatchResponse:
-            many, rows_of_many = instead(other, Wanted(wanted.solver, wanted.rtol))
+            many, rows_of_many = instead(other, Wanted(wanted.solver, wanted.rtol), struck)
             which[:] = [rows_of_many]
             return many
 
-        gaps = avoiding_gaps(scene, run)
+        gaps = avoiding_gaps(scene, widened, run)
         return gaps[which[0]]
 
     return Results(rows, replace(own, free=free, apart=apart), sweep.seconds)
 
 
-def _without_contacts(rows: Rows, other: Scene) -> tuple[Rows, Ints]:
-    """Rows of a scene without contacts, each once, and which of them each row is."""
-    places = places_of(rows.scene)
-    numbers = {key: v for key, v in rows.numbers.items() if places[key].kind != "contact"}
+def _without_contacts(rows: Rows, other: Scene, struck: Collection[str]) -> tuple[Rows, Ints]:
+    """Rows of a scene with these contacts only, each once, and which of them each row is."""
+    places, contacts = places_of(rows.scene), rows.scene.contacts
+    numbers = {
+        key: v
+        for key, v in rows.numbers.items()
+        if places[key].kind != "contact" or contacts[places[key].index].name in struck
+    }
     motion_of = rows.motion_of
     columns = [*numbers.values(), *([] if motion_of is None else [motion_of.astype(float)])]
     first, which = distinct(columns, rows.count)
