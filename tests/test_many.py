@@ -276,6 +276,19 @@ def test_many_events_run_by_themselves():
         assert_identical(result, i, simulate(variant(ball, speeds, i), "fast", 1e-6, duration=60.0))
 
 
+def test_a_run_with_more_instants_than_events_needs_no_second_one(monkeypatch):
+    # The springs of the bridge yield and turn back 300 times and more, at 49 impacts.
+    monkeypatch.setattr(sweep.Sweep, "alone", lambda _self, i: pytest.fail(f"variant {i} again"))
+    case = load_case(Path(__file__).parents[1] / "cases" / "bridge-el-centro")
+    gaps = np.array([0.0127, 0.0128])
+    result = simulate_many(case, {"contact.joint.gap": gaps})
+    alone = simulate(
+        replace(case, scene=variant(case.scene, {"contact.joint.gap": gaps}, 0)), "fast", 1e-6
+    )
+    assert alone.history["t"].duplicated().sum() > 256
+    assert_identical(result, 0, alone)
+
+
 def test_table_has_the_names_of_the_summary():
     scene, duration, parameters = SCENES["strength"]
     result = simulate_many(scene, parameters, duration=duration)

@@ -22,9 +22,7 @@ from eventpound.contact.event_rows import (
 )
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.advance import carry_on
 from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
@@ -136,13 +134,12 @@ class Kept(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Arrays that serve one run after the other; rows and events have room for one."""
+    """Arrays that serve one run after the other; events have room for one, and no line is kept."""
 
     series: Series
     happened: Happened
     seen: Seen
     events: Floats
-    lines: Floats
     no_lines: Floats
     unique: Bools
     since: Floats
@@ -161,15 +158,13 @@ def run(rows: Rows, events: bool = False) -> Kept:
         Whether the events of every run are kept.
     """
     plan = rows.plan
-    count, bodies = plan.mass.shape
+    count = plan.mass.shape[0]
     hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
-    width = in_python(line_of)(bodies, hysteretic, plan.links.springs, contacts).end
     scratch = Scratch(
         blank_series(plan),
         blank_happened(plan),
         blank_seen(plan),
         np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
-        np.zeros((2 * FIRST_ROOM, width)),
         np.zeros((0, 0)),
         np.ones(contacts, np.bool_),
         np.zeros(contacts),
@@ -206,7 +201,7 @@ def run_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept: Kept) 
         if plan.oscillator.alone:
             continue
         state = state_of_run(i, rows.state, rows.motions)
-        record = Record(scratch.events, scratch.lines, rows.extremes[i], scratch.unique)
+        record = Record(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
         _clear(series, happened, seen)
         record.unique[:] = True
         at = places_of(plan.mass.size, plan.links.springs, plan.contacts.gap.size)

@@ -23,7 +23,7 @@ from eventpound.motion.loads import (
     load_value,
     rows_of,
 )
-from eventpound.numerics.arrays import Ints
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events.recorder import put_line
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
@@ -38,17 +38,31 @@ def rows_wanted(outputs: int, count: Ints) -> int:
 
 
 @compiled
+def takes_rows(rows: Floats) -> bool:
+    """Whether a history is kept: rows without width take none."""
+    return rows.shape[1] > 0
+
+
+@compiled
+def has_room_for(contacts: int, outputs: int, count: Ints, events: Floats, rows: Floats) -> bool:
+    """Whether the record of a run can take what one more step may write, at the least."""
+    if takes_rows(rows) and rows_wanted(outputs, count) > rows.shape[0]:
+        return False
+    return bool(events_wanted(contacts, count) <= events.shape[0])
+
+
+@compiled
 def has_room(run: Run) -> bool:
-    """Whether the record can take what one more step may write, at the least."""
-    plan, state, record = run.plan, run.state, run.record
-    rows = rows_wanted(plan.output_times.size, state.count)
-    events = events_wanted(plan.contacts.gap.size, state.count)
-    return rows <= record.rows.shape[0] and events <= record.events.shape[0]
+    """As `has_room_for`, of a run."""
+    plan, record, outputs = run.plan, run.record, run.plan.output_times.size
+    return has_room_for(
+        plan.contacts.gap.size, outputs, run.state.count, record.events, record.rows
+    )
 
 
 @compiled_apart
 def write_row(t: float, run: Run) -> None:
-    """Add a line to the history."""
+    """Add a line to the history, where one is kept."""
     put_row(t, run)
 
 
@@ -56,6 +70,8 @@ def write_row(t: float, run: Run) -> None:
 def put_row(t: float, run: Run) -> None:
     """As `write_row`, where a call would cost more."""
     plan, state, record, seen = run.plan, run.state, run.record, run.seen
+    if not takes_rows(record.rows):
+        return
     row = record.rows[state.count[ROWS]]
     state.count[ROWS] += 1
     force = seen.force[: plan.links.springs]

@@ -18,11 +18,7 @@ import math
 import numpy as np
 
 from eventpound.contact.cascade import T, end_flight
-from eventpound.contact.event_rows import (
-    events_wanted,
-    new_group,
-    write_change,
-)
+from eventpound.contact.event_rows import new_group, write_change
 from eventpound.contact.impacts import DONE, FULL, Meeting, end_impacts, rebound
 from eventpound.contact.modes import ACCELERATION, IMPACT, duty, transition_code
 from eventpound.contact.rest import ORDER as MOST_DECIDING
@@ -39,7 +35,7 @@ from eventpound.solvers.fast.compiled import (
 )
 from eventpound.solvers.fast.expansion import GAUSSIAN_STEP
 from eventpound.solvers.fast.links import turns_back
-from eventpound.solvers.fast.record import rows_wanted
+from eventpound.solvers.fast.record import has_room_for
 from eventpound.solvers.fast.run import (
     DUE,
     GOING_ON,
@@ -193,7 +189,7 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
     last_step = count[STEPS] + budget
     code = GOING_ON
     while code == GOING_ON:
-        if not _has_room(run):
+        if not has_room_for(1, run.times.size, count, run.events, run.rows):
             code = FULL
             break
         if count[DUE] == 1 or clock[T] >= run.limits.end:
@@ -206,15 +202,6 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
         code = _rest(last_step, run) if body.rests_on != 0.0 else _swing(last_step, run)
     leave(plan.oscillator, body, state)
     return code
-
-
-@compiled
-def _has_room(run: SingleRun) -> bool:
-    """Whether the record can take what an event and all output times may write."""
-    count, rows = run.count, run.rows
-    return events_wanted(1, count) <= run.events.shape[0] and (
-        rows.shape[1] == 0 or rows_wanted(run.times.size, count) <= rows.shape[0]
-    )
 
 
 @compiled

@@ -18,6 +18,7 @@ from eventpound.motion.forcing import ground_acceleration
 from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import stays_within, turning_times
+from eventpound.solvers.fast.record import takes_rows
 from eventpound.solvers.fast.run import OUTPUT, ROWS, Piece
 from eventpound.solvers.fast.single.body import (
     Body,
@@ -72,7 +73,7 @@ def write_single_row(
 def write_present(t: float, g: float, run: SingleRun) -> None:
     """Add the present state to the history."""
     body = run.body
-    if run.rows.shape[1] > 0:
+    if takes_rows(run.rows):
         write_single_row(t, g, 0.0, body.v, g if body.rests_on != 0.0 else body.a, body.z, run)
 
 
