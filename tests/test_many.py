@@ -251,7 +251,7 @@ def test_numbers_of_contacts_are_those_of_one_by_one(name, at_once, monkeypatch)
     path = "contacts.<contact>.max_impulse"
     result = simulate_many(scene, parameters, duration=duration, quantities=[path], workers=2)
     own = [c for c in result.table.columns if c.startswith("contacts.")]
-    assert len(own) == 14 * len(scene.contacts)
+    assert len(own) == 15 * len(scene.contacts)
     assert result.impacts.sum() > 40
     for i in range(0, 40, 3):
         alone = simulate(variant(scene, parameters, i), "fast", 1e-6, duration=duration)
