@@ -26,7 +26,7 @@ from eventpound.solvers.base import EventKind, Extremes, Recording
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eventpound.solvers.fast.columns import Rows
+    from eventpound.solvers.fast.columns import VariantArrays
     from eventpound.solvers.fast.many import Kept
 
 
@@ -154,7 +154,7 @@ def blank_many(
     )
 
 
-def keep_rows(many: BatchResponse, low: int, rows: Rows, kept: Kept) -> None:
+def keep_rows(many: BatchResponse, low: int, rows: VariantArrays, kept: Kept) -> None:
     """Take in a chunk of compiled runs, from variant `low` on.
 
     Those that did not reach their end are left without numbers, and marked

@@ -12,7 +12,7 @@ from eventpound.cli.progress import StudyProgress
 from eventpound.errors import ComputationError, EventpoundError, InputError, InterruptionError
 
 if TYPE_CHECKING:
-    from eventpound.report.gallery import Entry
+    from eventpound.report.gallery import GalleryEntry
 
 
 def plot_folder(folder: Path, out: Path) -> int:
@@ -21,7 +21,7 @@ def plot_folder(folder: Path, out: Path) -> int:
     from eventpound.results.files import check_writable, write_together
 
     check_writable(out)
-    entries: list[Entry] = []
+    entries: list[GalleryEntry] = []
     left_out: dict[str, EventpoundError] = {}
     for file in sorted(folder.glob("*/case.toml")):
         started = time.monotonic()
@@ -46,7 +46,7 @@ def plot_folder(folder: Path, out: Path) -> int:
     return max((error.exit_code for error in left_out.values()), default=0)
 
 
-def _maker(directory: Path) -> Callable[[Path, Path], Entry] | None:
+def _maker(directory: Path) -> Callable[[Path, Path], GalleryEntry] | None:
     """What makes the figures of a case; None where it has none."""
     from eventpound.case.loading import read_document
 
@@ -56,10 +56,10 @@ def _maker(directory: Path) -> Callable[[Path, Path], Entry] | None:
     return _suite_entry if "figure" in document else None
 
 
-def _suite_entry(directory: Path, out: Path) -> Entry:
+def _suite_entry(directory: Path, out: Path) -> GalleryEntry:
     """Run one suite and draw it."""
     from eventpound.case import load_case
-    from eventpound.report.gallery import Entry, about_case
+    from eventpound.report.gallery import GalleryEntry, about_case
     from eventpound.report.suite_plot import plot_suite
     from eventpound.study.suite import simulate_suite
     from eventpound.study.table import SUITE_TABLE
@@ -69,15 +69,15 @@ def _suite_entry(directory: Path, out: Path) -> Entry:
     table = simulate_suite(case, folder=results)
     files = [results / SUITE_TABLE, *plot_suite(case, table, results)]
     claims = [case.figure.claim] if case.figure and case.figure.claim else []
-    return Entry(
+    return GalleryEntry(
         directory.name, "run", case.title, about_case(directory), len(table),
         [file.relative_to(out) for file in files], claims,
     )  # fmt: skip
 
 
-def _study_entry(directory: Path, out: Path) -> Entry:
+def _study_entry(directory: Path, out: Path) -> GalleryEntry:
     """Make one study and draw it."""
-    from eventpound.report.gallery import Entry, about_case
+    from eventpound.report.gallery import GalleryEntry, about_case
     from eventpound.report.study_files import draw
     from eventpound.study.engines.local import engine_of
     from eventpound.study.reading import load_study
@@ -89,7 +89,7 @@ def _study_entry(directory: Path, out: Path) -> Entry:
     with StudyProgress(case.study.size) as progress:
         run_study(case.study, results, engine_of(case.study.solver), progress)
     files = [results / TABLE, *draw(case, results)]
-    return Entry(
+    return GalleryEntry(
         directory.name, "study", case.study.title, about_case(directory), case.study.size,
         [file.relative_to(out) for file in files],
         [plan.claim for plan in case.figures if plan.claim],

@@ -31,7 +31,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
 
 
-class Problem(NamedTuple):
+class DescriptorProblem(NamedTuple):
     """A mode in descriptor form, a piece of the ground motion, and the moving frame (4, n).
 
     n is 0 for no frame. Times tau (s) count from the start of the piece.
@@ -101,7 +101,9 @@ def link_states(
 
 
 @kernel
-def _pushed(tau: float, y: Floats, problem: Problem) -> tuple[Floats, Floats, Floats, Floats]:
+def _pushed(
+    tau: float, y: Floats, problem: DescriptorProblem
+) -> tuple[Floats, Floats, Floats, Floats]:
     """What moves the bodies at tau, contacts apart: all that acts on each, (N,), is the last.
 
     Of a support it is the acceleration (m/s²). Before it the links: rates of their elongations
@@ -132,7 +134,9 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
 
 
 @kernel
-def loaded_powers(tau: float, y: Floats, problem: Problem, pulled: Floats, rates: Floats) -> None:
+def loaded_powers(
+    tau: float, y: Floats, problem: DescriptorProblem, pulled: Floats, rates: Floats
+) -> None:
     """Add the power of forces, and of supports, to the `rates` of the ledger.
 
     `pulled` (N,): what the links put on each body, ``-Σ_l B_l F_l`` (N). A support resists them
@@ -153,7 +157,7 @@ def loaded_powers(tau: float, y: Floats, problem: Problem, pulled: Floats, rates
 
 
 @kernel
-def to_moving_frame(problem: Problem, tau: float, sign: float, y: Floats) -> None:
+def to_moving_frame(problem: DescriptorProblem, tau: float, sign: float, y: Floats) -> None:
     """Add (sign +1) or take away (-1) the motion of the frame at tau, in place.
 
     Where there are loads there is no frame, and supports are put where they are at tau.
@@ -174,7 +178,7 @@ def to_moving_frame(problem: Problem, tau: float, sign: float, y: Floats) -> Non
 
 
 @kernel
-def relative_to_ground(tau: float, y: Floats, problem: Problem) -> Floats:
+def relative_to_ground(tau: float, y: Floats, problem: DescriptorProblem) -> Floats:
     """Unknowns at tau that are those in the moving frame, relative to the ground.
 
     Supports, which IDA carries so that its steps are as short as their motion demands, are in
@@ -186,7 +190,7 @@ def relative_to_ground(tau: float, y: Floats, problem: Problem) -> Floats:
 
 
 @kernel
-def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Problem) -> None:
+def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: DescriptorProblem) -> None:
     """Fill `out` with F(t, y, y') at ``t = forcing.start + tau``.
 
     Parameters
@@ -196,7 +200,7 @@ def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Problem)
     y, rate, out : ndarray, shape (size,)
         Unknowns and their rates, in the frame; the residual in m/s (free u), m/s²
         (free v and λ), 1/s (z), m and m/s (u and v of dependent bodies).
-    problem : Problem
+    problem : DescriptorProblem
         Whose equations.
     """
     d, forcing, frame = problem.d, problem.forcing, problem.frame
@@ -227,7 +231,7 @@ def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Problem)
 
 
 @kernel
-def solve_contact_forces(tau: float, y: Floats, problem: Problem) -> None:
+def solve_contact_forces(tau: float, y: Floats, problem: DescriptorProblem) -> None:
     """Put λ of the equations of motion into y (relative to the ground)."""
     d = problem.d
     N, H, R = d.mass.size, d.hysteretic, d.opening.size
@@ -339,7 +343,7 @@ def _z_slopes(d: Descriptor, y: Floats, x_rate: Floats, cj: float, J: Floats) ->
 
 
 @kernel
-def jacobian(tau: float, y: Floats, cj: float, J: Floats, problem: Problem) -> None:
+def jacobian(tau: float, y: Floats, cj: float, J: Floats, problem: DescriptorProblem) -> None:
     """Fill J, ``∂F/∂y + c_j ∂F/∂y'``, shape (size, size).
 
     Parameters

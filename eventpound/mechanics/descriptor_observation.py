@@ -7,7 +7,7 @@ import numpy as np
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import (
-    Problem,
+    DescriptorProblem,
     accelerations,
     body_loads,
     contact_forces,
@@ -52,7 +52,7 @@ def _observe_contacts(d: Descriptor, contact: Floats, contact_rate: Floats, out:
 
 @kernel
 def observe_descriptor(
-    tau: float, y: Floats, problem: Problem, rate: Floats, out: Observed
+    tau: float, y: Floats, problem: DescriptorProblem, rate: Floats, out: Observed
 ) -> None:
     """Everything known of a state, and the rates of its unknowns.
 
@@ -62,7 +62,7 @@ def observe_descriptor(
         Time since the start of the segment (s).
     y, rate : ndarray, shape (size,)
         Unknowns, relative to the ground; their rates, overwritten.
-    problem : Problem
+    problem : DescriptorProblem
         Whose equations.
     out : Observed
         Overwritten; gaps of resting contacts are zero, as the event loop counts them.

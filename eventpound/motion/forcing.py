@@ -16,7 +16,7 @@ is then about the ground.
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from eventpound.motion.base import Family
 from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
@@ -44,6 +44,18 @@ class Formula(Protocol):
     @property
     def samples(self) -> Floats:
         """`Piece.samples`, shape (n,) (m/s²)."""
+
+
+class CurrentPiece(NamedTuple):
+    """The `Piece` that a run is in, as compiled functions hand it on, and where the run leaves it.
+
+    samples (n,): m/s². stop (s).
+    """
+
+    family: int
+    coefficients: Floats
+    samples: Floats
+    stop: float
 
 
 @scalar_kernel

@@ -19,7 +19,7 @@ from eventpound.solvers.base import Extremes
 from eventpound.units import Dimension
 
 
-class Source(StrEnum):
+class TakenFrom(StrEnum):
     """What a quantity is taken from."""
 
     EXTREMES = "every run"
@@ -34,9 +34,9 @@ class Source(StrEnum):
     APART_ALONE = "one more run for each contact, in which it alone cannot close, where it is named"
 
 
-FROM_FURTHER = (Source.FREE, Source.APART, Source.APART_ALONE)
+FROM_FURTHER = (TakenFrom.FREE, TakenFrom.APART, TakenFrom.APART_ALONE)
 """What needs a run of another scene."""
-FROM_ONE = (Source.FORCES, Source.LAWS, Source.ENERGY, Source.BETWEEN)
+FROM_ONE = (TakenFrom.FORCES, TakenFrom.LAWS, TakenFrom.ENERGY, TakenFrom.BETWEEN)
 """What needs all of a run, not its extremes only."""
 
 Value = Callable[[Runs, int], Any]
@@ -63,7 +63,7 @@ class Quantity:
         What it is, a sentence.
     value : callable
         How it is computed.
-    source : Source
+    source : TakenFrom
         What from.
     only : callable
         Whether owner i of a scene has it.
@@ -82,7 +82,7 @@ class Quantity:
     dimension: Dimension
     text: str
     value: Value
-    source: Source = Source.EXTREMES
+    source: TakenFrom = TakenFrom.EXTREMES
     only: Callable[[Scene, int], bool] = _always
     kind: type = float
     tabled: bool = True
@@ -184,7 +184,7 @@ def of_contact(
     """A field of `ContactNumbers` as a quantity."""
     path = f"contacts.<contact>.{key}"
     return Quantity(
-        path, called, dimension, text, column(key, "contact_numbers"), Source.CONTACTS, kind=kind
+        path, called, dimension, text, column(key, "contact_numbers"), TakenFrom.CONTACTS, kind=kind
     )
 
 
@@ -194,7 +194,7 @@ def six_of(
     dimension: Dimension,
     text: str,
     extremes: str | Callable[[Runs, int], Extremes] = "",
-    source: Source = Source.BETWEEN,
+    source: TakenFrom = TakenFrom.BETWEEN,
     only: Callable[[Scene, int], bool] = _always,
     symbol: str = "",
 ) -> Iterator[Quantity]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.quantities import values as v
-from eventpound.quantities.base import Quantity, Source, column, of_contact, six_of, sum_of
+from eventpound.quantities.base import Quantity, TakenFrom, column, of_contact, six_of, sum_of
 from eventpound.scene.separation import is_between_bodies, is_between_structures
 from eventpound.units import Dimension
 
@@ -21,31 +21,32 @@ _EACH = (("", "of the first body"), (".<body>", "of each body"))
 LISTED: tuple[Quantity, ...] = (
     Quantity("t_final", "end of the run", D.TIME, "Time reached.", lambda m, i: m.t),
     *six_of("peaks.<body>.*", "displacement", D.LENGTH, " relative to the ground",
-            "displacement", Source.EXTREMES, symbol="$u_{max}$"),
+            "displacement", TakenFrom.EXTREMES, symbol="$u_{max}$"),
     Quantity("residual.<body>", "residual displacement", D.LENGTH,
              "Displacement when the run ends: what is left if the motion has died down by then.",
              column("u")),
     *six_of("acceleration.<body>.*", "absolute acceleration", D.ACCELERATION,
             " between impacts (in an impact it is not finite)",
-            "acceleration", Source.ACCELERATIONS),
+            "acceleration", TakenFrom.ACCELERATIONS),
     *six_of(_SPRING + "*_elongation", "elongation", D.LENGTH, ": of a storey, its drift",
-            "elongation", Source.EXTREMES),
+            "elongation", TakenFrom.EXTREMES),
     *six_of(_SPRING + "*_force", "force", D.FORCE,
             " of an elastic spring, without the dashpot beside it", v.elastic_force_of,
-            Source.FORCES, v.is_elastic),
+            TakenFrom.FORCES, v.is_elastic),
     *six_of(_SPRING + "*_force", "force", D.FORCE,
             " of a Bouc-Wen spring, without the dashpot beside it", only=v.is_hysteretic),
     Quantity(_SPRING + "dissipated_energy", "energy dissipated", D.ENERGY,
-             "Work done on the Q z part of a Bouc-Wen spring, less Q u_y z^2/2, which it can give "
-             "back.", v.close_work(_SPRING + "dissipated_energy"), Source.BETWEEN, v.is_hysteretic),
+             "Work done on the Q z part of a Bouc-Wen spring, less Q u_y z^2/2, which it can "
+             "give back.", v.close_work(_SPRING + "dissipated_energy"), TakenFrom.BETWEEN,
+             v.is_hysteretic),
     Quantity("dashpots.<dashpot>.dissipated_energy", "energy dissipated", D.ENERGY,
              "Work done in a dashpot.", v.close_work("dashpots.<dashpot>.dissipated_energy"),
-             Source.BETWEEN),
+             TakenFrom.BETWEEN),
     *six_of("supports.<support>.*_shear", "base shear", D.FORCE,
             " that springs and dashpots put on a support"),
     Quantity("supports.<support>.work", "work", D.ENERGY,
              "Work of a support on what stands on it and touches it, impulses included.",
-             v.work_of_support, Source.ENERGY),
+             v.work_of_support, TakenFrom.ENERGY),
     *six_of("velocity.<body>.*", "velocity", D.VELOCITY, " relative to the ground"),
     *six_of("structures.<structure>.*_base_shear", "base shear", D.FORCE,
             " of one of several structures (bodies joined by springs or dashpots), by its first "
@@ -67,13 +68,13 @@ LISTED: tuple[Quantity, ...] = (
              v.largest_drift_ratio, only=v.has_storeys),
     *six_of("base_shear.*", "base shear", D.FORCE,
             ": sum of the forces of springs and dashpots on the ground, positive to the right",
-            "base_shear", Source.ACCELERATIONS),
+            "base_shear", TakenFrom.ACCELERATIONS),
     Quantity("impacts", "impacts", D.NUMBER,
              "Impacts of all contacts, with those that accumulations stand for.",
              sum_of("impacts"), kind=int),
     Quantity("impacts_faster", "impacts above the threshold", D.NUMBER,
              "Impacts of all contacts that close faster than threshold_speed.",
-             v.impacts_faster, Source.CONTACTS, v.has_contacts, kind=int),
+             v.impacts_faster, TakenFrom.CONTACTS, v.has_contacts, kind=int),
     Quantity("resting_time", "resting time", D.TIME, "Time at rest, the sum of all contacts.",
              sum_of("resting_time")),
     Quantity(_CONTACT + "impacts", "impacts", D.NUMBER,
@@ -92,13 +93,13 @@ LISTED: tuple[Quantity, ...] = (
              column("smallest_gap")),
     Quantity(_CONTACT + "smallest_force", "smallest force", D.FORCE,
              "Smallest force of a contact with a law of its own: below zero where it pulls.",
-             v.of_laws("smallest_force"), Source.LAWS, v.has_law),
+             v.of_laws("smallest_force"), TakenFrom.LAWS, v.has_law),
     Quantity(_CONTACT + "largest_overlap", "largest overlap", D.LENGTH,
              "Largest overlap of a contact with a law of its own.",
              lambda m, i: np.maximum(-m.smallest_gap[:, i], 0.0), only=v.has_law),
     Quantity(_CONTACT + "longest_contact", "longest contact", D.TIME,
              "Longest time that a contact with a law of its own is closed.",
-             v.of_laws("longest_contact"), Source.LAWS, v.has_law),
+             v.of_laws("longest_contact"), TakenFrom.LAWS, v.has_law),
     of_contact("t_max_impulse", "time of the strongest impact", D.TIME,
                "Time of the impact of the largest impulse; none without an impact."),
     of_contact("t_first_impact", "time of the first impact", D.TIME,
@@ -120,13 +121,13 @@ LISTED: tuple[Quantity, ...] = (
              "Largest opening beyond the gap at rest: what a seat loses.", v.seat_used),
     Quantity(_CONTACT + "avoiding_gap", "gap without contact", D.LENGTH,
              "Smallest gap that would have avoided contact, where no other contact closes either.",
-             v.avoiding_gap, Source.APART, tabled=False),
+             v.avoiding_gap, TakenFrom.APART, tabled=False),
     Quantity(_CONTACT + "avoiding_gap_alone", "gap without contact here", D.LENGTH,
              "Smallest gap that would have avoided this contact, where the others stay as they "
-             "are and strike.", v.avoiding_gap_alone, Source.APART_ALONE, tabled=False),
+             "are and strike.", v.avoiding_gap_alone, TakenFrom.APART_ALONE, tabled=False),
     *(Quantity(_CONTACT + rule, f"peaks without contact, {called}", D.LENGTH,
                f"Distance by {text} of the peaks of its two ends without contact{where}.",
-               value, Source.FREE, only, tabled=False)
+               value, TakenFrom.FREE, only, tabled=False)
       for rule, called, text, where, value, only in (
           ("absolute_sum", "sum", "the sum", "", v.absolute_sum_of_peaks, is_between_bodies),
           ("srss", "SRSS", "SRSS", "", v.srss_of_peaks, is_between_bodies),
@@ -134,7 +135,7 @@ LISTED: tuple[Quantity, ...] = (
     Quantity(_CONTACT + "estimated_force", "impact force (estimate)", D.FORCE,
              "Estimate only: force of the strongest impact if the contact were a spring of the "
              "contact_stiffness of [run], J sqrt(k/m)/2 with the reduced mass m of the two bodies.",
-             v.estimated_force, Source.CONTACTS, tabled=False),
+             v.estimated_force, TakenFrom.CONTACTS, tabled=False),
     Quantity("final.<body>.u", "final displacement", D.LENGTH, "Displacement at the end.",
              column("u")),
     Quantity("final.<body>.v", "final velocity", D.VELOCITY,
@@ -144,7 +145,7 @@ LISTED: tuple[Quantity, ...] = (
     Quantity("work.steps", "steps", D.NUMBER, "Steps of the solver.", lambda m, i: m.steps,
              kind=int),
     *(Quantity(f"energy.{term}", f"energy {text}", D.ENERGY, f"Energy {text}.", v.of_ledger(term),
-               Source.ENERGY)
+               TakenFrom.ENERGY)
       for term, text in (
           ("initial", "at the start"),
           ("input", "that the ground motion and forces put in"),
@@ -159,7 +160,7 @@ LISTED: tuple[Quantity, ...] = (
       for owner, whose in _EACH),
     *(Quantity("amplification" + owner, "peak with contact / without", D.NUMBER,
                f"Peak displacement over that of the same scene without contact, {whose}.",
-               v.amplification, Source.FREE, tabled=False)
+               v.amplification, TakenFrom.FREE, tabled=False)
       for owner, whose in _EACH),
     Quantity("scales.a_g", "$a_g$", D.ACCELERATION, "Amplitude of a pulse, else PGA.",
              v.of_scales("a_g"), tabled=False),

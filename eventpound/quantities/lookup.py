@@ -11,7 +11,7 @@ from eventpound.case.case import Stated
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.base import FROM_FURTHER, FROM_ONE, Quantity, Source, parts_of
+from eventpound.quantities.base import FROM_FURTHER, FROM_ONE, Quantity, TakenFrom, parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.owners import owners
 from eventpound.quantities.runs import Runs
@@ -42,17 +42,17 @@ class Named:
 
 def tabled(many: Runs) -> Iterator[Named]:
     """Quantities that stand in the table of some runs without being named."""
-    there = {Source.EXTREMES}
+    there = {TakenFrom.EXTREMES}
     if many.acceleration is not None:
-        there.add(Source.ACCELERATIONS)
+        there.add(TakenFrom.ACCELERATIONS)
     if many.recordings or many.struck is not None:
-        there.add(Source.CONTACTS)
+        there.add(TakenFrom.CONTACTS)
         if not _laws_vary(many.parameters):
-            there.add(Source.FORCES)
+            there.add(TakenFrom.FORCES)
     if many.recordings:
-        there.add(Source.LAWS)
+        there.add(TakenFrom.LAWS)
         if many.recordings[0].energy is not None:
-            there.add(Source.ENERGY)
+            there.add(TakenFrom.ENERGY)
     return all_of(many.scene, [q for q in LISTED if q.tabled and q.source in there])
 
 
@@ -74,7 +74,7 @@ def names_of(scene: Scene) -> list[str]:
     free = [
         FREE + named.name
         for named in all_of(scene)
-        if named.quantity.owner != "contact" and named.quantity.source is not Source.FREE
+        if named.quantity.owner != "contact" and named.quantity.source is not TakenFrom.FREE
     ]
     return own + free
 
@@ -188,7 +188,7 @@ def values_of(many: Runs, name: str) -> Floats | None:
     return None if found is None else found.of(many)
 
 
-def _source(scene: Scene, name: str) -> Source | None:
+def _source(scene: Scene, name: str) -> TakenFrom | None:
     """What a quantity is taken from; None where the scene has no such quantity."""
     found = find(scene, name)
     return None if found is None else found.quantity.source
@@ -207,7 +207,7 @@ def needs_one(scene: Scene, name: str, varied: Iterable[str] = ()) -> bool:
         Dotted keys of the numbers that vary.
     """
     source = _source(scene, name.removeprefix(FREE))
-    return source in FROM_ONE and (source is not Source.FORCES or _laws_vary(varied))
+    return source in FROM_ONE and (source is not TakenFrom.FORCES or _laws_vary(varied))
 
 
 def _laws_vary(varied: Iterable[str]) -> bool:
@@ -222,22 +222,22 @@ def needs_free(scene: Scene, name: str) -> bool:
 
 def needs_accelerations(scene: Scene, names: Sequence[str]) -> bool:
     """Whether one of these quantities needs the extremes of accelerations."""
-    return any(_source(scene, n.removeprefix(FREE)) is Source.ACCELERATIONS for n in names)
+    return any(_source(scene, n.removeprefix(FREE)) is TakenFrom.ACCELERATIONS for n in names)
 
 
 def needs_impacts(scene: Scene, names: Sequence[str]) -> bool:
     """Whether one of these quantities needs the impacts of each run."""
-    return any(_source(scene, name) is Source.CONTACTS for name in names)
+    return any(_source(scene, name) is TakenFrom.CONTACTS for name in names)
 
 
 def needs_energy(names: Sequence[str]) -> bool:
     """Whether one of these quantities is of the energy ledger."""
-    return any(q.source is Source.ENERGY for name in names for q in _of_form(name))
+    return any(q.source is TakenFrom.ENERGY for name in names for q in _of_form(name))
 
 
 def ledger_of(scene: Scene) -> list[str]:
     """Names of all quantities of the energy ledger."""
-    return [named.name for named in all_of(scene) if named.quantity.source is Source.ENERGY]
+    return [named.name for named in all_of(scene) if named.quantity.source is TakenFrom.ENERGY]
 
 
 def is_whole(name: str) -> bool:

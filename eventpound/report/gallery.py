@@ -14,7 +14,7 @@ _GREEK = {"delta": "δ", "epsilon": "ε", "omega": "ω"}
 
 
 @dataclass(frozen=True)
-class Entry:
+class GalleryEntry:
     """What the page says of one case.
 
     Parameters
@@ -61,7 +61,7 @@ def about_case(directory: Path) -> str:
 
 
 def index_page(
-    title: str, entries: Sequence[Entry], left_out: Mapping[str, str] | None = None
+    title: str, entries: Sequence[GalleryEntry], left_out: Mapping[str, str] | None = None
 ) -> bytes:
     """Page of all figures, HTML: contents, then each with its claim, command and data.
 
@@ -69,7 +69,7 @@ def index_page(
     ----------
     title : str
         Of the page.
-    entries : sequence of Entry
+    entries : sequence of GalleryEntry
         In the order of the page.
     left_out : mapping of str to str, optional
         Names of cases that are not on it, with the reason.
@@ -90,7 +90,7 @@ def _symbols(text: str) -> str:
     return re.sub(r"\bPi_(\w+)", symbol, escape(text)).replace("Pi-term", "Π-term")
 
 
-def _parts(entry: Entry) -> Iterator[Part]:
+def _parts(entry: GalleryEntry) -> Iterator[Part]:
     yield from (f"<blockquote>{_symbols(claim)}</blockquote>\n" for claim in entry.claims)
     yield f"<p>{_symbols(entry.about)}</p>\n"
     sources = {path: escape(path.as_posix()) for path in entry.files}

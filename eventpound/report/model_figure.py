@@ -19,7 +19,7 @@ from matplotlib.patches import Rectangle
 from eventpound.numerics.arrays import Floats
 from eventpound.report.law_panel import draw_law, laws_of
 from eventpound.report.model_layout import HIGH, Box, Layout, kinked, layout_of
-from eventpound.report.model_links import WALL, Route, routes_of
+from eventpound.report.model_links import WALL, LinkPath, routes_of
 from eventpound.report.style import PALETTE, arrow, length_unit, literal, new_figure, say, styled
 from eventpound.scene.contact import BARRIER, Contact, End, weights_of
 from eventpound.scene.dashpot import Dashpot
@@ -108,7 +108,9 @@ def model_figure(scene: Scene, title: str = "", *, with_laws: bool = False) -> F
     return figure
 
 
-def _draw(axes: Axes, scene: Scene, layout: Layout, routes: Sequence[Route], names: _Names) -> None:
+def _draw(
+    axes: Axes, scene: Scene, layout: Layout, routes: Sequence[LinkPath], names: _Names
+) -> None:
     """All parts of a scene on one ground."""
     for route in routes:
         _link(axes, route, names)
@@ -127,7 +129,7 @@ def _draw(axes: Axes, scene: Scene, layout: Layout, routes: Sequence[Route], nam
 
 
 def _feet(
-    scene: Scene, standing: Scene, layout: Layout, routes: Sequence[Route]
+    scene: Scene, standing: Scene, layout: Layout, routes: Sequence[LinkPath]
 ) -> list[tuple[str, float, float]]:
     """Supports, each by its name at every place where something stands on it."""
     names = {support.name for support in scene.supports}
@@ -167,7 +169,7 @@ def _name_below(axes: Axes, name: str, x: float, y: float) -> None:
     axes.text(x, y - 0.14, literal(name), ha="center", va="top", fontsize=6.5, color=PALETTE[3])
 
 
-def _link(axes: Axes, route: Route, names: _Names) -> None:
+def _link(axes: Axes, route: LinkPath, names: _Names) -> None:
     """A spring or a dashpot, in the middle part of its way."""
     corners = np.array(route.corners)
     middle = len(corners) // 2

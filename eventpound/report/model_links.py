@@ -32,7 +32,7 @@ Link = Spring | Dashpot
 
 
 @dataclass(frozen=True)
-class Route:
+class LinkPath:
     """A link in the picture.
 
     Parameters
@@ -56,7 +56,7 @@ class Route:
         return abs(x_2 - x_1) < abs(y_2 - y_1)
 
 
-def routes_of(scene: Scene, layout: Layout) -> list[Route]:
+def routes_of(scene: Scene, layout: Layout) -> list[LinkPath]:
     """Springs and dashpots of a scene on one ground, but for dashpots without a place.
 
     Those are from a body above others to the ground, where no spring of it goes.
@@ -66,7 +66,7 @@ def routes_of(scene: Scene, layout: Layout) -> list[Route]:
         label = "\n".join(link.name for link in members if isinstance(link, Spring))
         for k, link in enumerate(members):
             corners = _corners(layout, link, _STEP * (k - 0.5 * (len(members) - 1)))
-            found.append(Route(link, corners, label if k == 0 else ""))
+            found.append(LinkPath(link, corners, label if k == 0 else ""))
     return found
 
 

@@ -20,7 +20,7 @@ from eventpound.case.suite import Member
 from eventpound.errors import InputError
 from eventpound.given import Count, checked, positive
 from eventpound.motion.record import Record
-from eventpound.quantities.base import Source
+from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import all_of
 from eventpound.response import Response
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 Keep = Callable[[str, Case, Response], None]
 """Called with the name of a record, its case and its response."""
-_TABLED = (Source.EXTREMES, Source.ACCELERATIONS, Source.CONTACTS, Source.FORCES)
+_TABLED = (TakenFrom.EXTREMES, TakenFrom.ACCELERATIONS, TakenFrom.CONTACTS, TakenFrom.FORCES)
 _LEAST = 3
 """Records that have a rank correlation."""
 

@@ -30,7 +30,7 @@ from eventpound.solvers.base import History, Recording, Task
 from eventpound.solvers.cvode import METHODS, Cvode
 from eventpound.solvers.events.scales import scene_scales, tolerances
 from eventpound.solvers.sundials.library import library
-from eventpound.solvers.sundials.memory import CvodeMemory, Layout
+from eventpound.solvers.sundials.memory import CvodeMemory, MemoryLayout
 from tests.benchmarks.c_programs import FLAGS, FOLDER, Problem, compiler, problem_of
 from tests.benchmarks.oscillator import oscillator_of
 
@@ -100,7 +100,7 @@ class Program:
         self._memory = CvodeMemory(
             sundials,
             METHODS[0],
-            Layout(task.rtol, own, 0),
+            MemoryLayout(task.rtol, own, 0),
             callback or 0,
             ctypes.addressof(self._data),
         )

@@ -7,7 +7,7 @@ import pytest
 
 from eventpound.mechanics.descriptor import Descriptor, descriptor_form
 from eventpound.mechanics.descriptor_motion import (
-    Problem,
+    DescriptorProblem,
     constraint_errors,
     jacobian,
     residual,
@@ -38,7 +38,7 @@ def _consistent(at: Instant, d: Descriptor) -> tuple[np.ndarray, np.ndarray, Obs
     """Unknowns and rates that satisfy the equations at the start of the segment."""
     y, rate, seen = np.zeros(d.size), np.zeros(d.size), blank(*at.model.counts)
     y[: 2 * at.u.size + at.z.size] = np.concatenate((at.u, at.v, at.z))
-    problem = Problem(d, at.forcing, NO_FRAME)
+    problem = DescriptorProblem(d, at.forcing, NO_FRAME)
     solve_contact_forces(0.0, y, problem)
     observe_descriptor(0.0, y, problem, rate, seen)
     return y, rate, seen
@@ -76,7 +76,7 @@ def test_observed_rates_by_central_differences(squeezed: bool) -> None:
             moved, other = y + tau * rate, blank(*at.model.counts)
             # Positions need the second order: their own rates are differenced too.
             moved[: at.u.size] += 0.5 * tau**2 * seen.a
-            problem = Problem(d, at.forcing, NO_FRAME)
+            problem = DescriptorProblem(d, at.forcing, NO_FRAME)
             solve_contact_forces(tau, moved, problem)
             observe_descriptor(tau, moved, problem, np.zeros(d.size), other)
             sides.append(other)
@@ -97,7 +97,7 @@ def test_the_residual_vanishes_on_the_motion(squeezed: bool, frame: np.ndarray) 
         d = _descriptor(at)
         y, rate, _ = _consistent(at, d)
         count, t = at.u.size, at.forcing.start
-        problem = Problem(d, at.forcing, frame)
+        problem = DescriptorProblem(d, at.forcing, frame)
         to_moving_frame(problem, 0.0, 1.0, y)
         if frame.size:
             _, s_rate, s_second = frame_motion(frame, t)
@@ -124,7 +124,7 @@ def test_jacobian_by_central_differences(frame: np.ndarray) -> None:
         if (np.abs(x_rate[hysteretic]) < 0.01).any() or (np.abs(at.z) < 0.01).any():
             continue
         J, sides = np.full((d.size, d.size), np.nan), np.empty((2, d.size))
-        problem = Problem(d, at.forcing, frame)
+        problem = DescriptorProblem(d, at.forcing, frame)
         jacobian(0.0, y, cj, J, problem)
         for i in range(d.size):
             step = np.zeros(d.size)

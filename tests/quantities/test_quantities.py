@@ -16,7 +16,7 @@ from eventpound import load_case, simulate, simulate_many
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Cosine
-from eventpound.quantities.base import Source, pi_unit
+from eventpound.quantities.base import TakenFrom, pi_unit
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import find, listing, names_of
 from eventpound.response import Response
@@ -328,7 +328,7 @@ def test_a_named_quantity_that_there_is_not(
 
 
 def test_every_source_is_used() -> None:
-    assert {q.source for q in LISTED} == set(Source)
+    assert {q.source for q in LISTED} == set(TakenFrom)
 
 
 def test_a_named_energy_brings_the_ledger(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from eventpound.cli import main
 from eventpound.report.law_panel import laws_of
 from eventpound.report.model_figure import _LAWS, model_figure
 from eventpound.report.model_layout import HIGH, LEVEL, Layout, layout_of
-from eventpound.report.model_links import Route, crosses, routes_of
+from eventpound.report.model_links import LinkPath, crosses, routes_of
 from eventpound.report.style import PALETTE
 from eventpound.scene import (
     BARRIER,
@@ -111,7 +111,7 @@ def decks_on_piers(
     )
 
 
-def assert_nothing_is_in_the_way(layout: Layout, routes: list[Route]) -> None:
+def assert_nothing_is_in_the_way(layout: Layout, routes: list[LinkPath]) -> None:
     boxes = layout.boxes
     for (name, one), (other, two) in combinations(boxes.items(), 2):
         apart = max(one.left - two.right, two.left - one.right, abs(one.y - two.y) - HIGH)

@@ -17,29 +17,29 @@ from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.constants import blank_happened, blank_series, blank_state, plan_of
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.instant import start
-from eventpound.solvers.fast.run import Plan, Record, Run, Series, State
+from eventpound.solvers.fast.run import FastPlan, FastRecord, FastRun, FastSeries, FastState
 from eventpound.solvers.fast.sampled.forces import begin
 
 
 class Stepper(NamedTuple):
     """What the compiled stepper works on, and the table of the present tangents."""
 
-    run: Run
+    run: FastRun
     model: Model
     table: int
 
     @property
-    def plan(self) -> Plan:
+    def plan(self) -> FastPlan:
         """Constants of the run."""
         return self.run.plan
 
     @property
-    def state(self) -> State:
+    def state(self) -> FastState:
         """What moves."""
         return self.run.state
 
     @property
-    def series(self) -> Series:
+    def series(self) -> FastSeries:
         """Scratch of the run."""
         return self.run.series
 
@@ -54,8 +54,8 @@ def stepper_of(scene: Scene, z: Floats, rtol: float, dt: float = 1.0) -> Stepper
     at = places_in(model)
     table = blank_extremes(at, scales)
     room = np.zeros((9, EVENT_WIDTH)), np.zeros((9, row_width(model)))
-    record = Record(*room, table, np.ones(model.contacts, bool))
+    record = FastRecord(*room, table, np.ones(model.contacts, bool))
     series, happened, seen = blank_series(plan), blank_happened(plan), blank_seen(plan)
-    run = Run(plan, state, series, happened, record, seen, Running(*table, at))
+    run = FastRun(plan, state, series, happened, record, seen, Running(*table, at))
     start(run)
     return Stepper(run, model, begin(dt, run))

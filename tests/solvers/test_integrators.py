@@ -16,7 +16,7 @@ from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.sundials import library
-from eventpound.solvers.sundials.memory import BANDED_FROM, CvodeMemory, Layout
+from eventpound.solvers.sundials.memory import BANDED_FROM, CvodeMemory, MemoryLayout
 from eventpound.solvers.sundials.python_cvode import WrappedCvode
 from tests.solvers.scenes import pounding_pair
 
@@ -133,7 +133,7 @@ def _never_called() -> int:
 
 
 def test_objects_are_freed() -> None:
-    layout = Layout(1e-6, np.ones(3), 0)
+    layout = MemoryLayout(1e-6, np.ones(3), 0)
     memory = CvodeMemory(library.library(), "Adams", layout, _never_called(), 0)
     finalizer = memory._finalizer
     assert finalizer.alive
@@ -144,4 +144,6 @@ def test_objects_are_freed() -> None:
 
 def test_what_cannot_be_set_up_is_an_error() -> None:
     with pytest.raises(MemoryError, match="flag -22"):
-        CvodeMemory(library.library(), "Adams", Layout(-1.0, np.ones(3), 0), _never_called(), 0)
+        CvodeMemory(
+            library.library(), "Adams", MemoryLayout(-1.0, np.ones(3), 0), _never_called(), 0
+        )

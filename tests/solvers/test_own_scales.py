@@ -28,8 +28,8 @@ from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import (
     SPARE,
     Attached,
+    InitialState,
     SceneScales,
-    Start,
     attached,
     own_scales,
     scene_scales,
@@ -168,7 +168,7 @@ def test_rows_of_many_are_what_each_is_alone() -> None:
     links = Attached(law.ends, laws, **columns)
     masses = np.column_stack((mass, np.ones(9)))
     still = np.zeros((9, 2))
-    start = Start(still, still, np.zeros((9, 0)), model.hysteretic)
+    start = InitialState(still, still, np.zeros((9, 0)), model.hysteretic)
     scales = (np.full(9, x) for x in (LENGTH, TIME, LENGTH / TIME**2))
     length, speed = own_scales(links, masses, start, *scales, np.ones(9, bool))
     for i in range(9):

@@ -14,13 +14,14 @@ from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.monitored import Running, blank_extremes, places_in
 from eventpound.motion.base import Family
+from eventpound.motion.forcing import CurrentPiece
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.constants import blank_series, blank_state, plan_of
-from eventpound.solvers.fast.run import Piece, Plan, Record, State
+from eventpound.solvers.fast.run import FastPlan, FastRecord, FastState
 from eventpound.solvers.fast.single.body import SingleRun, enter
 from eventpound.solvers.fast.single.oscillator import settle_single, stays_closed
 from eventpound.tolerances import LAST_SPEED
@@ -33,9 +34,9 @@ REST, SEPARATION = 2.0, 4.0
 SIDES = [1.0, -1.0]
 
 
-def blank_record(task: Task, model: Model) -> Record:
+def blank_record(task: Task, model: Model) -> FastRecord:
     scales = scene_scales(task.scene, model, task.end - task.start)
-    return Record(
+    return FastRecord(
         np.zeros((400, EVENT_WIDTH)),
         np.zeros((400, row_width(model))),
         blank_extremes(places_in(model), scales),
@@ -43,7 +44,7 @@ def blank_record(task: Task, model: Model) -> Record:
     )
 
 
-def prepared(task: Task) -> tuple[Model, Plan, State]:
+def prepared(task: Task) -> tuple[Model, FastPlan, FastState]:
     model = assemble(task.scene)
     plan = plan_of(task, model, scene_scales(task.scene, model, task.end - task.start))
     return model, plan, blank_state(plan, model.u0, model.v0, model.z0, task.start)
@@ -89,7 +90,7 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
 
 def settle(run: SingleRun, g: float) -> None:
     """Settle under a ground acceleration that stays as it is (m/s²)."""
-    piece = Piece(int(Family.SAMPLES), np.array([0.0, 1.0]), np.full(3, g))
+    piece = CurrentPiece(int(Family.SAMPLES), np.array([0.0, 1.0]), np.full(3, g), 2.0)
     settle_single(g, piece, run)
 
 
@@ -158,7 +159,7 @@ def test_a_vanished_force_is_decided_by_the_first_coefficient(
     cubic[1 : 1 + len(coefficients)] = side * np.array(coefficients)
     numbers = np.concatenate(([0.0, 1e-30], cubic))
     run = at_barrier(side, True, 0.0, resting=True)
-    piece = Piece(int(Family.GAUSSIAN), numbers, np.empty(0))
+    piece = CurrentPiece(int(Family.GAUSSIAN), numbers, np.empty(0), np.inf)
     found = stays_closed(side, piece, run)
     assert bool(found) is stays
 

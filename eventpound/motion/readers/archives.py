@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from eventpound.motion.readers.base import Given, Source, UnstatedError
-from eventpound.motion.readers.block import Stated, numbers_of_block, read_block
+from eventpound.motion.readers.block import StatedCount, numbers_of_block, read_block
 from eventpound.motion.readers.labelled import Dialect, Extent, Labelled, groups_of
 from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 from eventpound.numerics.arrays import Floats
@@ -97,7 +97,7 @@ def _cosmos_extent(source: Source, start: int, line: int) -> Extent | None:
         match = re.match(rf"(?i)\s*(\d+)\s+{name} values", source.line(line))
         if match is None:
             raise _expected(source, line, f"'{name} values' are")
-        block = read_block(source, line + 1, Stated(to_count(match.group(1)), line, "values"))
+        block = read_block(source, line + 1, StatedCount(to_count(match.group(1)), line, "values"))
         values.append(block.values.tolist())
         line = block.next_line
     integers, reals = values
@@ -224,8 +224,8 @@ def _smc_extent(source: Source) -> list[Extent]:
     kind = source.line(1)
     if "ACCELEROGRAM" not in kind:
         raise source.error(1, f"found '{kind.strip()}'; an acceleration time series is needed")
-    integers = read_block(source, 12, Stated(48, 1, "integers"), 10)
-    reals = read_block(source, integers.next_line, Stated(50, 1, "reals"), 15)
+    integers = read_block(source, 12, StatedCount(48, 1, "integers"), 10)
+    reals = read_block(source, integers.next_line, StatedCount(50, 1, "reals"), 15)
     comments, samples = integers.values[15:17].tolist()
     known = {
         "samples": (f"{int(samples)}", integers.next_line - 4),
@@ -275,13 +275,13 @@ def _usc_extent(source: Source) -> list[Extent]:
 
 
 def _usc_numbers(
-    dialect: Dialect, head: Labelled, stated: Stated, given: Given
+    dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
 ) -> tuple[Floats, tuple[str, ...]]:
     """Values at even times of the straight lines between uneven ones, and a note on it."""
     source, time_step = head.source, given.time_step
-    integers = read_block(source, head.extent.end + 1, Stated(100, 1, "integers"), 5)
-    reals = read_block(source, integers.next_line, Stated(50, 1, "reals"), 10)
-    pairs = Stated(2 * stated.count, stated.line, f"twice the {stated.name}")
+    integers = read_block(source, head.extent.end + 1, StatedCount(100, 1, "integers"), 5)
+    reals = read_block(source, integers.next_line, StatedCount(50, 1, "reals"), 10)
+    pairs = StatedCount(2 * stated.count, stated.line, f"twice the {stated.name}")
     numbers, notes = numbers_of_block(source, reals.next_line, pairs)
     t, a = numbers[0::2], numbers[1::2]
     steps = np.diff(t)

@@ -17,7 +17,7 @@ FOLLOWING_WORD = re.compile(r"\b(?!nan\b|inf(?:inity)?\b)[a-z]{2,}", re.IGNORECA
 
 
 @dataclass(frozen=True)
-class Stated:
+class StatedCount:
     """How many samples a file says there are.
 
     Parameters
@@ -44,14 +44,19 @@ class Block:
 
 
 def numbers_of_block(
-    source: Source, first: int, stated: Stated, width: int | None = None, *, ends_file: bool = True
+    source: Source,
+    first: int,
+    stated: StatedCount,
+    width: int | None = None,
+    *,
+    ends_file: bool = True,
 ) -> tuple[Floats, tuple[str, ...]]:
     """The samples of a block, and a note on text behind one that should end its file."""
     block = read_block(source, first, stated, width)
     return block.values, after_last(source, block.next_line, stated) if ends_file else ()
 
 
-def read_block(source: Source, first: int, stated: Stated, width: int | None = None) -> Block:
+def read_block(source: Source, first: int, stated: StatedCount, width: int | None = None) -> Block:
     """Read exactly the stated number of samples.
 
     Parameters
@@ -60,7 +65,7 @@ def read_block(source: Source, first: int, stated: Stated, width: int | None = N
         The file.
     first : int
         Line of the first sample (from 1).
-    stated : Stated
+    stated : StatedCount
         How many there are.
     width : int, optional
         Characters of a field, where the format fixes it.
@@ -96,7 +101,7 @@ def _values(lines: list[str], count: int) -> Floats | None:
     return clean_numbers(tokens) if len(tokens) == count else None
 
 
-def _read_line_by_line(source: Source, first: int, stated: Stated, width: int | None) -> Block:
+def _read_line_by_line(source: Source, first: int, stated: StatedCount, width: int | None) -> Block:
     """The slow way: touching numbers, D exponents, lines of any length, and what is wrong."""
     values: list[float] = []
     problems: list[tuple[int, str]] = []
@@ -119,7 +124,7 @@ def _read_line_by_line(source: Source, first: int, stated: Stated, width: int | 
     return Block(np.array(values), number)
 
 
-def after_last(source: Source, first: int, stated: Stated) -> tuple[str, ...]:
+def after_last(source: Source, first: int, stated: StatedCount) -> tuple[str, ...]:
     """What follows a block that should end its file, from a line on (from 1).
 
     Text is passed over, which a note says.
@@ -141,7 +146,9 @@ def after_last(source: Source, first: int, stated: Stated) -> tuple[str, ...]:
     return ()
 
 
-def miscounted(source: Source, stated: Stated, found: int, last: int, what: str = "numbers") -> str:
+def miscounted(
+    source: Source, stated: StatedCount, found: int, last: int, what: str = "numbers"
+) -> str:
     """The message for another number of samples up to a line than is stated."""
     while last > 1 and not source.line(last).strip():
         last -= 1

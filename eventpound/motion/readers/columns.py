@@ -27,7 +27,7 @@ from eventpound.motion.readers.numbers import to_float
 from eventpound.motion.readers.rows import (
     COMMENT,
     SEPARATOR,
-    Rows,
+    NumberRows,
     numbers_begin,
     read_rows,
     runs_along_lines,
@@ -108,7 +108,7 @@ OPENSEES = Reader("opensees", _detect_along_lines, _channels_along_lines)
 
 
 def _read(
-    source: Source, given: Given, rows: Rows, column: int, timed: bool, name: str | None
+    source: Source, given: Given, rows: NumberRows, column: int, timed: bool, name: str | None
 ) -> RecordData:
     """One column.
 
@@ -136,13 +136,13 @@ def _read(
     return record_data(source, COLUMNS.name, header, values, given, _passed_over(rows))
 
 
-def _passed_over(rows: Rows) -> tuple[str, ...]:
+def _passed_over(rows: NumberRows) -> tuple[str, ...]:
     """A note on lines before the numbers."""
     count = len(rows.before)
     return (f"{count} lines before the numbers passed over",) if count else ()
 
 
-def _titles(rows: Rows) -> list[str | None]:
+def _titles(rows: NumberRows) -> list[str | None]:
     """Names of the columns, from the line before the numbers where it has one for each."""
     if rows.width > 2 and rows.before:
         line = COMMENT.sub("", rows.before[-1])
@@ -167,7 +167,7 @@ def _refuse_decimal_commas(source: Source) -> None:
             )
 
 
-def _refuse_leading_constant(source: Source, rows: Rows, column: int, values: Floats) -> None:
+def _refuse_leading_constant(source: Source, rows: NumberRows, column: int, values: Floats) -> None:
     """Stop where the first of the numbers looks like a scale factor or a count."""
     first = abs(values[0])
     if (

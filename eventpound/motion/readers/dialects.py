@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from eventpound.motion.readers.base import Given, Source
-from eventpound.motion.readers.block import Stated, after_last, read_block
+from eventpound.motion.readers.block import StatedCount, after_last, read_block
 from eventpound.motion.readers.labelled import (
     Dialect,
     Extent,
@@ -187,7 +187,7 @@ _SCALE = re.compile(rf"({NUMBER})\s*\((gal)\)\s*/\s*({NUMBER})", re.IGNORECASE)
 
 
 def _knet_numbers(
-    dialect: Dialect, head: Labelled, stated: Stated, given: Given
+    dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
 ) -> tuple[Floats, tuple[str, ...]]:
     """Counts as gal, less their mean."""
     text = head.text("Scale Factor")
@@ -247,7 +247,7 @@ def _two_lines(source: Source) -> list[Extent]:
 
 
 def _filled_numbers(
-    dialect: Dialect, head: Labelled, stated: Stated, given: Given
+    dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
 ) -> tuple[Floats, tuple[str, ...]]:
     """The stated number of numbers, and a note on what fills up the last lines."""
     source, first = head.source, head.extent.end + 1
@@ -255,7 +255,7 @@ def _filled_numbers(
     lines = -(-stated.count // a_line)
     last = source.line(first + lines - 1)
     excess = len(numbers_of_line(last, width)[0]) + (lines - 1) * a_line - stated.count
-    full = Stated(stated.count + max(excess, 0), stated.line, stated.name)
+    full = StatedCount(stated.count + max(excess, 0), stated.line, stated.name)
     block = read_block(source, first, full, width)
     values, fill = block.values[: stated.count], block.values[stated.count :]
     line = block.next_line

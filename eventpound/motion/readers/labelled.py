@@ -15,10 +15,10 @@ from functools import partial
 
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
-from eventpound.motion.readers.block import Stated, miscounted, numbers_of_block
+from eventpound.motion.readers.block import StatedCount, miscounted, numbers_of_block
 from eventpound.motion.readers.header import Header, Peak, record_data
 from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
-from eventpound.motion.readers.rows import Rows, read_rows
+from eventpound.motion.readers.rows import NumberRows, read_rows
 from eventpound.motion.readers.time_column import even_step
 from eventpound.numerics.arrays import Floats
 
@@ -134,7 +134,7 @@ class Labelled:
             raise self.source.error(line, f"found '{text}' for '{label}'; a {kind} is expected")
         return value, line
 
-    def count(self, label: str) -> Stated:
+    def count(self, label: str) -> StatedCount:
         """A whole number that is positive.
 
         Raises
@@ -148,14 +148,14 @@ class Labelled:
                 line,
                 f"found '{self.text(label)}' for '{label}'; a positive whole number is expected",
             )
-        return Stated(int(value), line, label)
+        return StatedCount(int(value), line, label)
 
 
-Numbers = Callable[["Dialect", Labelled, Stated, Given], tuple[Floats, tuple[str, ...]]]
+Numbers = Callable[["Dialect", Labelled, StatedCount, Given], tuple[Floats, tuple[str, ...]]]
 
 
 def plain_numbers(
-    dialect: Dialect, head: Labelled, stated: Stated, given: Given
+    dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
 ) -> tuple[Floats, tuple[str, ...]]:
     """The block that follows a header, as it is."""
     width = to_count(head.text("width") or "") or dialect.width
@@ -316,7 +316,7 @@ class Dialect:
         if found is not None and not re.match(pattern, found):
             raise head.source.error(head.line(label), f"found '{found}'; {needed} is needed")
 
-    def _sampling(self, head: Labelled) -> tuple[Stated, float | None, int | None]:
+    def _sampling(self, head: Labelled) -> tuple[StatedCount, float | None, int | None]:
         """Number of samples, time step (s) and the line that states it.
 
         Raises
@@ -337,7 +337,7 @@ class Dialect:
             raise head.source.error(
                 line, f"{frequency:g} Hz for {duration:g} s is no number of samples"
             )
-        stated = Stated(round(count), line, "frequency times duration")
+        stated = StatedCount(round(count), line, "frequency times duration")
         return stated, 1.0 / frequency, line
 
     def _peak(self, head: Labelled, component: str | None) -> Peak | None:
@@ -364,7 +364,7 @@ class Dialect:
             raise head.source.error(None, f"the header names no components after '{label}'")
         return names
 
-    def _table(self, head: Labelled, stated: Stated, header: Header) -> Rows:
+    def _table(self, head: Labelled, stated: StatedCount, header: Header) -> NumberRows:
         """The rows under a header; times beside the components must be those it states."""
         source = head.source
         rows = read_rows(source, head.extent.end)

@@ -24,7 +24,7 @@ _ALONG_LINES = 0.75
 
 
 @dataclass(frozen=True)
-class Rows:
+class NumberRows:
     """The numbers of the file as printed, row by row, with the line of each (from 1).
 
     `before` are the lines before them, `bad` tokens that are no numbers, with
@@ -85,7 +85,7 @@ def numbers_begin(source: Source) -> list[str] | None:
 
 
 @lru_cache(maxsize=1)
-def read_rows(source: Source, header: int = 0) -> Rows:
+def read_rows(source: Source, header: int = 0) -> NumberRows:
     """All rows of numbers: after a header of so many lines, or comments and one line of titles.
 
     Where there is no header, commas and semicolons part numbers, too. There is at least one
@@ -124,10 +124,12 @@ def read_rows(source: Source, header: int = 0) -> Rows:
             rows.append(row)
     if not rows:
         raise source.error(None, "no line of numbers was found")
-    return Rows(lines, rows, before, bad)
+    return NumberRows(lines, rows, before, bad)
 
 
-def _clean(source: Source, start: int, width: int, before: list[str], commas: bool) -> Rows | None:
+def _clean(
+    source: Source, start: int, width: int, before: list[str], commas: bool
+) -> NumberRows | None:
     """The rows from a line on, where nothing in them is odd."""
     lines = [(i, x) for i, x in enumerate(source.lines[start - 1 :], start=start) if x.strip()]
     text = "\n".join(line for _, line in lines)
@@ -139,7 +141,7 @@ def _clean(source: Source, start: int, width: int, before: list[str], commas: bo
     if any(len(row) != width for row in rows):
         return None
     numbers = clean_numbers(list(chain.from_iterable(rows)))
-    return None if numbers is None else Rows([i for i, _ in lines], rows, before, [], numbers)
+    return None if numbers is None else NumberRows([i for i, _ in lines], rows, before, [], numbers)
 
 
 def _has_empty_fields(text: str) -> bool:
@@ -150,7 +152,7 @@ def _has_empty_fields(text: str) -> bool:
     return any(empty in bare for empty in _EMPTY)
 
 
-def runs_along_lines(rows: Rows) -> bool:
+def runs_along_lines(rows: NumberRows) -> bool:
     """Whether one series runs along lines of several numbers, not several down columns.
 
     Consecutive samples of an accelerogram lie closer together than distant ones

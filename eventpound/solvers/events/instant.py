@@ -24,7 +24,7 @@ from eventpound.contact.instant import any_may_rest, decide_rests, settle_impact
 from eventpound.contact.kinks import lacks_branch
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
-from eventpound.motion.forcing import next_corner
+from eventpound.motion.forcing import CurrentPiece, next_corner
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, look
@@ -50,7 +50,6 @@ from eventpound.solvers.events.run import (
     SHORT_STEPS,
     STEPS,
     Dynamics,
-    Piece,
     Run,
 )
 from eventpound.solvers.events.second_look import (
@@ -79,7 +78,7 @@ NOT_FINITE, UNENDING = 30, 32
 
 
 @kernel
-def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
+def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
     rules, state, record, happened = run.rules, run.state, run.record, run.happened
     clock, count = state.clock, state.count
@@ -143,7 +142,7 @@ def proceed(
     most: int,
     run: Run,
     mode: Dynamics,
-    piece: Piece,
+    piece: CurrentPiece,
     dense: Dense,
 ) -> int:
     """Do what is wanted, of SETTLE to LAST, at the present instant.
@@ -161,7 +160,7 @@ def proceed(
         The run; SETTLE goes on where `count[PHASE]` says; on loan.
     mode : Dynamics
         The present mode; on loan.
-    piece : Piece
+    piece : CurrentPiece
         The ground motion.
     dense : Dense
         The step to be looked at AGAIN; at its end the state vector is to TAKE.
@@ -186,7 +185,7 @@ def proceed(
 
 
 @kernel
-def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
+def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """Follow the motion from the present instant until nothing is near; ends as `proceed`."""
     state, at = run.state, run.instant
     clock, count = state.clock, state.count

@@ -21,7 +21,7 @@ from eventpound.contact.kinks import choose_branches, choose_clear_branches
 from eventpound.contact.rest import ORDER
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
-from eventpound.motion.forcing import ground_onset
+from eventpound.motion.forcing import CurrentPiece, ground_onset
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NO_GAPS, Dense
@@ -48,7 +48,6 @@ from eventpound.solvers.events.run import (
     KNOTS,
     PHASE,
     SHORT_STEPS,
-    Piece,
 )
 from eventpound.solvers.events.second_look import BROKEN, EVENT
 from eventpound.solvers.events.underway import Underway
@@ -61,14 +60,14 @@ STEPS_AT_ONCE = 256
 """Short steps after which whoever waits is told."""
 
 
-def settle_instant(now: Underway, piece: Piece) -> None:
+def settle_instant(now: Underway, piece: CurrentPiece) -> None:
     """Do the duties of the present instant and follow the motion until none is near.
 
     Parameters
     ----------
     now : Underway
         The run; `happened` tells whose contact force has just reached zero.
-    piece : Piece
+    piece : CurrentPiece
         The ground motion; its end is not passed.
 
     Raises
@@ -119,7 +118,7 @@ def _failure(ended: int, now: Underway) -> ComputationError:
     )
 
 
-def _choose_branches(now: Underway, piece: Piece) -> None:
+def _choose_branches(now: Underway, piece: CurrentPiece) -> None:
     """Branch of every kinked link from where it is and where it goes."""
     state, table = now.state, now.table
     resting = state.resting & (state.gap == 0.0)
@@ -135,23 +134,23 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
     state.count[STALE] = 1
 
 
-def make_ready(now: Underway, mode: Mode, piece: Piece) -> None:
+def make_ready(now: Underway, mode: Mode, piece: CurrentPiece) -> None:
     """Leave the present instant in `now.run` as a step in a mode begins with it."""
     proceed(READY, 0, now.run, mode.dynamics, piece, NOWHERE)
 
 
-def take_state(now: Underway, piece: Piece, y: Floats, t: float) -> None:
+def take_state(now: Underway, piece: CurrentPiece, y: Floats, t: float) -> None:
     """Make a state vector of the present mode the present state, at the time t (s)."""
     now.run.y[: y.size] = y
     proceed(TAKE, 0, now.run, now.mode.dynamics, piece, NOWHERE._replace(end=t))
 
 
-def put_last_instant(now: Underway, piece: Piece) -> None:
+def put_last_instant(now: Underway, piece: CurrentPiece) -> None:
     """Put the last instant of a run into the history and the extremes."""
     proceed(LAST, 0, now.run, now.mode.dynamics, piece, NOWHERE)
 
 
-def look_again(now: Underway, piece: Piece, dense: Dense) -> bool:
+def look_again(now: Underway, piece: CurrentPiece, dense: Dense) -> bool:
     """Look for events in a step of an integrator; whether there is one, now the present state.
 
     Raises

@@ -53,7 +53,7 @@ def last_time(start: float, at_samples: bool, bounds: Bounds, forcing: Forcing) 
     return stop
 
 
-class Stretch(NamedTuple):
+class StepsTaken(NamedTuple):
     """What a run of steps came to.
 
     first: row of `Examination` that holds the start of the last step. start, end:
@@ -78,11 +78,11 @@ class StandstillError(ComputationError):
         What happened.
     t : float
         Time it stands at (s).
-    stretch : Stretch
+    stretch : StepsTaken
         The steps it took before, the last of them to nowhere.
     """
 
-    def __init__(self, message: str, t: float, stretch: Stretch) -> None:
+    def __init__(self, message: str, t: float, stretch: StepsTaken) -> None:
         super().__init__(message, t)
         self.stretch = stretch
 
@@ -140,7 +140,7 @@ class Integrator(Protocol):
 
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
-    ) -> Stretch:
+    ) -> StepsTaken:
         """Duty 2."""
         ...
 

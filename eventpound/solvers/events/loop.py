@@ -12,8 +12,8 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME, moving_frame
-from eventpound.motion.base import Family
-from eventpound.motion.base import Piece as MotionPiece
+from eventpound.motion.base import Family, Piece
+from eventpound.motion.forcing import CurrentPiece
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
@@ -33,7 +33,7 @@ from eventpound.solvers.events.recorder import (
     is_due,
     kept,
 )
-from eventpound.solvers.events.run import FINDER, STEPS, Piece
+from eventpound.solvers.events.run import FINDER, STEPS
 from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
@@ -58,7 +58,7 @@ ground and loads that may move no body, which no error of a step shows. Hermite'
 ends is off by h^4/384 of a fourth derivative, by 3e-3 of the load at most."""
 
 
-def _longest_under(piece: Piece) -> float:
+def _longest_under(piece: CurrentPiece) -> float:
     """Longest step (s) that shows what the ground and loads do to contact forces."""
     gaussian, sinusoid, _ = in_python(shortest_times)(piece.family, piece.coefficients)
     return min(GAUSSIAN_STEP * gaussian, SINUSOID_STEP * sinusoid)
@@ -76,13 +76,15 @@ class Segment:
         The run, at the instant the segment begins.
     integrator : Integrator
         Carries the motion.
-    piece : Piece
+    piece : CurrentPiece
         The ground motion; its end is not passed.
     frame : ndarray
         A moving frame (`eventpound.mechanics.ground_frame`).
     """
 
-    def __init__(self, now: Underway, integrator: Integrator, piece: Piece, frame: Floats) -> None:
+    def __init__(
+        self, now: Underway, integrator: Integrator, piece: CurrentPiece, frame: Floats
+    ) -> None:
         self.now, self.integrator, self.piece, self.frame = now, integrator, piece, frame
         self.mode, self.origin = now.mode, now.t
         self.start = self.end = self.reached = 0.0
@@ -272,7 +274,7 @@ class EventLoop:
                 break
         put_last_instant(now, piece)
 
-    def _follow(self, piece: Piece, frame: Floats) -> bool:
+    def _follow(self, piece: CurrentPiece, frame: Floats) -> bool:
         """A segment, whose time is that of the integrator; whether something happened."""
         now, begun = self.now, self.now.t
         try:
@@ -280,7 +282,7 @@ class EventLoop:
         finally:
             self._integrated += now.t - begun
 
-    def _frame(self, piece: MotionPiece) -> Floats:
+    def _frame(self, piece: Piece) -> Floats:
         """The moving frame of a piece; none where none is wanted."""
         if self.moving and piece.family is Family.SAMPLES:
             return moving_frame(piece)

@@ -37,7 +37,7 @@ from eventpound.mechanics.points import independent, on_clusters, projection_of
 from eventpound.mechanics.reduced import Branches, Reduced, reduce, state_vector
 from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import decay_time, ground_taylor
+from eventpound.motion.forcing import CurrentPiece, decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import by_python, in_python
 from eventpound.numerics.lcp import solve_dense
@@ -49,7 +49,7 @@ from eventpound.solvers.events.instant import (
 )
 from eventpound.solvers.events.law_contacts import turn_elements
 from eventpound.solvers.events.present import forcing_now
-from eventpound.solvers.events.run import PHASE, Piece, Run
+from eventpound.solvers.events.run import PHASE, Run
 from eventpound.solvers.events.underway import Underway
 from eventpound.tolerances import (
     ACCELERATION,
@@ -152,7 +152,7 @@ def impact_over(
     return Impact(impulse, involved, lost, bool(solved))
 
 
-class _Held(NamedTuple):
+class _Pressed(NamedTuple):
     """What moves with contacts pressed.
 
     rows (K, C): directions of the gaps in the coordinates of the clusters. mass (C,) (kg).
@@ -206,7 +206,7 @@ def rest_contacts_at_points(
     return pressed | kept | undecided, pressed, True
 
 
-def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: Bools) -> _Held:
+def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: Bools) -> _Pressed:
     mass, ordinary = touching.mass, pressed & ~at_points
     left, right, gap = touching.left, touching.right, touching.gap
     clusters = in_python(form_clusters)(left, right, gap, ordinary, ordinary, mass.size)
@@ -233,10 +233,12 @@ def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: B
     # In the metric of the masses, as the constraints are told apart.
     size = np.linalg.norm(left_of / np.sqrt(total), axis=1)
     leaves = size > DEPENDENT * np.linalg.norm(rows / np.sqrt(mass), axis=1)
-    return _Held(system, y, D, total, leaves, joined)
+    return _Pressed(system, y, D, total, leaves, joined)
 
 
-def _first_deciding(touching: Touching, now: _Held, undecided: Bools) -> tuple[int, Floats, Floats]:
+def _first_deciding(
+    touching: Touching, now: _Pressed, undecided: Bools
+) -> tuple[int, Floats, Floats]:
     """Lowest order at which an undecided gap accelerates, or -1.
 
     With it the coefficients of the accelerations of all gaps, shape (K,), and their noise.
@@ -273,7 +275,7 @@ def _first_deciding(touching: Touching, now: _Held, undecided: Bools) -> tuple[i
     return -1, opening, level
 
 
-def _parts(now: _Held, undecided: Bools) -> Bools:
+def _parts(now: _Pressed, undecided: Bools) -> Bools:
     """Clusters that have to do with a contact by way of undecided and pressed ones, (K, C)."""
     touched = now.rows != 0.0
     linked = now.joined | (touched[undecided].T.astype(int) @ touched[undecided].astype(int) > 0)
@@ -282,14 +284,14 @@ def _parts(now: _Held, undecided: Bools) -> Bools:
     return np.asarray(touched.astype(int) @ linked.astype(int) > 0)
 
 
-def settle_points(now: Underway, piece: Piece) -> int:
+def settle_points(now: Underway, piece: CurrentPiece) -> int:
     """Impacts of the present instant, and who rests after them; ends as `proceed` does.
 
     Parameters
     ----------
     now : Underway
         The run.
-    piece : Piece
+    piece : CurrentPiece
         The ground motion.
     """
     rows = contact_rows(now.model)

@@ -16,6 +16,7 @@ from eventpound.mechanics.observables import (
 from eventpound.mechanics.points import add_points
 from eventpound.mechanics.reduced import Forcing, Reduced, state_vector
 from eventpound.mechanics.reduced_loads import placed
+from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
@@ -23,16 +24,15 @@ from eventpound.solvers.events.recorder import WRITTEN, write_row
 from eventpound.solvers.events.run import (
     Dynamics,
     Happened,
-    Piece,
-    Record,
     Rules,
     Run,
+    RunRecord,
     State,
 )
 
 
 @kernel
-def forcing_now(piece: Piece, t: float) -> Forcing:
+def forcing_now(piece: CurrentPiece, t: float) -> Forcing:
     """The ground motion from the time t (s) on."""
     return Forcing(piece.family, borrow(piece.coefficients), borrow(piece.samples), t)
 
@@ -117,14 +117,14 @@ def pass_kinks(happened: Happened, state: State) -> None:
 
 
 @kernel
-def put_instant(t: float, seen: Observed, record: Record) -> None:
+def put_instant(t: float, seen: Observed, record: RunRecord) -> None:
     """Put one side of an event into the history and the extremes."""
     write_row(t, seen, record.journal)
     update_extremes(seen, t, record.running)
 
 
 @kernel
-def make_ready(run: Run, mode: Dynamics, piece: Piece) -> None:
+def make_ready(run: Run, mode: Dynamics, piece: CurrentPiece) -> None:
     """Leave the present instant as a step begins with it: `y`, `rate`, `atol` and the first look.
 
     The look has the gaps by their own variables.
@@ -156,7 +156,7 @@ def put_present(run: Run, settled: bool) -> None:
 
 
 @kernel
-def hold(record: Record) -> None:
+def hold(record: RunRecord) -> None:
     """Remember history and extremes as they are, for `forget_held`."""
     record.held_rows[0] = record.journal.cursor[WRITTEN]
     for row in range(record.held.shape[0]):
@@ -164,7 +164,7 @@ def hold(record: Record) -> None:
 
 
 @kernel
-def forget_held(record: Record) -> None:
+def forget_held(record: RunRecord) -> None:
     """Take back what has come into history and extremes since `hold`."""
     record.journal.cursor[WRITTEN] = record.held_rows[0]
     for row in range(record.held.shape[0]):

@@ -54,7 +54,7 @@ def is_due(t: float, journal: Journal) -> bool:
     return passed < journal.times.size and journal.times[passed] < t
 
 
-class Line(NamedTuple):
+class RowColumns(NamedTuple):
     """First column of each part of a line, in the order of `History`, and its width at last."""
 
     t: int
@@ -70,7 +70,7 @@ class Line(NamedTuple):
 
 
 @scalar_kernel
-def line_of(bodies: int, hysteretic: int, springs: int, contacts: int) -> Line:
+def line_of(bodies: int, hysteretic: int, springs: int, contacts: int) -> RowColumns:
     """Columns of the lines of a scene with N bodies, H of S springs hysteretic, and K contacts."""
     v = 2 + bodies
     a = v + bodies
@@ -78,16 +78,16 @@ def line_of(bodies: int, hysteretic: int, springs: int, contacts: int) -> Line:
     force = z + hysteretic
     gap = force + springs
     contact_force = gap + contacts
-    return Line(0, 1, 2, v, a, z, force, gap, contact_force, contact_force + contacts)
+    return RowColumns(0, 1, 2, v, a, z, force, gap, contact_force, contact_force + contacts)
 
 
-def _line_in(model: Model) -> Line:
+def _line_in(model: Model) -> RowColumns:
     return in_python(line_of)(model.bodies, model.hysteretic.size, model.springs, model.contacts)
 
 
 @scalar_kernel
 def put_line(t: float, ground: float, parts: tuple[Floats, ...], row: Floats) -> None:
-    """Fill a line of the history: `parts` are those from u on, in the order of `Line`."""
+    """Fill a line of the history: `parts` are those from u on, in the order of `RowColumns`."""
     row[0], row[1], at = t, ground, 2
     for values in parts:
         for i in range(values.size):

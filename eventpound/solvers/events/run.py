@@ -72,7 +72,7 @@ class State(NamedTuple):
     count: Ints  # type: ignore[assignment]  # hides the method of tuples
 
 
-class Record(NamedTuple):
+class RunRecord(NamedTuple):
     """What a run leaves: history, event rows, extremes (5, M) and the same row by row.
 
     held (5, M), held_rows (1,): extremes and lines written before a mode that may be none.
@@ -112,15 +112,6 @@ class Laws(NamedTuple):
     touch: Floats
 
 
-class Piece(NamedTuple):
-    """A piece of the ground motion, on loan, and where a run leaves it (s)."""
-
-    family: int
-    coefficients: Floats
-    samples: Floats
-    stop: float
-
-
 class Run(NamedTuple):
     """All of it, as compiled functions hand it to each other, lent.
 
@@ -132,7 +123,7 @@ class Run(NamedTuple):
     rules: Rules
     state: State
     instant: Instant
-    record: Record
+    record: RunRecord
     happened: Happened
     marks: Found
     looks: tuple[Observed, ...]

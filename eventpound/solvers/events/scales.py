@@ -48,7 +48,7 @@ class Attached(NamedTuple):
     offset: Floats
 
 
-class Start(NamedTuple):
+class InitialState(NamedTuple):
     """Displacement and velocity (..., N) and z (..., H) of the links `hysteretic` at the start."""
 
     u: Floats
@@ -57,7 +57,7 @@ class Start(NamedTuple):
     hysteretic: Ints
 
 
-class _Held(NamedTuple):
+class _LinkSums(NamedTuple):
     """What the links of each body add up to, shape (..., N).
 
     Stiffness before and after yielding (N/m), force of memory (N), dashpots (N s/m), and the
@@ -86,7 +86,7 @@ def attached(model: Model) -> Attached:
 def own_scales(
     links: Attached,
     mass: Floats,
-    start: Start,
+    start: InitialState,
     length: Any,
     time: Any,
     acceleration: Any,
@@ -100,7 +100,7 @@ def own_scales(
         What holds the bodies.
     mass : ndarray, shape (..., N)
         Masses (kg).
-    start : Start
+    start : InitialState
         The state at the start.
     length, time, acceleration : float or ndarray, shape (...)
         L, T and L/T² of the scene (SI).
@@ -129,7 +129,7 @@ def own_scales(
     return np.minimum(length, reach), np.minimum(speed, swift)
 
 
-def _held(links: Attached, mass: Floats) -> _Held:
+def _held(links: Attached, mass: Floats) -> _LinkSums:
     """What holds each body, were its neighbours held."""
     memory = yielding(links.law.memory)
     # As stiff as the link gets: a stop or a cable holds on one side alone.
@@ -143,10 +143,10 @@ def _held(links: Attached, mass: Floats) -> _Held:
         for b in ends:
             if b >= 0:
                 held[..., b] += each[..., i]
-    return _Held(*held)
+    return _LinkSums(*held)
 
 
-def _reach(load: Floats, held: _Held) -> Floats:
+def _reach(load: Floats, held: _LinkSums) -> Floats:
     """Displacement at which the springs carry a load, inf where they cannot (m)."""
     elastic = np.where(held.stiffness > 0.0, load / held.stiffness, np.inf)
     beyond = np.maximum(load - held.force, 0.0)
@@ -156,13 +156,13 @@ def _reach(load: Floats, held: _Held) -> Floats:
     return np.asarray(np.maximum(elastic, yielded))
 
 
-def _swing(energy: Floats, held: _Held) -> Floats:
+def _swing(energy: Floats, held: _LinkSums) -> Floats:
     """Displacement at which the springs have taken up an energy, inf where they cannot (m)."""
     k = np.where(energy > held.yield_energy, held.yielded, held.stiffness)
     return np.asarray(np.where(k > 0.0, np.sqrt(2.0 * energy / k), np.inf))
 
 
-def _energy(links: Attached, mass: Floats, start: Start) -> Floats:
+def _energy(links: Attached, mass: Floats, start: InitialState) -> Floats:
     """Energy at the start (J), shape (...)."""
     total = np.zeros(mass.shape[:-1])
     # That of supports, whose mass is inf, is none.
@@ -238,7 +238,7 @@ def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
     else:
         length, time = scales_without(model, duration, push)
     shaken = motion is not None or push > 0.0
-    start = Start(model.u0, model.v0, model.z0, h)
+    start = InitialState(model.u0, model.v0, model.z0, h)
     own = own_scales(attached(model), model.mass, start, length, time, length / time**2, shaken)
     return SceneScales(length, time, mass, bounds, *own)
 

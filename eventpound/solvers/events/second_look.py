@@ -10,7 +10,7 @@ import numpy as np
 from eventpound.contact.cascade import T
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import next_corner
+from eventpound.motion.forcing import CurrentPiece, next_corner
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, look, state_at
@@ -19,7 +19,7 @@ from eventpound.solvers.events.law_contacts import gather
 from eventpound.solvers.events.location import add_vanished, first_event, update_peaks
 from eventpound.solvers.events.present import close_marked, forcing_now, put_instant, take
 from eventpound.solvers.events.recorder import PASSED, Journal, is_due, write_row
-from eventpound.solvers.events.run import FINDER, Dynamics, Piece, Run
+from eventpound.solvers.events.run import FINDER, Dynamics, Run
 from eventpound.solvers.events.step_check import broken_contact
 
 CLEAR, EVENT = 40, 41
@@ -79,14 +79,14 @@ def end_of_look(end: float, marked: bool, run: Run, step: DenseStep) -> None:
 
 
 @kernel
-def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
+def look_again(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> int:
     """Look for events in a step of an integrator that was marked, from sample to sample.
 
     The step is recorded up to the first of them, whose state becomes the present one.
 
     Parameters
     ----------
-    run, mode, piece : Run, Dynamics, Piece
+    run, mode, piece : Run, Dynamics, CurrentPiece
         The run, at the start of the segment.
     dense : Dense
         The step, in times from there.

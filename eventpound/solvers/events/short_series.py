@@ -264,7 +264,7 @@ def all_finite(Y: Floats) -> bool:
     return finite
 
 
-class Series(NamedTuple):
+class ShortSeries(NamedTuple):
     """Where a local series ends, and why.
 
     end (s): it ceases to be accurate, or contacts `closing` (K,) close. knot: a link reversed
@@ -278,7 +278,7 @@ class Series(NamedTuple):
 
 
 @kernel
-def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Series:
+def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> ShortSeries:
     """Expand the motion from the present instant, which is made ready, up to `limit` (s)."""
     rules, state, system, bodies = run.rules, run.state, mode.system, mode.bodies
     acceleration = rules.length / rules.time**2
@@ -290,7 +290,7 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
     if not all_finite(Y):
         none = np.zeros(state.gap.size, np.bool_)
         nowhere = Dense(Y, 0.0, 0.0, 0.0, np.empty((4, 0)), True, np.empty((0, 0)))
-        return Series(nowhere, none, False, False)
+        return ShortSeries(nowhere, none, False, False)
     radius = _series_radius(Y, weight)
     if system.plain < system.stiffness.size:
         radius = _closing_radius(y, system, weight, min(radius, limit))
@@ -310,4 +310,4 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
         for j in range(closing.size):
             closing[j] = False
     dense = Dense(Y, 0.0, 0.0, end, np.empty((4, 0)), True, C)
-    return Series(dense, closing, knot == end and end < closed, True)
+    return ShortSeries(dense, closing, knot == end and end < closed, True)

@@ -31,7 +31,7 @@ from eventpound.solvers.events.event_bounds import (
     Watched,
     inspect_step,
 )
-from eventpound.solvers.events.run import Dynamics, Record
+from eventpound.solvers.events.run import Dynamics, RunRecord
 from eventpound.tolerances import ENERGY_ERROR, GAP_NOISE, PULLED, SAME_SAMPLE
 
 CLEAR, NOT_FINITE, BEYOND_BOUND, MARKED, HAPPENED = range(5)
@@ -53,7 +53,7 @@ class Examination(NamedTuple):
     looks: tuple[Observed, ...]
     y: Floats
     rate: Floats
-    record: Record
+    record: RunRecord
     found: Found
     z_bound: Floats
     z_allowed: float

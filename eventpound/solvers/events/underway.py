@@ -27,8 +27,8 @@ from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.observables import Observed, blank
 from eventpound.mechanics.points import unique_forces_of
 from eventpound.mechanics.reduced import Forcing, forcing_of
-from eventpound.motion.base import Piece as MotionPiece
-from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.base import Piece
+from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
@@ -55,10 +55,9 @@ from eventpound.solvers.events.run import (
     COUNT_SIZE,
     STEPS,
     Happened,
-    Piece,
-    Record,
     Rules,
     Run,
+    RunRecord,
     State,
 )
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
@@ -142,7 +141,7 @@ class Underway:
     ----------
     run : Run
         What compiled code works on, on loan.
-    rules, state, record : Rules, State, Record
+    rules, state, record : Rules, State, RunRecord
         Parts of it.
     step_looks : tuple of Observed
         Those of `eventpound.solvers.events.step_check.Examination`, the same for every segment.
@@ -232,10 +231,10 @@ class Underway:
         rows = journal.rows[: journal.cursor[WRITTEN]]
         return history_of(rows, self.unique_forces, self.model)
 
-    def piece(self, piece: MotionPiece, stop: float) -> Piece:
+    def piece(self, piece: Piece, stop: float) -> CurrentPiece:
         """A piece of the ground motion up to `stop` (s), on loan."""
         return on_loan(
-            Piece(
+            CurrentPiece(
                 int(piece.family),
                 np.ascontiguousarray(piece.coefficients),
                 np.ascontiguousarray(piece.samples),
@@ -243,7 +242,7 @@ class Underway:
             )
         )
 
-    def forcing(self, piece: Piece) -> Forcing:
+    def forcing(self, piece: CurrentPiece) -> Forcing:
         """The ground motion from the present instant on."""
         return Forcing(piece.family, piece.coefficients, piece.samples, self.t)
 
@@ -326,7 +325,7 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
     )
 
 
-def _record_of(task: Task, model: Model, scales: SceneScales) -> Record:
+def _record_of(task: Task, model: Model, scales: SceneScales) -> RunRecord:
     """A record without extremes, on loan."""
     first = lines_before(task, model, scales)
     times = np.ascontiguousarray(task.output_times, np.float64)
@@ -337,7 +336,7 @@ def _record_of(task: Task, model: Model, scales: SceneScales) -> Record:
     at = places_in(model)
     extremes = blank_extremes(at, scales)
     return on_loan(
-        Record(
+        RunRecord(
             journal=Journal(times, rows, cursor, model.law.damping[: model.springs].copy()),
             events=np.empty((SPARE_ROWS + 8 * model.contacts, EVENT_WIDTH)),
             extremes=extremes,
@@ -386,7 +385,7 @@ def _instant_of(
     )
 
 
-def _run_of(rules: Rules, state: State, record: Record, model: Model) -> Run:
+def _run_of(rules: Rules, state: State, record: RunRecord, model: Model) -> Run:
     """All of it with its scratch, on loan."""
     K, L = model.contacts, model.links
     size = 2 * model.bodies + model.hysteretic.size + model.ledger_entries

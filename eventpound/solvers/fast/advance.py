@@ -9,7 +9,7 @@ from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.monitored import update_settled
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import ground_acceleration, ground_onset, next_corner
+from eventpound.motion.forcing import CurrentPiece, ground_acceleration, ground_onset, next_corner
 from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.apart.steps import forget_each, go_apart, may_go_apart
@@ -19,7 +19,15 @@ from eventpound.solvers.fast.extremes import take_instant
 from eventpound.solvers.fast.instant import instant_of, settle, start
 from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.record import has_room, hold, write_row
-from eventpound.solvers.fast.run import DUE, GOING_ON, PIECE, STARTED, STEPS, Piece, Run, piece_of
+from eventpound.solvers.fast.run import (
+    DUE,
+    GOING_ON,
+    PIECE,
+    STARTED,
+    STEPS,
+    FastRun,
+    piece_of,
+)
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.step import take_step
 from eventpound.tolerances import LENGTH
@@ -28,14 +36,14 @@ _SAMPLES = int(Family.SAMPLES)
 
 
 @compiled_apart
-def advance(budget: int, run: Run) -> int:
+def advance(budget: int, run: FastRun) -> int:
     """Carry a run on by at most `budget` steps.
 
     Parameters
     ----------
     budget : int
         Most steps.
-    run : Run
+    run : FastRun
         See `eventpound.solvers.fast.run`.
 
     Returns
@@ -48,7 +56,7 @@ def advance(budget: int, run: Run) -> int:
 
 
 @compiled_whole
-def carry_on(budget: int, run: Run) -> int:
+def carry_on(budget: int, run: FastRun) -> int:
     """`advance`, the run lent."""
     ground, clock, count, end = (
         run.plan.ground,
@@ -94,7 +102,7 @@ def carry_on(budget: int, run: Run) -> int:
 
 
 @compiled_apart
-def _put_supports(piece: Piece, run: Run) -> None:
+def _put_supports(piece: CurrentPiece, run: FastRun) -> None:
     """Put supports where they are now, and with them what they carry.
 
     A step leaves them where its series end, off by a part of the tolerance. What rests on a
@@ -123,14 +131,14 @@ def _put_supports(piece: Piece, run: Run) -> None:
 
 
 @compiled
-def _goes_with(b: int, s: int, run: Run) -> bool:
+def _goes_with(b: int, s: int, run: FastRun) -> bool:
     """Whether a body, -1 for none, is a support s or rests on it."""
     of_body = run.series.of_body
     return b == s or (b >= 0 and of_body[b] == of_body[s] >= 0 and not is_support(b, run.plan.mass))
 
 
 @compiled_apart
-def _settle_instant(run: Run) -> int:
+def _settle_instant(run: FastRun) -> int:
     """Do the duties of the present instant and write down what follows it."""
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
     count, ground = state.count, plan.ground

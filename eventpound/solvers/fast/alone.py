@@ -12,7 +12,7 @@ from eventpound.mechanics.elements import INVERSE, begin_curve, next_z, pull_per
 from eventpound.numerics.arrays import Ints
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.links import DOWN, UP, elongation, link_force, tangent
-from eventpound.solvers.fast.run import LINEAR, Run, Series
+from eventpound.solvers.fast.run import LINEAR, FastRun, FastSeries
 
 FEWEST = 5
 """Order of a series, at least."""
@@ -21,7 +21,7 @@ CONVERGED = 0.5
 
 
 @compiled
-def begin_link(a: int, run: Run) -> None:
+def begin_link(a: int, run: FastRun) -> None:
     """Elongation of a link, its rate, force and tangent at the start of a step."""
     links, state, series = run.plan.links, run.state, run.series
     x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], state.u, state.v)
@@ -40,7 +40,7 @@ def on_curve(h: int, part: Ints) -> bool:
 
 
 @compiled
-def curve_begins(a: int, h: int, run: Run) -> None:
+def curve_begins(a: int, h: int, run: FastRun) -> None:
     """Make link a, whose z_0 stands, ready for `curve_coefficient`."""
     series, sign = run.series, 1.0 if run.state.part[h] == UP else -1.0
     memory, z = run.plan.links.law.memory, series.z[h, 0]
@@ -48,13 +48,13 @@ def curve_begins(a: int, h: int, run: Run) -> None:
 
 
 @compiled
-def curve_coefficient(h: int, k: int, x: float, s: Series) -> float:
+def curve_coefficient(h: int, k: int, x: float, s: FastSeries) -> float:
     """Coefficient k of z on a curved part, `x` that of the elongation; those before it stand."""
     return next_z(k, x, s.z[h], s.power[h], s.speed[h], s.weighted[h], s.curve[h])
 
 
 @compiled
-def gather(c: int, run: Run) -> None:
+def gather(c: int, run: FastRun) -> None:
     """Force at the start, stiffness and damping of a cluster that goes by itself; links stand."""
     series, damping = run.series, run.plan.links.law.damping
     apart = series.apart
@@ -68,7 +68,7 @@ def gather(c: int, run: Run) -> None:
 
 
 @compiled
-def expand_alone(c: int, h: float, most: int, run: Run) -> tuple[int, float]:
+def expand_alone(c: int, h: float, most: int, run: FastRun) -> tuple[int, float]:
     """Fill `series.X` for a cluster that goes by itself, of which `gather` has the sums.
 
     Its velocity stands. Returned are the highest power, beyond which terms are zero, and the error

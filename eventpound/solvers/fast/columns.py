@@ -28,7 +28,7 @@ from eventpound.scene.spring import GROUND, Series
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import (
     Attached,
-    Start,
+    InitialState,
     body_tolerance,
     own_scales,
     push_of,
@@ -41,7 +41,7 @@ from eventpound.solvers.fast.constants import (
     order_for,
     small_difference,
 )
-from eventpound.solvers.fast.run import Contacts, Ground, Limits, Plan, State
+from eventpound.solvers.fast.run import Contacts, FastPlan, FastState, Ground, Limits
 from eventpound.solvers.fast.single.body import oscillators_of
 
 
@@ -85,19 +85,19 @@ class Variants:
     motion_of: Ints
 
 
-class Rows(NamedTuple):
+class VariantArrays(NamedTuple):
     """Arrays of some variants, each with a leading axis.
 
     Scalars of `Limits` that differ and `Links.kinked` are arrays, too.
     """
 
-    plan: Plan
-    state: State
+    plan: FastPlan
+    state: FastState
     motions: Motions
     extremes: Floats
 
 
-def rows_of(variants: Variants, low: int, high: int) -> Rows:
+def rows_of(variants: Variants, low: int, high: int) -> VariantArrays:
     """Arrays of the variants `low` to `high`, ready to run."""
     task, part = variants.task, slice(low, high)
     model = assemble(task.scene)
@@ -137,7 +137,7 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         False,
     )
     hysteresis = hysteresis_of(law.memory, model.hysteretic, small)
-    plan = Plan(
+    plan = FastPlan(
         numbers["mass"],
         links,
         hysteresis,
@@ -149,7 +149,7 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
     )
     state = blank_state(plan, numbers["u0"], numbers["v0"], numbers["z0"], task.start)
     scales = scales._replace(force=mass * scales.length / scales.squared_time)
-    return Rows(plan, state, motions, blank_extremes(places_in(model), scales))
+    return VariantArrays(plan, state, motions, blank_extremes(places_in(model), scales))
 
 
 def _numbers(
@@ -278,7 +278,7 @@ def _body_tolerances(
         LinkLaw(*(numbers[key] for key in LinkLaw._fields)),
         *(numbers[key] for key in ElasticLaws._fields),
     )
-    start = Start(numbers["u0"], numbers["v0"], numbers["z0"], model.hysteretic)
+    start = InitialState(numbers["u0"], numbers["v0"], numbers["z0"], model.hysteretic)
     length, speed = own_scales(
         links, numbers["mass"], start, scales.length, scales.time, scales.acceleration, shaken
     )

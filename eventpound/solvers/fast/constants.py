@@ -28,14 +28,14 @@ from eventpound.solvers.fast.run import (
     Apart,
     Contacts,
     Each,
+    FastMarks,
+    FastPlan,
+    FastSeries,
+    FastState,
     Ground,
-    Happened,
     Limits,
     Links,
-    Plan,
-    Series,
     Single,
-    State,
 )
 from eventpound.solvers.fast.sampled.exact import blank_tables
 from eventpound.solvers.fast.single.body import BODY, oscillator_of
@@ -105,7 +105,7 @@ def _starts(sizes: list[int]) -> Ints:
     return np.array(list(accumulate(sizes, initial=0)), np.int64)
 
 
-def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:
+def plan_of(task: Task, model: Model, scales: SceneScales) -> FastPlan:
     """Constants of a run.
 
     Parameters
@@ -121,7 +121,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:
     memory = model.law.memory
     small = float(small_difference(task.rtol, memory, model.mass, scales.acceleration))
     links, hysteresis = links_of(model), hysteresis_of(memory, model.hysteretic, small)
-    return Plan(
+    return FastPlan(
         mass=model.mass,
         links=links,
         hysteresis=hysteresis,
@@ -153,22 +153,22 @@ MOST_TURNS = 40
 """Turning points looked for in one step."""
 
 
-def blank_happened(plan: Plan) -> Happened:
+def blank_happened(plan: FastPlan) -> FastMarks:
     """Marks of nothing."""
     links, hysteretic = plan.links.ends.shape[0], plan.hysteresis.link.size
     contacts = plan.contacts.left.size
     sizes = (contacts, contacts, contacts, links, hysteretic, hysteretic)
-    return Happened(*(np.zeros(size, np.bool_) for size in sizes))
+    return FastMarks(*(np.zeros(size, np.bool_) for size in sizes))
 
 
 def blank_state(
-    plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float, ledger: int = WORK_OF_SUPPORTS
-) -> State:
+    plan: FastPlan, u0: Floats, v0: Floats, z0: Floats, start: float, ledger: int = WORK_OF_SUPPORTS
+) -> FastState:
     """State arrays at the start of a run, or with a leading axis of many.
 
     Parameters
     ----------
-    plan : Plan
+    plan : FastPlan
         Constants of the run; with a leading axis where the others have one.
     u0, v0 : ndarray, shape (..., N)
         Displacements (m) and velocities (m/s).
@@ -190,7 +190,7 @@ def blank_state(
     clock[..., RESTED_AT] = clock[..., SETTLED_AT] = -np.inf
     counts = np.zeros((*runs, COUNT_SIZE), np.int64)
     counts[..., DUE] = 1
-    return State(
+    return FastState(
         u0.copy(),
         v0.copy(),
         np.zeros(z0.shape),
@@ -209,7 +209,7 @@ def blank_state(
     )
 
 
-def _blank_each(plan: Plan, loaded: bool) -> Each:
+def _blank_each(plan: FastPlan, loaded: bool) -> Each:
     """What bodies have for themselves, of none where they cannot go apart.
 
     They may under a formula, each on springs to the ground, one of them hysteretic at most, where
@@ -254,14 +254,14 @@ _NOBODY = _each_of(0, 0)
 """Of scenes whose bodies never go apart."""
 
 
-def blank_series(plan: Plan, loaded: bool = False) -> Series:
+def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
     """Scratch arrays of a run, or of many one after the other; `loaded`: with loads on bodies."""
     bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
     hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
     size = plan.limits.order + 3
     most = max(size + MORE_TERMS, REST_TERMS)
     work, turns = in_python(root_work)(most), np.zeros(MOST_TURNS)
-    return Series(
+    return FastSeries(
         X=np.zeros((bodies, size)),
         F=np.zeros((links, size)),
         z=np.zeros((hysteretic, size)),

@@ -19,18 +19,18 @@ from eventpound.solvers.fast.run import (
     EDGES,
     PIECE,
     RESTING,
-    Plan,
-    Run,
+    FastPlan,
+    FastRun,
+    FastSeries,
+    FastState,
     Seen,
-    Series,
-    State,
     piece_of,
 )
 from eventpound.solvers.fast.search import gap_polynomial
 from eventpound.tolerances import OWN_GAP
 
 
-def blank_seen(plan: Plan) -> Seen:
+def blank_seen(plan: FastPlan) -> Seen:
     """Empty arrays to fill."""
     bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
     hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
@@ -49,7 +49,7 @@ def blank_seen(plan: Plan) -> Seen:
 
 
 @compiled
-def look(tau: float, order: int, ground: float, run: Run) -> None:
+def look(tau: float, order: int, ground: float, run: FastRun) -> None:
     """Fill `seen` at the local time tau (s), the ground acceleration given (m/s²)."""
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
     for b in range(plan.mass.size):
@@ -72,7 +72,7 @@ def look(tau: float, order: int, ground: float, run: Run) -> None:
 
 
 @compiled
-def see_forces(ground: float, run: Run) -> None:
+def see_forces(ground: float, run: FastRun) -> None:
     """Fill `seen` with z and the forces of the links at its displacements and velocities."""
     plan, seen = run.plan, run.seen
     seen.base[0] = ground
@@ -99,7 +99,7 @@ def see_forces(ground: float, run: Run) -> None:
 
 
 @compiled_deferred
-def _add_loads(t: float, run: Run) -> None:
+def _add_loads(t: float, run: FastRun) -> None:
     """Add the loads at t (s), on the present piece of the ground motion, to `body_force`.
 
     The accelerations of supports are put into `a`.
@@ -109,7 +109,7 @@ def _add_loads(t: float, run: Run) -> None:
 
 
 @compiled
-def _accelerations(run: Run) -> None:
+def _accelerations(run: FastRun) -> None:
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
     if state.count[RESTING] == 0:
         for b in range(plan.mass.size):
@@ -132,7 +132,7 @@ def _accelerations(run: Run) -> None:
 
 
 @compiled
-def _gaps(tau: float, order: int, run: Run) -> None:
+def _gaps(tau: float, order: int, run: FastRun) -> None:
     """Gaps by their own variables where they are small, else by the displacements."""
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
     contacts = plan.contacts
@@ -155,7 +155,7 @@ def _gaps(tau: float, order: int, run: Run) -> None:
 
 
 @compiled
-def _contact_forces(run: Run) -> None:
+def _contact_forces(run: FastRun) -> None:
     """λ of the resting contacts from ``W λ = m (u'' + a_g) - f``, in which supports are roots."""
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
     seen.contact_force[:] = 0.0
@@ -167,7 +167,7 @@ def _contact_forces(run: Run) -> None:
 
 
 @compiled
-def spread_forces(state: State, series: Series, out: Floats) -> None:
+def spread_forces(state: FastState, series: FastSeries, out: Floats) -> None:
     """Contact forces that put `series.force` (N,) on the bodies; it is overwritten."""
     residual = series.force
     for i in range(state.count[EDGES]):
@@ -178,13 +178,13 @@ def spread_forces(state: State, series: Series, out: Floats) -> None:
 
 
 @compiled_apart
-def look_apart(tau: float, order: int, ground: float, run: Run) -> None:
+def look_apart(tau: float, order: int, ground: float, run: FastRun) -> None:
     """As `look`, where it is not part of every step."""
     look(tau, order, ground, run)
 
 
 @compiled_deferred
-def contact_force_series(order: int, run: Run) -> None:
+def contact_force_series(order: int, run: FastRun) -> None:
     """Taylor coefficients of the forces of resting contacts."""
     plan, state, series = run.plan, run.state, run.series
     mass, ends, residual = plan.mass, plan.links.ends, series.force

@@ -18,7 +18,7 @@ import numpy as np
 from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import INVERSE, pull_per_z
-from eventpound.motion.forcing import ground_taylor
+from eventpound.motion.forcing import CurrentPiece, ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.alone import (
@@ -43,9 +43,8 @@ from eventpound.solvers.fast.run import (
     RESTING,
     TIED,
     TIED_LINKS,
-    Piece,
-    Run,
-    Series,
+    FastRun,
+    FastSeries,
 )
 from eventpound.solvers.fast.search import distance_coefficient
 from eventpound.tolerances import LONGEST_STEP, NO_ERROR, RETRIED
@@ -55,7 +54,7 @@ LOCAL_SHARE = 0.1
 
 
 @compiled_apart
-def load_clusters(k: int, mass: Floats, series: Series) -> None:
+def load_clusters(k: int, mass: Floats, series: FastSeries) -> None:
     """Add coefficient k of the loads on bodies to the forces on clusters."""
     for b in range(mass.size):
         if series.of_body[b] >= 0 and not is_support(b, mass):
@@ -63,7 +62,7 @@ def load_clusters(k: int, mass: Floats, series: Series) -> None:
 
 
 @compiled_apart
-def drive_clusters(k: int, mass: Floats, series: Series) -> None:
+def drive_clusters(k: int, mass: Floats, series: FastSeries) -> None:
     """Coefficient k + 2 of the displacements of clusters with a support, which is the first."""
     for b in range(mass.size - 1, -1, -1):
         c = series.of_body[b]
@@ -73,7 +72,7 @@ def drive_clusters(k: int, mass: Floats, series: Series) -> None:
 
 
 @compiled
-def expand(h: float, most: int, run: Run) -> tuple[int, float]:
+def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
     """Fill `series.X` until a step of h (s) needs no further term, or up to the power `most`.
 
     What `begin_series` makes stands already. Returned are the highest power and the error of the
@@ -98,7 +97,7 @@ def expand(h: float, most: int, run: Run) -> tuple[int, float]:
 
 
 @compiled
-def _expand_together(h: float, most: int, run: Run) -> tuple[int, float]:
+def _expand_together(h: float, most: int, run: FastRun) -> tuple[int, float]:
     """Terms of all clusters that do not go by themselves."""
     plan, state, series = run.plan, run.state, run.series
     links, law, resting = plan.links, plan.links.law, state.count[RESTING] > 0
@@ -148,7 +147,7 @@ def _expand_together(h: float, most: int, run: Run) -> tuple[int, float]:
 
 
 @compiled
-def last_terms(order: int, power: float, over: float, clusters: int, series: Series) -> float:
+def last_terms(order: int, power: float, over: float, clusters: int, series: FastSeries) -> float:
     """The last two terms in units of their tolerance; `power` is h^order, `over` 1/h."""
     X, worst = series.X, 0.0
     of_u, of_v = series.weights[0], series.weights[1]
@@ -159,7 +158,7 @@ def last_terms(order: int, power: float, over: float, clusters: int, series: Ser
 
 
 @compiled_apart
-def _last_of_resting(order: int, power: float, over: float, run: Run) -> float:
+def _last_of_resting(order: int, power: float, over: float, run: FastRun) -> float:
     """The same of what contacts at rest balance: the ground, loads, and links of their bodies.
 
     `power` is h^(order - 1). The force of a contact follows them itself, so each counts by the mass
@@ -183,14 +182,14 @@ def _last_of_resting(order: int, power: float, over: float, run: Run) -> float:
 
 
 @compiled
-def _moves_with_others(b: int, mass: Floats, series: Series) -> bool:
+def _moves_with_others(b: int, mass: Floats, series: FastSeries) -> bool:
     """Whether a body rests on another that is not negligible beside it, or on a barrier."""
     c = series.of_body[b]
     return bool(c < 0 or series.inverse_mass[c] != 1.0 / mass[b])
 
 
 @compiled
-def set_weights(run: Run) -> None:
+def set_weights(run: FastRun) -> None:
     """What errors of u and v of each cluster are multiplied by, for those of its bodies."""
     plan, state, series = run.plan, run.state, run.series
     limits, weights = plan.limits, series.weights
@@ -218,14 +217,14 @@ def change_at(c: int, tau: float, order: int, X: Floats) -> tuple[float, float, 
 
 
 @compiled_deferred
-def expand_loads(piece: Piece, t: float, order: int, series: Series) -> None:
+def expand_loads(piece: CurrentPiece, t: float, order: int, series: FastSeries) -> None:
     """Taylor coefficients of the loads on bodies at t (s) into `series.load`."""
     series.load[:] = 0.0
     add_load_series(piece, t, order, series.c, series.load)
 
 
 @compiled
-def begin_series(t: float, piece: Piece, run: Run) -> None:
+def begin_series(t: float, piece: CurrentPiece, run: FastRun) -> None:
     """All that `expand` needs at the present instant."""
     plan, state, series = run.plan, run.state, run.series
     ground_taylor(piece, t, plan.limits.order, series.ground)
@@ -242,7 +241,7 @@ def begin_series(t: float, piece: Piece, run: Run) -> None:
 
 
 @compiled
-def wrong_way(order: int, run: Run) -> bool:
+def wrong_way(order: int, run: FastRun) -> bool:
     """Turn round links whose elongation rate has vanished and grows against their direction."""
     plan, state, series = run.plan, run.state, run.series
     hysteresis = plan.hysteresis
@@ -271,7 +270,7 @@ SINUSOID_STEP = 1.5
 
 
 @compiled
-def defect_error(tau: float, order: int, ground: float, run: Run) -> float:
+def defect_error(tau: float, order: int, ground: float, run: FastRun) -> float:
     """Error of a step in units of its tolerance, from the defect of the equations at its end.
 
     The end has just been looked at (`eventpound.solvers.fast.evaluate.look`). A defect that grows
@@ -290,7 +289,7 @@ def defect_error(tau: float, order: int, ground: float, run: Run) -> float:
 
 
 @compiled
-def longest_try(limit: float, piece: Piece, run: Run) -> tuple[float, float]:
+def longest_try(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[float, float]:
     """Longest step (s), `limit` at most, and the length that the series are made for."""
     gaussian, sinusoid, sampled = shortest_times(piece.family, piece.coefficients)
     longest = min(limit, GAUSSIAN_STEP * gaussian, SINUSOID_STEP * sinusoid)

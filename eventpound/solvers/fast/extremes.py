@@ -19,13 +19,13 @@ from eventpound.numerics.polynomial import first_root, only_root, value_and_slop
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.links import CORE
-from eventpound.solvers.fast.run import RESTING, Plan, Run, Series
+from eventpound.solvers.fast.run import RESTING, FastPlan, FastRun, FastSeries
 from eventpound.solvers.fast.search import relative, stays_above
 from eventpound.tolerances import FLAT_WITHIN
 
 
 @compiled
-def take_instant(t: float, run: Run) -> None:
+def take_instant(t: float, run: FastRun) -> None:
     """Take everything known at one time (s) into the extremes."""
     plan, seen, running = run.plan, run.seen, run.running
     at, ends = running.at, plan.links.ends
@@ -106,7 +106,7 @@ def shift(c: Floats, size: int, x: float) -> None:
 
 
 @compiled
-def inside_step(tau: float, order: int, run: Run) -> None:
+def inside_step(tau: float, order: int, run: FastRun) -> None:
     """Turning points of displacements, elongations and gaps, within a step of length tau (s)."""
     plan, state, series, at = run.plan, run.state, run.series, run.running.at
     for b in range(plan.mass.size):
@@ -128,7 +128,7 @@ def inside_step(tau: float, order: int, run: Run) -> None:
 
 
 @compiled
-def _pair(i: int, head: int, tail: int, value: float, tau: float, order: int, run: Run) -> None:
+def _pair(i: int, head: int, tail: int, value: float, tau: float, order: int, run: FastRun) -> None:
     """Turning points of the distance of two clusters."""
     series, running = run.series, run.running
     if head == tail:
@@ -151,7 +151,9 @@ def _pair(i: int, head: int, tail: int, value: float, tau: float, order: int, ru
 
 
 @compiled
-def _locate(i: int, head: int, tail: int, value: float, tau: float, order: int, run: Run) -> None:
+def _locate(
+    i: int, head: int, tail: int, value: float, tau: float, order: int, run: FastRun
+) -> None:
     relative(head, tail, order, run.series, run.series.c)
     run.series.c[0] = value
     set_rate(run.series.c, order, run.series.d)
@@ -166,7 +168,7 @@ def set_rate(c: Floats, order: int, d: Floats) -> None:
 
 
 @compiled
-def take_turns(i: int, c: Floats, order: int, start: float, tau: float, run: Run) -> None:
+def take_turns(i: int, c: Floats, order: int, start: float, tau: float, run: FastRun) -> None:
     """Turning points of quantity i, a polynomial c of a degree with the rate `series.d`.
 
     They are looked for from a time on (s) and within tau (s) of it; `series.d` is overwritten.
@@ -182,7 +184,7 @@ def take_turns(i: int, c: Floats, order: int, start: float, tau: float, run: Run
 
 
 @compiled
-def followers(b: int, u: float, t: float, near: float, plan: Plan, running: Running) -> None:
+def followers(b: int, u: float, t: float, near: float, plan: FastPlan, running: Running) -> None:
     """Springs from a body to the ground and its gaps to barriers turn with it."""
     at, ends = running.at, plan.links.ends
     for a in range(plan.links.springs):
@@ -200,13 +202,13 @@ def followers(b: int, u: float, t: float, near: float, plan: Plan, running: Runn
 
 
 @compiled
-def flat_time(plan: Plan) -> float:
+def flat_time(plan: FastPlan) -> float:
     """Time over which a peak is flat to rounding (s): |u - peak| = a t²/2 with a = L/T²."""
     return float(FLAT_WITHIN * plan.limits.time)
 
 
 @compiled
-def forces_inside_step(tau: float, order: int, run: Run) -> bool:
+def forces_inside_step(tau: float, order: int, run: FastRun) -> bool:
     """Turning points within a step of length tau (s); whether `seen` was overwritten."""
     plan, state, series, running = run.plan, run.state, run.series, run.running
     bodies, at = plan.mass.size, running.at
@@ -241,7 +243,7 @@ def forces_inside_step(tau: float, order: int, run: Run) -> bool:
 
 @compiled
 def _settled(
-    i: int, value: float, tau: float, order: int, series: Series, running: Running
+    i: int, value: float, tau: float, order: int, series: FastSeries, running: Running
 ) -> bool:
     """Whether a quantity whose rate is `series.d` cannot exceed its extremes in the step."""
     d, spread = series.d, 0.0
@@ -251,7 +253,7 @@ def _settled(
 
 
 @compiled
-def _turns(c: int, tau: float, order: int, run: Run) -> bool:
+def _turns(c: int, tau: float, order: int, run: FastRun) -> bool:
     """Take the acceleration of cluster c, or for -1 the base shear, where its rate vanishes.
 
     The rate is `series.d`; returned is whether it vanishes within the step.
@@ -272,13 +274,13 @@ def _turns(c: int, tau: float, order: int, run: Run) -> bool:
 
 
 @compiled
-def _acceleration_term(c: int, k: int, series: Series) -> float:
+def _acceleration_term(c: int, k: int, series: FastSeries) -> float:
     """Coefficient k of the absolute acceleration of a cluster (m/s^(2+k))."""
     return (k + 1) * (k + 2) * series.X[c, k + 2] + series.ground[k]
 
 
 @compiled
-def _acceleration(c: int, tau: float, order: int, series: Series) -> tuple[float, float]:
+def _acceleration(c: int, tau: float, order: int, series: FastSeries) -> tuple[float, float]:
     """Absolute acceleration of a cluster (m/s²), and how much it may change within the step."""
     spread = 0.0
     for k in range(order - 2, 0, -1):
@@ -287,14 +289,14 @@ def _acceleration(c: int, tau: float, order: int, series: Series) -> tuple[float
 
 
 @compiled
-def _set_acceleration_rate(c: int, order: int, series: Series) -> None:
+def _set_acceleration_rate(c: int, order: int, series: FastSeries) -> None:
     """Rate of the absolute acceleration of a cluster into `series.d`."""
     for k in range(1, order - 1):
         series.d[k - 1] = k * _acceleration_term(c, k, series)
 
 
 @compiled
-def _shear_rate_of_bodies(order: int, mass: Floats, series: Series) -> None:
+def _shear_rate_of_bodies(order: int, mass: Floats, series: FastSeries) -> None:
     """Rate of the base shear into `series.d`, where no body is held but by links."""
     d = series.d
     for k in range(1, order - 1):
@@ -304,7 +306,7 @@ def _shear_rate_of_bodies(order: int, mass: Floats, series: Series) -> None:
 
 
 @compiled
-def _base_shear(order: int, plan: Plan, series: Series) -> float:
+def _base_shear(order: int, plan: FastPlan, series: FastSeries) -> float:
     """Sum of the forces of links to the ground (N); its rate goes into `series.d`."""
     F, d, ends = series.F, series.d, plan.links.ends
     value = 0.0
@@ -325,7 +327,7 @@ def _base_shear(order: int, plan: Plan, series: Series) -> float:
 
 
 @compiled
-def _at_rest(tau: float, order: int, run: Run) -> None:
+def _at_rest(tau: float, order: int, run: FastRun) -> None:
     """Forces of resting contacts, and bodies that stand still and move with the ground."""
     state, series, at = run.state, run.series, run.running.at
     for j in range(state.resting.size):
@@ -337,7 +339,7 @@ def _at_rest(tau: float, order: int, run: Run) -> None:
 
 
 @compiled
-def _polynomial_turns(i: int, c: Floats, tau: float, order: int, run: Run) -> None:
+def _polynomial_turns(i: int, c: Floats, tau: float, order: int, run: FastRun) -> None:
     """Turning points of a quantity known by its own series."""
     set_rate(c, order - 2, run.series.d)
     if not _settled(i, c[0], tau, order, run.series, run.running):

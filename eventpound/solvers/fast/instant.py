@@ -34,12 +34,12 @@ from eventpound.solvers.fast.run import (
     TIED,
     TIED_LINKS,
     Contacts,
-    Run,
+    FastRun,
 )
 
 
 @compiled
-def enter_mode(run: Run) -> None:
+def enter_mode(run: FastRun) -> None:
     """Arrays of the mode that the resting contacts make; bodies that touch move as one."""
     plan, state, series = run.plan, run.state, run.series
     mass, links, count = plan.mass, plan.links, state.count
@@ -63,7 +63,7 @@ def enter_mode(run: Run) -> None:
 
 
 @compiled_apart
-def _find_apart(run: Run) -> None:
+def _find_apart(run: FastRun) -> None:
     """Clusters that go by themselves: on links to the ground only, one of them hysteretic at most.
 
     There are none where the forces of contacts or of loads are followed.
@@ -82,7 +82,7 @@ def _find_apart(run: Run) -> None:
 
 
 @compiled_apart
-def _sort_active(run: Run) -> None:
+def _sort_active(run: FastRun) -> None:
     """Links that move: of clusters that go together, then of each that goes by itself."""
     series, count = run.series, run.state.count
     first_of, hysteretic, clusters = series.apart.links, series.apart.hysteretic, count[CLUSTERS]
@@ -113,7 +113,7 @@ def _sort_active(run: Run) -> None:
 
 
 @compiled_deferred
-def _enter_rest(run: Run) -> None:
+def _enter_rest(run: FastRun) -> None:
     """The clusters of bodies that rest on each other, their masses and velocities."""
     plan, state, series, count = run.plan, run.state, run.series, run.state.count
     forces = Resting(
@@ -136,7 +136,7 @@ def _enter_rest(run: Run) -> None:
 
 
 class Resting(NamedTuple):
-    """What the mode of resting contacts is made of, and where it goes; see `State`, `Series`."""
+    """What the mode of resting contacts is made of, and where it goes; see `FastState`."""
 
     resting: Bools
     pressed: Bools
@@ -172,7 +172,7 @@ def _form(contacts: Contacts, mass: Floats, v: Floats, forces: Resting) -> tuple
 
 
 @compiled
-def choose_directions(run: Run) -> None:
+def choose_directions(run: FastRun) -> None:
     """Turn round every hysteretic link whose elongation rate changed its sign in an impact."""
     plan, state, series = run.plan, run.state, run.series
     hysteresis = plan.hysteresis
@@ -185,7 +185,7 @@ def choose_directions(run: Run) -> None:
 
 
 @compiled
-def instant_of(run: Run) -> Instant:
+def instant_of(run: FastRun) -> Instant:
     """What the rules of an instant work on; `travel` of the series is free then."""
     plan, state, happened = run.plan, run.state, run.happened
     contacts, links, limits = plan.contacts, plan.links, plan.limits
@@ -220,7 +220,7 @@ def instant_of(run: Run) -> Instant:
 
 
 @compiled
-def settle(forcing: Forcing, z: Floats, at: Instant, run: Run) -> int:
+def settle(forcing: Forcing, z: Floats, at: Instant, run: FastRun) -> int:
     """Do the duties of the present instant; `z` (H,) is overwritten."""
     plan, state, series = run.plan, run.state, run.series
     ended = settle_impacts(at)
@@ -236,7 +236,7 @@ def settle(forcing: Forcing, z: Floats, at: Instant, run: Run) -> int:
 
 
 @compiled_apart
-def start(run: Run) -> None:
+def start(run: FastRun) -> None:
     """The first mode of a run, and its hysteretic links on their curves."""
     plan, state, series = run.plan, run.state, run.series
     enter_mode(run)

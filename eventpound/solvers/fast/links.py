@@ -25,7 +25,7 @@ from eventpound.solvers.fast.compiled import (
     compiled_apart,
     compiled_whole,
 )
-from eventpound.solvers.fast.run import Contacts, Links, Run, State
+from eventpound.solvers.fast.run import Contacts, FastRun, FastState, Links
 
 
 @compiled
@@ -57,13 +57,13 @@ CORE, UNLOADING, DOWN, UP, SATURATED = 0, 1, 2, 3, 4
 
 
 @compiled
-def place(h: int, x: float, hysteresis: Hysteresis, state: State) -> float:
+def place(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
     """ξ of a hysteretic link at the elongation x (m)."""
     return state.xi_r[h] + state.sigma[h] * (x - state.x_r[h]) / hysteresis.scale[h]
 
 
 @compiled
-def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: State) -> float:
+def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
     """Z of a hysteretic link at the elongation x (m), reached without reversal."""
     if state.part[h] == SATURATED:
         return state.sigma[h] * hysteresis.bound[h]
@@ -74,7 +74,7 @@ def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: State) 
 
 
 @compiled
-def link_force(a: int, x: float, run: Run) -> tuple[float, float]:
+def link_force(a: int, x: float, run: FastRun) -> tuple[float, float]:
     """Force of a link at the elongation x (m) without its dashpot (N), and its z, 0 for none."""
     links, z = run.plan.links, 0.0
     k = links.compression[a] if run.state.branch[a] < 0 else links.extension[a]
@@ -87,7 +87,7 @@ def link_force(a: int, x: float, run: Run) -> tuple[float, float]:
 
 
 @compiled
-def tangent(a: int, links: Links, state: State) -> float:
+def tangent(a: int, links: Links, state: FastState) -> float:
     """Stiffness of a link (N/m), on a curved part of its backbone without its z."""
     k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
     h = links.z_of_link[a]
@@ -97,7 +97,7 @@ def tangent(a: int, links: Links, state: State) -> float:
 
 
 @compiled
-def saturate(x: Floats, hysteresis: Hysteresis, state: State) -> tuple[bool, bool]:
+def saturate(x: Floats, hysteresis: Hysteresis, state: FastState) -> tuple[bool, bool]:
     """Put links that have reached saturation there, from the elongations x (L,) of all links (m).
 
     Returned is whether a link is on a curved part, and whether one was put there.
@@ -131,7 +131,7 @@ def part_of(h: int, xi: float, hysteresis: Hysteresis) -> int:
 
 @compiled_apart
 def set_curve(
-    h: int, x: float, sigma: float, y: float, hysteresis: Hysteresis, state: State
+    h: int, x: float, sigma: float, y: float, hysteresis: Hysteresis, state: FastState
 ) -> None:
     """Put a link on the curve of direction σ at the elongation x (m) and ``σ z / b = y``."""
     xi = backbone_inverse(hysteresis.tables, hysteresis.at[h], min(max(y, -1.0), 1.0))
@@ -151,7 +151,7 @@ def turns_back(part: int, sigma: float, rate: float, still: float) -> bool:
 
 
 @compiled_apart
-def reverse(h: int, x: float, hysteresis: Hysteresis, state: State) -> None:
+def reverse(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> None:
     """Turn a link round at the elongation x (m)."""
     sigma = state.sigma[h]
     y = sigma * hysteretic_variable(h, x, hysteresis, state) / hysteresis.bound[h]
@@ -159,7 +159,7 @@ def reverse(h: int, x: float, hysteresis: Hysteresis, state: State) -> None:
 
 
 @compiled_apart
-def cross_border(h: int, x: float, hysteresis: Hysteresis, state: State) -> None:
+def cross_border(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> None:
     """Move a link that has reached the border of its part to the next."""
     part = state.part[h]
     core = hysteresis.core[h]
@@ -175,7 +175,7 @@ def cross_border(h: int, x: float, hysteresis: Hysteresis, state: State) -> None
 
 
 @compiled_whole
-def all_variables(x: Floats, hysteresis: Hysteresis, state: State, out: Floats) -> None:
+def all_variables(x: Floats, hysteresis: Hysteresis, state: FastState, out: Floats) -> None:
     """Every z at the elongations x (L,) of the links, into `out` (H,)."""
     for h in range(out.size):
         out[h] = hysteretic_variable(h, x[hysteresis.link[h]], hysteresis, state)

@@ -18,12 +18,12 @@ from eventpound.solvers.fast.run import (
     CLUSTERS,
     RESTING,
     STALLED,
-    Happened,
+    FastMarks,
+    FastPlan,
+    FastRun,
+    FastSeries,
     Limits,
     Links,
-    Plan,
-    Run,
-    Series,
 )
 from eventpound.solvers.fast.search import (
     bound_of_pair,
@@ -46,7 +46,7 @@ from eventpound.tolerances import (
 
 
 @compiled
-def _take(tau: float, first: float, happened: Happened) -> tuple[bool, float]:
+def _take(tau: float, first: float, happened: FastMarks) -> tuple[bool, float]:
     """Whether an event at tau belongs to the first ones, and their time."""
     if not tau <= first * (1.0 + SAME_INSTANT):
         return False, first
@@ -56,7 +56,7 @@ def _take(tau: float, first: float, happened: Happened) -> tuple[bool, float]:
 
 
 @compiled
-def clear(happened: Happened) -> None:
+def clear(happened: FastMarks) -> None:
     """Nothing has happened."""
     happened.closing[:] = False
     happened.released[:] = False
@@ -66,7 +66,7 @@ def clear(happened: Happened) -> None:
 
 
 @compiled
-def first_happening(order: int, h: float, run: Run) -> float:
+def first_happening(order: int, h: float, run: FastRun) -> float:
     """Time of the first thing that happens within h (s), marked in `happened`; inf if none."""
     state = run.state
     clear(run.happened)
@@ -79,7 +79,7 @@ def first_happening(order: int, h: float, run: Run) -> float:
 
 
 @compiled
-def _closings(order: int, h: float, run: Run) -> float:
+def _closings(order: int, h: float, run: FastRun) -> float:
     plan, state, series, happened = run.plan, run.state, run.series, run.happened
     first = np.inf
     contacts = plan.contacts
@@ -105,7 +105,7 @@ def _closings(order: int, h: float, run: Run) -> float:
 
 
 @compiled
-def _hysteretic(order: int, h: float, first: float, run: Run) -> float:
+def _hysteretic(order: int, h: float, first: float, run: FastRun) -> float:
     plan, state, series, happened = run.plan, run.state, run.series, run.happened
     hysteresis = plan.hysteresis
     for i in range(hysteresis.link.size):
@@ -129,7 +129,7 @@ def _hysteretic(order: int, h: float, first: float, run: Run) -> float:
 
 
 @compiled
-def _reversal(order: int, h: float, i: int, run: Run) -> float:
+def _reversal(order: int, h: float, i: int, run: FastRun) -> float:
     """When σ x' of a hysteretic link falls below zero, or inf."""
     plan, state, series = run.plan, run.state, run.series
     a, sigma = plan.hysteresis.link[i], state.sigma[i]
@@ -149,7 +149,7 @@ def _reversal(order: int, h: float, i: int, run: Run) -> float:
 
 
 @compiled
-def _border(order: int, h: float, first: float, i: int, run: Run) -> float:
+def _border(order: int, h: float, first: float, i: int, run: FastRun) -> float:
     """When a hysteretic link leaves its part of the backbone, or inf."""
     hysteresis, state, series = run.plan.hysteresis, run.state, run.series
     a, sigma, part = hysteresis.link[i], state.sigma[i], state.part[i]
@@ -170,7 +170,7 @@ def _border(order: int, h: float, first: float, i: int, run: Run) -> float:
 
 
 @compiled
-def _level(order: int, limit: float, sigma: float, distance: float, i: int, run: Run) -> float:
+def _level(order: int, limit: float, sigma: float, distance: float, i: int, run: FastRun) -> float:
     """When σ x of a hysteretic link has grown by a distance given in ξ."""
     hysteresis, series = run.plan.hysteresis, run.series
     a, c = hysteresis.link[i], series.c
@@ -182,7 +182,7 @@ def _level(order: int, limit: float, sigma: float, distance: float, i: int, run:
 
 
 @compiled
-def _kinks(order: int, h: float, first: float, run: Run) -> float:
+def _kinks(order: int, h: float, first: float, run: FastRun) -> float:
     plan, state, series, happened = run.plan, run.state, run.series, run.happened
     links: Links = plan.links
     for i in range(state.count[ACTIVE]):
@@ -213,7 +213,7 @@ def _kinks(order: int, h: float, first: float, run: Run) -> float:
 
 @compiled_apart
 def _leaves_branch(
-    order: int, limit: float, kept: bool, head: int, tail: int, limits: Limits, series: Series
+    order: int, limit: float, kept: bool, head: int, tail: int, limits: Limits, series: FastSeries
 ) -> float:
     """When the distance to a kink, in `series.c`, falls below zero, or inf.
 
@@ -239,7 +239,7 @@ def _leaves_branch(
 
 
 @compiled
-def _releases(order: int, h: float, first: float, run: Run) -> float:
+def _releases(order: int, h: float, first: float, run: FastRun) -> float:
     plan, state, series, happened = run.plan, run.state, run.series, run.happened
     limits, forces = plan.limits, series.contact_force
     any_released = False
@@ -273,7 +273,7 @@ def _releases(order: int, h: float, first: float, run: Run) -> float:
 
 
 @compiled_apart
-def _drop_rounding(j: int, order: int, level: float, plan: Plan, series: Series) -> None:
+def _drop_rounding(j: int, order: int, level: float, plan: FastPlan, series: FastSeries) -> None:
     """Clear the first coefficients of a contact force that are no more than rounding.
 
     `level` (N) is that of the force itself; those of higher order err like the

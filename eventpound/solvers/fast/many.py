@@ -24,7 +24,7 @@ from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.advance import carry_on
-from eventpound.solvers.fast.columns import Motions, Rows
+from eventpound.solvers.fast.columns import Motions, VariantArrays
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
 from eventpound.solvers.fast.constants import blank_happened, blank_series
 from eventpound.solvers.fast.evaluate import blank_seen
@@ -32,14 +32,14 @@ from eventpound.solvers.fast.links import all_variables, elongations
 from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.run import (
     GOING_ON,
+    FastMarks,
+    FastPlan,
+    FastRecord,
+    FastRun,
+    FastSeries,
+    FastState,
     Ground,
-    Happened,
-    Plan,
-    Record,
-    Run,
     Seen,
-    Series,
-    State,
 )
 from eventpound.solvers.fast.single.body import forget
 from eventpound.solvers.fast.single.oscillator import oscillate
@@ -112,8 +112,8 @@ def _one_run(kind: Any, shared: frozenset[str]) -> Any:
     return compiled(names[f"one_{kind.__name__.lower()}"])
 
 
-plan_of_run = _one_run(Plan, _SHARED)
-state_of_run = _one_run(State, frozenset())
+plan_of_run = _one_run(FastPlan, _SHARED)
+state_of_run = _one_run(FastState, frozenset())
 
 
 class Kept(NamedTuple):
@@ -136,8 +136,8 @@ class Kept(NamedTuple):
 class Scratch(NamedTuple):
     """Arrays that serve one run after the other; events have room for one, and no line is kept."""
 
-    series: Series
-    happened: Happened
+    series: FastSeries
+    happened: FastMarks
     seen: Seen
     events: Floats
     no_lines: Floats
@@ -145,14 +145,14 @@ class Scratch(NamedTuple):
     since: Floats
 
 
-def run(rows: Rows, events: bool = False) -> Kept:
+def run(rows: VariantArrays, events: bool = False) -> Kept:
     """Carry variants to their ends; the final states and extremes stand in `rows` then.
 
     A run that needs more room for its events than there is ends with FULL.
 
     Parameters
     ----------
-    rows : Rows
+    rows : VariantArrays
         The variants.
     events : bool
         Whether the events of every run are kept.
@@ -191,7 +191,7 @@ def run(rows: Rows, events: bool = False) -> Kept:
 
 
 @compiled_apart
-def run_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept: Kept) -> int:
+def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kept: Kept) -> int:
     """Run rows from `begun` on that are not a single body's; returns where the log was full."""
     series, happened, seen = scratch.series, scratch.happened, scratch.seen
     for i in range(begun, kept.ended.size):
@@ -201,12 +201,12 @@ def run_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept: Kept) 
         if plan.oscillator.alone:
             continue
         state = state_of_run(i, rows.state, rows.motions)
-        record = Record(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
+        record = FastRecord(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
         _clear(series, happened, seen)
         record.unique[:] = True
         at = places_of(plan.mass.size, plan.links.springs, plan.contacts.gap.size)
         running = running_of(record.extremes, at)
-        one = lend(Run(plan, state, series, happened, record, seen, running))
+        one = lend(FastRun(plan, state, series, happened, record, seen, running))
         ended = GOING_ON
         while ended == GOING_ON:
             ended = carry_on(budget, one)
@@ -216,7 +216,9 @@ def run_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept: Kept) 
 
 
 @compiled_loop
-def run_single_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept: Kept) -> int:
+def run_single_rows(
+    budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kept: Kept
+) -> int:
     """Run every row of a single body, as `run_rows`; no lines of a history are written."""
     series, single = scratch.series, scratch.series.single
     for i in range(begun, kept.ended.size):
@@ -226,7 +228,7 @@ def run_single_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept:
         if not plan.oscillator.alone:
             continue
         state = state_of_run(i, rows.state, rows.motions)
-        record = Record(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
+        record = FastRecord(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
         record.unique[:] = True
         forget(single.body[0])
         ended = GOING_ON
@@ -239,7 +241,13 @@ def run_single_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept:
 
 @compiled
 def _keep(
-    i: int, plan: Plan, state: State, series: Series, record: Record, since: Floats, kept: Kept
+    i: int,
+    plan: FastPlan,
+    state: FastState,
+    series: FastSeries,
+    record: FastRecord,
+    since: Floats,
+    kept: Kept,
 ) -> None:
     """Keep what is wanted of run i."""
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
@@ -270,7 +278,7 @@ def _is_full(events: Floats, kept: Kept) -> bool:
 
 
 @compiled_apart
-def _clear(series: Series, happened: Happened, seen: Seen) -> None:
+def _clear(series: FastSeries, happened: FastMarks, seen: Seen) -> None:
     """Leave nothing of the run before, which may have ended with numbers that are not finite."""
     series.X[:] = 0.0
     series.F[:] = 0.0

@@ -15,7 +15,7 @@ from eventpound.contact.event_rows import events_wanted
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
-from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.motion.loads import (
     LOADED,
     body_of,
@@ -28,7 +28,7 @@ from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events.recorder import put_line
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
-from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, Piece, Run
+from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, FastRun
 
 
 @compiled
@@ -52,7 +52,7 @@ def has_room_for(contacts: int, outputs: int, count: Ints, events: Floats, rows:
 
 
 @compiled
-def has_room(run: Run) -> bool:
+def has_room(run: FastRun) -> bool:
     """As `has_room_for`, of a run."""
     plan, record, outputs = run.plan, run.record, run.plan.output_times.size
     return has_room_for(
@@ -61,13 +61,13 @@ def has_room(run: Run) -> bool:
 
 
 @compiled_apart
-def write_row(t: float, run: Run) -> None:
+def write_row(t: float, run: FastRun) -> None:
     """Add a line to the history, where one is kept."""
     put_row(t, run)
 
 
 @compiled
-def put_row(t: float, run: Run) -> None:
+def put_row(t: float, run: FastRun) -> None:
     """As `write_row`, where a call would cost more."""
     plan, state, record, seen = run.plan, run.state, run.record, run.seen
     if not takes_rows(record.rows):
@@ -80,7 +80,7 @@ def put_row(t: float, run: Run) -> None:
 
 
 @compiled_apart
-def sample_step(t: float, t_end: float, order: int, piece: Piece, run: Run) -> None:
+def sample_step(t: float, t_end: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
     """History at the output times of a step; `seen` is overwritten."""
     plan, state = run.plan, run.state
     count, times = state.count, plan.output_times
@@ -94,7 +94,7 @@ def sample_step(t: float, t_end: float, order: int, piece: Piece, run: Run) -> N
 
 
 @compiled_apart
-def hold(run: Run) -> None:
+def hold(run: FastRun) -> None:
     """Remember history and extremes as they are before a mode that may be none."""
     plan, state, series, record = run.plan, run.state, run.series, run.record
     if not is_fleeting(0.0, state.clock, plan.limits.time):
@@ -105,7 +105,7 @@ def hold(run: Run) -> None:
 
 
 @compiled_apart
-def forget(run: Run) -> None:
+def forget(run: FastRun) -> None:
     """Take back what has come into history and extremes since `hold`, and the time that passed.
 
     What follows happens in the instant of `hold`, to which its events belong then.
@@ -124,7 +124,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
 @compiled_deferred
-def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
+def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
     """Add input, viscous and hysteretic work of a step (J) to the ledger; `seen` is overwritten."""
     plan, state, seen = run.plan, run.state, run.seen
     links, law = plan.links, plan.links.law
@@ -149,7 +149,7 @@ def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
 
 
 @compiled_apart
-def _add_loaded(t: float, weight: float, piece: Piece, run: Run) -> None:
+def _add_loaded(t: float, weight: float, piece: CurrentPiece, run: FastRun) -> None:
     """Add `weight` (s) times the powers at the time t (s) that is `seen` (W) to the ledger.
 
     Of forces; and of supports, each of which gives what moves with it what that

@@ -14,6 +14,7 @@ from eventpound.contact.impacts import ENDLESS, NO_FORCES, NO_IMPACT
 from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.monitored import Running
+from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.sampled.exact import SampleTables
@@ -107,7 +108,7 @@ class Oscillator(NamedTuple):
     left: int
 
 
-class Plan(NamedTuple):
+class FastPlan(NamedTuple):
     """Constants of a run."""
 
     mass: Floats
@@ -120,7 +121,7 @@ class Plan(NamedTuple):
     oscillator: Oscillator
 
 
-class State(NamedTuple):
+class FastState(NamedTuple):
     """What moves.
 
     u, v (N,). A hysteretic link (H,): ``σ z / b = Φ(ξ_r + σ (x - x_r) / (u_y b))``
@@ -150,8 +151,8 @@ class State(NamedTuple):
 class Single(NamedTuple):
     """What a single body works with: its numbers and scratch for roots.
 
-    body (1,): a `Body` of `eventpound.solvers.fast.single.body`. rate: of its acceleration.
-    turns, work: those of `Series`.
+    body (1,): a `SingleBody` of `eventpound.solvers.fast.single.body`. rate: of its acceleration.
+    turns, work: those of `FastSeries`.
     """
 
     body: Any
@@ -164,7 +165,7 @@ class Apart(NamedTuple):
     """Of clusters (N,) that go by themselves, on links to the ground of which one is hysteretic.
 
     hysteretic: which, LINEAR for none, TIED of clusters that do not go by themselves. links
-    (N + 1,): where in `Series.active` those of each begin. sums (3, N): the force of the links
+    (N + 1,): where in `FastSeries.active` those of each begin. sums (3, N): the force of the links
     at the start (N), their stiffness (N/m) and damping (N s/m).
     """
 
@@ -176,10 +177,11 @@ class Apart(NamedTuple):
 class Each(NamedTuple):
     """What bodies have for themselves while they go apart; no rows for scenes where they never do.
 
-    Each has a run of its own: body (N,), a `Body`; clock (N, CLOCK_SIZE); count (N, COUNT_SIZE);
-    extremes (N, 5, 3) of its displacement and absolute acceleration, and of a base shear that
-    nobody looks at. until, length (N,): end of its step (s), and how long that is (s). order,
-    event, turned (N,): of the series of the step, how that ends, and whether the body turns there.
+    Each has a run of its own: body (N,), a `SingleBody`; clock (N, CLOCK_SIZE); count
+    (N, COUNT_SIZE); extremes (N, 5, 3) of its displacement and absolute acceleration, and of a
+    base shear that nobody looks at. until, length (N,): end of its step (s), and how long that is
+    (s). order, event, turned (N,): of the series of the step, how that ends, and whether the body
+    turns there.
     box (4, N): bounds of displacement and acceleration within the step. since (K,): until when
     extremes of a gap have been looked for (s).
     """
@@ -197,7 +199,7 @@ class Each(NamedTuple):
     since: Floats
 
 
-class Series(NamedTuple):
+class FastSeries(NamedTuple):
     """Taylor coefficients in local time and what belongs to them.
 
     X (N, p + 3): clusters' displacement, `X[:, 0]` unused. F (L, p + 3): link
@@ -253,7 +255,7 @@ class Series(NamedTuple):
     held: Floats
 
 
-class Happened(NamedTuple):
+class FastMarks(NamedTuple):
     """Marks of what happens at the end of a step: closing, released (K,), kinked (L,).
 
     turned, crossed (H,): hysteretic links that reverse or pass a border. vanished (K,):
@@ -268,7 +270,7 @@ class Happened(NamedTuple):
     crossed: Bools
 
 
-class Record(NamedTuple):
+class FastRecord(NamedTuple):
     """What a run leaves: events, rows, extremes (5, M), uniqueness of forces (K,)."""
 
     events: Floats
@@ -296,45 +298,38 @@ class Seen(NamedTuple):
     base: Floats
 
 
-class Run(NamedTuple):
+class FastRun(NamedTuple):
     """A run: the one argument of most functions, lent (`eventpound.numerics.lending`).
 
     running: `record.extremes`, row by row.
     """
 
-    plan: Plan
-    state: State
-    series: Series
-    happened: Happened
-    record: Record
+    plan: FastPlan
+    state: FastState
+    series: FastSeries
+    happened: FastMarks
+    record: FastRecord
     seen: Seen
     running: Running
 
 
-class Piece(NamedTuple):
-    """The present piece of the ground motion, as `eventpound.motion.forcing` takes it."""
-
-    family: int
-    coefficients: Floats
-    samples: Floats
-
-
 @compiled
-def piece_of(i: int, ground: Ground) -> Piece:
+def piece_of(i: int, ground: Ground) -> CurrentPiece:
     """A piece of the ground motion."""
-    return Piece(
+    return CurrentPiece(
         ground.family[i],
         ground.coefficients[ground.first[i] : ground.first[i + 1]],
         ground.samples[ground.first_sample[i] : ground.first_sample[i + 1]],
+        ground.ends[i],
     )
 
 
 (GUESS, HELD_AT) = range(CLOCK_PLACES, CLOCK_PLACES + 2)
-"""Behind the places of `eventpound.contact.cascade` in `State.clock`: next step tried,
+"""Behind the places of `eventpound.contact.cascade` in `FastState.clock`: next step tried,
 and when a mode that may be none began (s)."""
 CLOCK_SIZE = CLOCK_PLACES + 2
 (PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, DUE) = range(COUNT_PLACES, COUNT_PLACES + 6)
-"""Behind those in `State.count`: piece of the ground motion, steps, expansions, rows of the
+"""Behind those in `FastState.count`: piece of the ground motion, steps, expansions, rows of the
 history, next output time, and whether an instant has duties."""
 (ACTIVE, TIED_LINKS, CLUSTERS, STALLED, RESTING, EDGES, HELD, STARTED) = range(DUE + 1, DUE + 9)
 """Active links, those among them of clusters that go together, clusters, events without progress

@@ -13,7 +13,7 @@ from eventpound.contact.rest import acceleration_noise, is_none
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.run import Contacts, Limits, Series, State
+from eventpound.solvers.fast.run import Contacts, FastSeries, FastState, Limits
 from eventpound.tolerances import ACCELERATION, FORCE, GAP_COEFFICIENT
 
 OF_BODIES = 0.2
@@ -21,14 +21,14 @@ OF_BODIES = 0.2
 
 
 @compiled
-def acceleration_level(c: int, limits: Limits, series: Series) -> float:
+def acceleration_level(c: int, limits: Limits, series: FastSeries) -> float:
     """Rounding of the acceleration of a cluster (m/s²), as the acceleration problem has it."""
     own = ACCELERATION * limits.length / limits.time**2
     return acceleration_noise(2.0 * series.X[c, 2] + series.ground[0], own)
 
 
 @compiled
-def force_level(count: int, limits: Limits, series: Series) -> float:
+def force_level(count: int, limits: Limits, series: FastSeries) -> float:
     """Rounding of a contact force in a step of `count` clusters (N)."""
     largest = limits.length / limits.time**2
     for c in range(count):
@@ -37,7 +37,7 @@ def force_level(count: int, limits: Limits, series: Series) -> float:
 
 
 @compiled
-def set_travel(order: int, h: float, count: int, series: Series) -> None:
+def set_travel(order: int, h: float, count: int, series: FastSeries) -> None:
     """Bounds of the motion of clusters over a step of length h (s).
 
     `reach`: of the change of displacement (m). `travel` and `swing`: of what
@@ -56,7 +56,7 @@ def set_travel(order: int, h: float, count: int, series: Series) -> None:
 
 
 @compiled
-def relative(first: int, second: int, order: int, series: Series, out: Floats) -> None:
+def relative(first: int, second: int, order: int, series: FastSeries, out: Floats) -> None:
     """Coefficients 1 ... order of the displacement of one cluster to another, into `out`."""
     X = series.X
     for k in range(1, order + 1):
@@ -78,7 +78,7 @@ def stays_above(c0: float, c1: float, c2: float, rest: float, h: float) -> bool:
 
 
 @compiled
-def distance_coefficient(first: int, second: int, k: int, series: Series) -> float:
+def distance_coefficient(first: int, second: int, k: int, series: FastSeries) -> float:
     """Coefficient k of the displacement of one cluster to another."""
     value = 0.0
     if second >= 0:
@@ -101,7 +101,7 @@ def bound_of_pair(first: int, second: int, bounds: Floats) -> float:
 
 @compiled
 def gap_polynomial(
-    j: int, order: int, contacts: Contacts, limits: Limits, state: State, series: Series
+    j: int, order: int, contacts: Contacts, limits: Limits, state: FastState, series: FastSeries
 ) -> None:
     """Coefficients of a gap into `series.c`: the first two are its own variables.
 

@@ -60,10 +60,10 @@ from eventpound.solvers.fast.run import (
     ROWS,
     STEPS,
     STUCK,
-    Plan,
-    Record,
-    Run,
-    State,
+    FastPlan,
+    FastRecord,
+    FastRun,
+    FastState,
 )
 from eventpound.solvers.fast.single.body import oscillator_of
 from eventpound.solvers.fast.single.oscillator import oscillate
@@ -114,16 +114,16 @@ class Fast:
         return recording
 
 
-def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
+def run_of(plan: FastPlan, state: FastState, model: Model, scales: SceneScales) -> FastRun:
     """A run with nothing recorded."""
     at = places_in(model)
-    record = Record(
+    record = FastRecord(
         np.zeros((FIRST_ROOM + 4 * model.contacts, EVENT_WIDTH)),
         np.zeros((plan.output_times.size + 2 * FIRST_ROOM, row_width(model))),
         blank_extremes(at, scales),
         np.ones(model.contacts, np.bool_),
     )
-    return Run(
+    return FastRun(
         plan=plan,
         state=state,
         series=blank_series(plan, model.loads > 0),
@@ -135,8 +135,8 @@ def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
 
 
 def _run(
-    task: Task, plan: Plan, state: State, model: Model, scales: SceneScales
-) -> tuple[Run, int, ComputationError | None]:
+    task: Task, plan: FastPlan, state: FastState, model: Model, scales: SceneScales
+) -> tuple[FastRun, int, ComputationError | None]:
     """Advance to the end, with progress and room for the record; how it ended, who stopped it."""
     run = run_of(plan, state, model, scales)
     alone = plan.oscillator.alone
@@ -162,7 +162,7 @@ def _run(
             return run, ended, stopped
 
 
-def _enlarged(record: Record, plan: Plan, state: State) -> Record:
+def _enlarged(record: FastRecord, plan: FastPlan, state: FastState) -> FastRecord:
     """The record with more room for what it has too little of."""
     rows, events = record.rows, record.events
     wanted = in_python(events_wanted)(plan.contacts.left.size, state.count)
@@ -181,7 +181,7 @@ def _longer(rows: Floats) -> Floats:
 
 
 def recording_of(
-    task: Task, model: Model, scales: SceneScales, run: Run, ended: int, clock: Stopwatch
+    task: Task, model: Model, scales: SceneScales, run: FastRun, ended: int, clock: Stopwatch
 ) -> Recording:
     """What a run leaves, as every solver returns it."""
     plan, state, record = run.plan, run.state, run.record

@@ -12,7 +12,7 @@ from eventpound.contact.cascade import IN_A_ROW, LONGEST_CASCADE, SINCE_IMPACT, 
 from eventpound.contact.event_rows import end_cascade
 from eventpound.contact.impacts import DONE
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
@@ -52,10 +52,9 @@ from eventpound.solvers.fast.run import (
     STALLED,
     STEPS,
     STUCK,
-    Piece,
-    Run,
+    FastRun,
+    FastState,
     Seen,
-    State,
 )
 from eventpound.solvers.fast.search import force_level, set_travel
 from eventpound.tolerances import CASCADE_OVER, DRIFTED, FORCE, PENETRATED, PULLED, RELEASED_AT
@@ -66,7 +65,7 @@ SOONER = 0.2
 
 
 @compiled
-def take_step(stop: float, piece: Piece, run: Run) -> int:
+def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     """One step, to `stop` (s) at most; DONE, or why not."""
     plan, state, series, record, seen = run.plan, run.state, run.series, run.record, run.seen
     clock, count, t = state.clock, state.count, state.clock[T]
@@ -117,7 +116,7 @@ def take_step(stop: float, piece: Piece, run: Run) -> int:
 
 
 @compiled
-def _expansion(limit: float, piece: Piece, run: Run) -> tuple[int, float]:
+def _expansion(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[int, float]:
     """Series of everything; their order, and the length of a step of at most `limit` (s)."""
     count, most = run.state.count, run.plan.limits.order
     longest, tried = longest_try(limit, piece, run)
@@ -135,7 +134,7 @@ def _expansion(limit: float, piece: Piece, run: Run) -> tuple[int, float]:
 
 
 @compiled
-def _record_inside(tau: float, t_end: float, order: int, piece: Piece, run: Run) -> bool:
+def _record_inside(tau: float, t_end: float, order: int, piece: CurrentPiece, run: FastRun) -> bool:
     """Extremes, energy and rows inside a step; whether `seen` was overwritten."""
     plan, state = run.plan, run.state
     inside_step(tau, order, run)
@@ -151,7 +150,7 @@ def _record_inside(tau: float, t_end: float, order: int, piece: Piece, run: Run)
 
 
 @compiled
-def _still_pressed(tau: float, run: Run) -> bool:
+def _still_pressed(tau: float, run: FastRun) -> bool:
     """Whether truncation of the series released a contact too soon; the next step finds it."""
     plan, state, series, happened, seen = run.plan, run.state, run.series, run.happened, run.seen
     if tau <= RELEASED_AT * plan.limits.time:
@@ -164,7 +163,7 @@ def _still_pressed(tau: float, run: Run) -> bool:
 
 
 @compiled
-def audit(error: float, run: Run) -> int:
+def audit(error: float, run: FastRun) -> int:
     """Invariants after every step: its error, finite numbers, gaps.
 
     None may penetrate, and one with variables of its own must stay the difference of the
@@ -193,7 +192,7 @@ def audit(error: float, run: Run) -> int:
 
 
 @compiled_apart
-def _contact_force_error(tau: float, order: int, run: Run) -> float:
+def _contact_force_error(tau: float, order: int, run: FastRun) -> float:
     """Error of the series of contact forces over a step in units of its tolerance, from its end.
 
     The end has just been looked at. By these series a contact is let go, and no equation of motion
@@ -218,7 +217,7 @@ def _contact_force_error(tau: float, order: int, run: Run) -> float:
 
 
 @compiled
-def _pulls(ends: bool, run: Run) -> bool:
+def _pulls(ends: bool, run: FastRun) -> bool:
     """Whether a contact at rest pulls at the end of a step though nothing lets it go.
 
     It has then passed the instant that lets it go. `ends`: whether what is to happen at the end
@@ -236,7 +235,7 @@ def _pulls(ends: bool, run: Run) -> bool:
 
 
 @compiled
-def _move(t_end: float, tau: float, state: State, seen: Seen) -> None:
+def _move(t_end: float, tau: float, state: FastState, seen: Seen) -> None:
     """Make the end of the step the present state."""
     copy_numbers(seen.u, state.u)
     copy_numbers(seen.v, state.v)
@@ -247,7 +246,7 @@ def _move(t_end: float, tau: float, state: State, seen: Seen) -> None:
 
 
 @compiled
-def _apply(tau: float, run: Run) -> None:
+def _apply(tau: float, run: FastRun) -> None:
     """Do what happened at the end of a step; an event of contacts or kinks is settled next."""
     plan, state, series, happened = run.plan, run.state, run.series, run.happened
     hysteresis = plan.hysteresis

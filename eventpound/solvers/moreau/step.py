@@ -40,7 +40,7 @@ from eventpound.numerics.borrowing import put_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lcp import solve_dense
 from eventpound.solvers.timestepping.equations import (
-    Step,
+    FixedStep,
     balanced,
     end_of_step,
     fill_newton_matrix,
@@ -182,7 +182,7 @@ def _impulses(
 
 
 @step_kernel
-def _solve_step(step: Step, active: Active, run: Stepping) -> int:
+def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
     """Newton's iteration for the end of the step; an outcome."""
     trial, equations = run.trial, run.equations
     count = _find_active(step.h, active, run)
@@ -214,7 +214,7 @@ def _solve_step(step: Step, active: Active, run: Stepping) -> int:
 
 
 @step_kernel
-def _close_step(step: Step, active: Active, run: Stepping) -> None:
+def _close_step(step: FixedStep, active: Active, run: Stepping) -> None:
     """Write the events of a step, and make forces of its impulses."""
     structure, state, trial, resting = run.structure, run.state, run.trial, active.resting
     counters, events, t = run.record.counters, run.record.events, step.start
@@ -254,7 +254,7 @@ def _close_step(step: Step, active: Active, run: Stepping) -> None:
 
 
 @step_kernel
-def _take_step(step: Step, active: Active, run: Stepping) -> int:
+def _take_step(step: FixedStep, active: Active, run: Stepping) -> int:
     """The rule; an outcome."""
     outcome = _solve_step(step, active, run)
     if outcome == DONE:

@@ -31,7 +31,7 @@ GROUND_NODE = 1
 
 
 @dataclass(frozen=True)
-class Element:
+class ZeroLength:
     """A zero-length element.
 
     Parameters
@@ -47,7 +47,7 @@ class Element:
     material: Material
 
 
-def elements_of(scene: Scene, model: Model, choice: ContactChoice, step: float) -> list[Element]:
+def elements_of(scene: Scene, model: Model, choice: ContactChoice, step: float) -> list[ZeroLength]:
     """Springs in the order of the scene, then dashpots, then contacts.
 
     Raises
@@ -60,10 +60,12 @@ def elements_of(scene: Scene, model: Model, choice: ContactChoice, step: float) 
     if problems:
         raise InputError([f"solver = 'opensees': {problem}" for problem in problems])
     ends = [(int(first) + 2, int(second) + 2) for first, second in model.link_ends]
-    found = [Element(*ends[i], _spring_material(spring)) for i, spring in enumerate(scene.springs)]
+    found = [
+        ZeroLength(*ends[i], _spring_material(spring)) for i, spring in enumerate(scene.springs)
+    ]
     # Viscous material: force c x'^1; a spring's dashpot is an element beside it.
     found += [
-        Element(*ends[i], ("Viscous", float(c), 1.0))
+        ZeroLength(*ends[i], ("Viscous", float(c), 1.0))
         for i, c in enumerate(model.law.damping)
         if c > 0.0
     ]
@@ -77,7 +79,7 @@ def elements_of(scene: Scene, model: Model, choice: ContactChoice, step: float) 
         else:
             constant = contact.damping or 0.0
             material = element_material(law.element, law.stiffness, constant, mass, contact.gap)
-        found.append(Element(sides[0] + 2, sides[1] + 2, material))
+        found.append(ZeroLength(sides[0] + 2, sides[1] + 2, material))
     return found
 
 

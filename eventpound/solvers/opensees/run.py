@@ -18,7 +18,7 @@ import numpy as np
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Task
-from eventpound.solvers.opensees.elements import GROUND_NODE, Element
+from eventpound.solvers.opensees.elements import GROUND_NODE, ZeroLength
 from eventpound.tolerances import OPENSEES_CHANGE
 
 MOST_ITERATIONS = 50
@@ -27,7 +27,7 @@ PARTS = 10
 
 
 @dataclass(frozen=True)
-class Rows:
+class AnalysisRows:
     """What an analysis leaves behind, up to where it got.
 
     Parameters
@@ -53,10 +53,10 @@ def analyse(
     ops: Any,
     task: Task,
     model: Model,
-    elements: list[Element],
+    elements: list[ZeroLength],
     steps: int,
     length: float,
-) -> Rows:
+) -> AnalysisRows:
     """Build the model and carry it from start to end.
 
     Parameters
@@ -67,7 +67,7 @@ def analyse(
         What is asked.
     model : Model
         Its arrays.
-    elements : list of Element
+    elements : list of ZeroLength
         What is between the nodes, the springs first.
     steps : int
         Number of equal steps.
@@ -86,7 +86,7 @@ def analyse(
         ops.wipe()
 
 
-def _build(ops: Any, model: Model, elements: list[Element]) -> None:
+def _build(ops: Any, model: Model, elements: list[ZeroLength]) -> None:
     ops.model("basic", "-ndm", 1, "-ndf", 1)
     ops.node(GROUND_NODE, 0.0)
     ops.fix(GROUND_NODE, 1)
@@ -143,7 +143,7 @@ def _advance(ops: Any, step: float) -> int:
     return iterations
 
 
-def _carry(ops: Any, task: Task, model: Model, steps: int) -> Rows:
+def _carry(ops: Any, task: Task, model: Model, steps: int) -> AnalysisRows:
     step = (task.end - task.start) / steps
     u, v = np.empty((steps + 1, model.bodies)), np.empty((steps + 1, model.bodies))
     force = np.full((steps + 1, model.springs), np.nan)
@@ -165,4 +165,4 @@ def _carry(ops: Any, task: Task, model: Model, steps: int) -> Rows:
     rows = slice(done + 1)
     t = task.start + step * np.arange(steps + 1, dtype=np.float64)
     t[-1] = task.end
-    return Rows(t[rows], u[rows], v[rows], force[rows], iterations)
+    return AnalysisRows(t[rows], u[rows], v[rows], force[rows], iterations)

@@ -30,7 +30,7 @@ from eventpound.solvers.opensees.contacts import (
     contact_choice,
 )
 from eventpound.solvers.opensees.elements import elements_of
-from eventpound.solvers.opensees.run import Rows, analyse
+from eventpound.solvers.opensees.run import AnalysisRows, analyse
 from eventpound.solvers.settings import Settings, number
 from eventpound.tolerances import SAME_SAMPLE
 
@@ -104,7 +104,7 @@ def _opensees() -> Any:
         ) from error
 
 
-def _z(model: Model, rows: Rows) -> Floats:
+def _z(model: Model, rows: AnalysisRows) -> Floats:
     """``z = (F - k x)/Q`` of the Bouc-Wen springs, shape (n, H); NaN where F was not asked for."""
     z = np.zeros((rows.t.size, model.hysteretic.size))
     force = yielding(model.law.memory).force

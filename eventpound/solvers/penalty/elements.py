@@ -49,7 +49,7 @@ HERTZ_TIME = 2.943275
 2 ∫_0^1 dx / sqrt(1 - x^(5/2)) = (4/5) √π Γ(2/5) / Γ(9/10)."""
 
 
-class Elements(NamedTuple):
+class PenaltyElements(NamedTuple):
     """The contact elements of a run.
 
     stiffness, cut (K,): of `eventpound.mechanics.contact_elements.Elements`. laws: what else
@@ -62,7 +62,7 @@ class Elements(NamedTuple):
     origin: Floats
 
 
-def elements_of(scene: Scene, stiffness: float) -> Elements:
+def elements_of(scene: Scene, stiffness: float) -> PenaltyElements:
     """The elements of all contacts.
 
     Parameters
@@ -77,13 +77,13 @@ def elements_of(scene: Scene, stiffness: float) -> Elements:
     model = assemble(replace(scene, contacts=contacts))
     kind, k, damping, cut = model.elements
     laws = Laws(np.arange(kind.size), kind, damping, np.zeros((TOUCH_ROWS, kind.size)))
-    return Elements(k, cut, laws, np.zeros(model.bodies))
+    return PenaltyElements(k, cut, laws, np.zeros(model.bodies))
 
 
 @step_kernel
 def element_force(
     j: int,
-    elements: Elements,
+    elements: PenaltyElements,
     penetration: float,
     rate: float,
     open_before: float,
@@ -94,7 +94,7 @@ def element_force(
     ----------
     j : int
         Which.
-    elements : Elements
+    elements : PenaltyElements
         All of them.
     penetration, rate : float
         d (m) and d' (m/s).
@@ -159,7 +159,7 @@ def contact_period(mass: float, speed: float, element: Element, stiffness: float
     return 2.0 * HERTZ_TIME * depth / speed
 
 
-def shortest_period(model: Model, scales: SceneScales, elements: Elements) -> float:
+def shortest_period(model: Model, scales: SceneScales, elements: PenaltyElements) -> float:
     """The shortest `contact_period` at the scene's own speed (s), inf without contacts."""
     masses = effective_masses(model.mass, model.left, model.right).tolist()
     kinds = elements.laws.kind.tolist()

@@ -21,9 +21,9 @@ from eventpound.solvers.events.law_contacts import (
     write_touch,
 )
 from eventpound.solvers.events.run import Laws
-from eventpound.solvers.penalty.elements import Elements, element_force
+from eventpound.solvers.penalty.elements import PenaltyElements, element_force
 from eventpound.solvers.timestepping.equations import (
-    Step,
+    FixedStep,
     balanced,
     couple,
     end_of_step,
@@ -51,7 +51,7 @@ MOST_HALVINGS = 40
 
 
 @step_kernel
-def _take_elements(step: Step, elements: Elements, run: Stepping) -> None:
+def _take_elements(step: FixedStep, elements: PenaltyElements, run: Stepping) -> None:
     """Take the forces of the elements into the balance, their slopes into `pressing`."""
     structure, state, trial, equations = run.structure, run.state, run.trial, run.equations
     half = 0.5 * step.h
@@ -81,7 +81,7 @@ def _take_elements(step: Step, elements: Elements, run: Stepping) -> None:
 
 
 @step_kernel
-def _evaluate(step: Step, elements: Elements, run: Stepping) -> float:
+def _evaluate(step: FixedStep, elements: PenaltyElements, run: Stepping) -> float:
     """Residual of the trial velocities; returns its size, ``Σ r²/m`` (J)."""
     end_of_step(step.h, run)
     momentum_residual(step, run)
@@ -109,7 +109,7 @@ def _newton_increment(h: float, run: Stepping) -> bool:
 
 
 @step_kernel
-def _solve_step(step: Step, elements: Elements, run: Stepping) -> int:
+def _solve_step(step: FixedStep, elements: PenaltyElements, run: Stepping) -> int:
     """Newton's iteration for the end of the step; an outcome."""
     structure, v, contact = run.structure, run.trial.v, run.state.contact
     predict(step, run)
@@ -149,7 +149,7 @@ def _take_closing_drags(laws: Laws, run: Stepping) -> None:
 
 
 @step_kernel
-def _follow_contacts(step: Step, laws: Laws, run: Stepping) -> None:
+def _follow_contacts(step: FixedStep, laws: Laws, run: Stepping) -> None:
     """Sum impulse and work of the contacts over a step; write those that end.
 
     The time in contact of an element is one impact, from its closing to its opening.
@@ -172,7 +172,7 @@ def _follow_contacts(step: Step, laws: Laws, run: Stepping) -> None:
 
 
 @step_kernel
-def _take_step(step: Step, elements: Elements, run: Stepping) -> int:
+def _take_step(step: FixedStep, elements: PenaltyElements, run: Stepping) -> int:
     """The rule; an outcome."""
     _take_closing_drags(elements.laws, run)
     outcome = _solve_step(step, elements, run)
@@ -182,6 +182,8 @@ def _take_step(step: Step, elements: Elements, run: Stepping) -> int:
 
 
 @step_loop
-def advance(span: Span, forcing: Forcing, elements: Elements, run: Stepping) -> tuple[int, int]:
+def advance(
+    span: Span, forcing: Forcing, elements: PenaltyElements, run: Stepping
+) -> tuple[int, int]:
     """Take steps; see `eventpound.solvers.timestepping.run.Advance`."""
     return take_steps(_take_step, elements.stiffness.size, span, forcing, elements, run)

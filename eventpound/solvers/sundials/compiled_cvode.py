@@ -16,12 +16,12 @@ from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import address_of
 from eventpound.solvers.sundials.integrators import Direct
 from eventpound.solvers.sundials.loop import Numbers
-from eventpound.solvers.sundials.memory import CvodeMemory, Layout, layout
+from eventpound.solvers.sundials.memory import CvodeMemory, MemoryLayout, layout
 from eventpound.solvers.sundials.stepping import (
     NEVER,
     TURNED,
-    Given,
-    Handles,
+    CvodeData,
+    CvodeHandles,
     advance,
     at_root,
     derivatives,
@@ -48,13 +48,13 @@ class DirectCvode(Direct):
     def __init__(self, library: Any, rtol: float, method: str) -> None:
         super().__init__()
         self.library, self.rtol, self.method = library, rtol, method
-        self._handles: Handles
+        self._handles: CvodeHandles
 
     def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
         mode, forcing, frame, roots = self._mode, self._forcing, self._frame, self._present_roots
         system = mode.directed
         system.direction[:] = 0.0
-        self._hand(Given(self._calls, system, mode.bodies, forcing, frame, roots))
+        self._hand(CvodeData(self._calls, system, mode.bodies, forcing, frame, roots))
         memory, self._handles = self._memory_for(layout(system, frame, self.rtol, atol))
         memory.state[:] = y
         in_python(to_frame)(frame, forcing.start + tau, 1.0, system.iq, system.iv, memory.state)
@@ -64,15 +64,15 @@ class DirectCvode(Direct):
             callback = address_of(root_functions, self._given, 2)
             memory.find_roots(callback, self._roots.directions)
 
-    def _memory_for(self, plan: Layout) -> tuple[CvodeMemory, Handles]:
+    def _memory_for(self, plan: MemoryLayout) -> tuple[CvodeMemory, CvodeHandles]:
         given = self._given
         if plan.key not in self._memories:
             callback, data = address_of(right_hand_side, given, 2), given.address
             memory = CvodeMemory(self.library, self.method, plan, callback, data)
             numbers = np.zeros(2), memory.look, given, self.rtol, np.zeros(1, np.int64)
-            handles = on_loan(Handles(memory.address, memory.vector, *numbers))
+            handles = on_loan(CvodeHandles(memory.address, memory.vector, *numbers))
             self._memories[plan.key] = memory, handles
-        found: tuple[CvodeMemory, Handles] = self._memories[plan.key]
+        found: tuple[CvodeMemory, CvodeHandles] = self._memories[plan.key]
         return found
 
     def _steps(

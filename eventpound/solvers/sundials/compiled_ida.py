@@ -12,8 +12,8 @@ from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import address_of
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.ida_stepping import (
-    Given,
-    Handles,
+    IdaData,
+    IdaHandles,
     advance,
     at_root,
     begin,
@@ -45,14 +45,14 @@ class DirectIda(InDescriptorForm, Direct):
         super().__init__(modes)
         self.library = library
         self._memory: IdaMemory
-        self._handles: Handles
+        self._handles: IdaHandles
 
     def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
         own = self._own
-        self._hand(Given(self._calls, self._problem, self._present_roots))
+        self._hand(IdaData(self._calls, self._problem, self._present_roots))
         memory = self._memory = self._memory_for(own)
         self._handles = on_loan(
-            Handles(
+            IdaHandles(
                 memory.address,
                 memory.vector,
                 memory.rate_vector,

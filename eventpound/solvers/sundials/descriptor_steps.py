@@ -13,7 +13,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor_motion import (
-    Problem,
+    DescriptorProblem,
     constraint_errors,
     solve_contact_forces,
     to_moving_frame,
@@ -61,7 +61,7 @@ class Followed(NamedTuple):
     acceleration: the scene's own, L/T² (m/s²).
     """
 
-    problem: Problem
+    problem: DescriptorProblem
     drift: Floats
     acceleration: float
 
@@ -111,7 +111,9 @@ def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, cluste
 
 
 @kernel
-def consistent(tau: float, y: Floats, rate: Floats, problem: Problem, scratch: Observed) -> None:
+def consistent(
+    tau: float, y: Floats, rate: Floats, problem: DescriptorProblem, scratch: Observed
+) -> None:
     """Make λ and every rate agree with the positions, velocities and z; then enter the frame."""
     d, frame = problem.d, problem.frame
     N = d.mass.size
@@ -130,7 +132,7 @@ def begin_descriptor(
     tau: float,
     y: Floats,
     rate: Floats,
-    problem: Problem,
+    problem: DescriptorProblem,
     tolerances: Tolerances,
     time: float,
     scratch: Observed,
@@ -148,7 +150,7 @@ def begin_descriptor(
         Local time (s).
     y, rate : ndarray, shape (size,)
         Unknowns of `from_clusters`, and room for their rates; overwritten, in the frame.
-    problem : Problem
+    problem : DescriptorProblem
         The mode in descriptor form.
     tolerances : Tolerances
         Of a step.
@@ -265,7 +267,7 @@ def examine_descriptor(
 
 
 @kernel
-def look_at_descriptor(tau: float, y: Floats, problem: Problem, out: Observed) -> None:
+def look_at_descriptor(tau: float, y: Floats, problem: DescriptorProblem, out: Observed) -> None:
     """Observe an interpolated state: its contact forces from their equations.
 
     An interpolating polynomial of λ would carry the kinks of a record, and is
@@ -278,7 +280,7 @@ def look_at_descriptor(tau: float, y: Floats, problem: Problem, out: Observed) -
 
 @kernel
 def look_at_start(
-    tau: float, clusters: Floats, mode: Dynamics, problem: Problem, out: Observed
+    tau: float, clusters: Floats, mode: Dynamics, problem: DescriptorProblem, out: Observed
 ) -> None:
     """Observe the loop's own state, as at the start of a segment."""
     y = np.empty(problem.d.size)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.descriptor_motion import (
-    Problem,
+    DescriptorProblem,
     jacobian,
     relative_to_ground,
     residual,
@@ -55,18 +55,18 @@ if ida_library() is None:
     raise ImportError("the SUNDIALS library cannot be reached from compiled code")
 
 
-class Given(NamedTuple):
+class IdaData(NamedTuple):
     """What IDA's callbacks are handed, on loan.
 
     calls (2,): of the residual and of its Jacobian. problem, roots: on loan themselves.
     """
 
     calls: Ints
-    problem: Problem
+    problem: DescriptorProblem
     roots: Roots
 
 
-class Handles(NamedTuple):
+class IdaHandles(NamedTuple):
     """Addresses of an IDA object and its vectors; where times and drifts are put; on loan.
 
     look: a vector for interpolated unknowns. state, rate: values of the first two vectors.
@@ -80,14 +80,14 @@ class Handles(NamedTuple):
     look: int
     state: int
     rate: int
-    given: Given
+    given: IdaData
     mode: Dynamics
     reached: Floats
     followed: Followed
     time: float
 
 
-def residual_function(tau: float, y: int, rate: int, out: int, given: Given) -> int:
+def residual_function(tau: float, y: int, rate: int, out: int, given: IdaData) -> int:
     """IDA's callback, an `IDAResFn`."""
     given.calls[0] += 1
     problem, size = given.problem, given.problem.d.size
@@ -108,7 +108,7 @@ def jacobian_function(
     rate: int,
     out: int,
     matrix: int,
-    given: Given,
+    given: IdaData,
     first: int,
     second: int,
     third: int,
@@ -124,18 +124,18 @@ def jacobian_function(
 
 @loop_kernel
 def advance(
-    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
+    handles: IdaHandles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
 ) -> Numbers:
     """Steps from `tau` (s), each examined, as `Integrator.advance` says.
 
-    IDA's last flag, then the numbers of the `Stretch`.
+    IDA's last flag, then the numbers of `StepsTaken`.
     """
     return carry_on(_take, _check, _write, handles, tau, first, excess, bounds, e)
 
 
 @kernel
 def _take(
-    handles: Handles, start: float, first: int, bounds: Bounds, e: Examination
+    handles: IdaHandles, start: float, first: int, bounds: Bounds, e: Examination
 ) -> tuple[int, float, bool]:
     """A step from `start` (s), not beyond a sample of a record; see `carry_on`."""
     stop = last_time(start, True, bounds, e.forcing)
@@ -154,7 +154,7 @@ def _take(
 
 @kernel
 def _check(
-    handles: Handles, start: float, end: float, first: int, allowed: float, e: Examination
+    handles: IdaHandles, start: float, end: float, first: int, allowed: float, e: Examination
 ) -> tuple[int, float]:
     """`examine_descriptor`."""
     problem = handles.given.problem
@@ -164,13 +164,13 @@ def _check(
 
 
 @kernel
-def _write(handles: Handles, start: float, end: float, e: Examination) -> None:
+def _write(handles: IdaHandles, start: float, end: float, e: Examination) -> None:
     """History at the output times of a step."""
     write_samples(_show, handles, start, end, e)
 
 
 @kernel
-def _show(handles: Handles, tau: float, seen: Observed, e: Examination) -> None:
+def _show(handles: IdaHandles, tau: float, seen: Observed, e: Examination) -> None:
     """Observe the motion at `tau` (s) of the last step."""
     problem = handles.given.problem
     y = array_at(array_pointer(handles.look), problem.d.size, np.float64)
@@ -181,7 +181,7 @@ def _show(handles: Handles, tau: float, seen: Observed, e: Examination) -> None:
 
 @kernel
 def begin(
-    handles: Handles, tau: float, clusters: Floats, tolerances: Tolerances, scratch: Observed
+    handles: IdaHandles, tau: float, clusters: Floats, tolerances: Tolerances, scratch: Observed
 ) -> float:
     """`begin_descriptor` of the state and the rates of `handles`, from the loop's state.
 
@@ -196,12 +196,12 @@ def begin(
 
 
 @kernel
-def derivatives(handles: Handles, t: float) -> Floats:
+def derivatives(handles: IdaHandles, t: float) -> Floats:
     """Coefficients of IDA's own polynomial of its last step about `t` (s), as the loop knows it.
 
     Parameters
     ----------
-    handles : Handles
+    handles : IdaHandles
         The IDA object; the state that it interpolates is overwritten.
     t : float
         Local time (s).
@@ -226,7 +226,7 @@ def derivatives(handles: Handles, t: float) -> Floats:
     return Y
 
 
-def root_functions(tau: float, y: int, rate: int, out: int, given: Given) -> int:
+def root_functions(tau: float, y: int, rate: int, out: int, given: IdaData) -> int:
     """IDA's callback, an `IDARootFn`."""
     size, count = given.problem.d.size, given.roots.noise.size
     state = relative_to_ground(tau, array_at(array_pointer(y), size, np.float64), given.problem)
@@ -236,7 +236,7 @@ def root_functions(tau: float, y: int, rate: int, out: int, given: Given) -> int
 
 
 @kernel
-def _values(handles: Handles, tau: float) -> Roots:
+def _values(handles: IdaHandles, tau: float) -> Roots:
     """Root functions at `tau` (s), where IDA is."""
     given, roots = handles.given, handles.given.roots
     state = array_at(handles.state, given.problem.d.size, np.float64)
@@ -246,7 +246,7 @@ def _values(handles: Handles, tau: float) -> Roots:
 
 
 @kernel
-def _whole_step(handles: Handles) -> tuple[float, Floats]:
+def _whole_step(handles: IdaHandles) -> tuple[float, Floats]:
     """End of IDA's whole step (s), and every z there."""
     whole, d = np.empty(1), handles.given.problem.d
     ida_current_time(handles.memory, whole.ctypes.data)
@@ -257,7 +257,7 @@ def _whole_step(handles: Handles) -> tuple[float, Floats]:
 
 
 @kernel
-def _put(handles: Handles, tau: float, clusters: Floats) -> None:
+def _put(handles: IdaHandles, tau: float, clusters: Floats) -> None:
     """Fill in the loop's state at `tau` (s) of the last step, relative to the ground."""
     problem, mode = handles.given.problem, handles.mode
     ida_get_dky(handles.memory, tau, 0, handles.look)
@@ -268,7 +268,7 @@ def _put(handles: Handles, tau: float, clusters: Floats) -> None:
 
 @kernel
 def at_root(
-    handles: Handles, start: float, tau: float, bound: Floats, allowed: float, clusters: Floats
+    handles: IdaHandles, start: float, tau: float, bound: Floats, allowed: float, clusters: Floats
 ) -> tuple[int, float]:
     """`root_at` for IDA."""
     return root_at(_values, _whole_step, _put, handles, start, tau, bound, allowed, clusters)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.mechanics.descriptor_motion import Problem
+from eventpound.mechanics.descriptor_motion import DescriptorProblem
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import blank
@@ -20,7 +20,7 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import change_loan, on_loan
 from eventpound.solvers.events.dense import NO_GAPS, NODES, Dense, from_values
-from eventpound.solvers.events.integrator import Bounds, StandstillError, Start, Stretch
+from eventpound.solvers.events.integrator import Bounds, StandstillError, Start, StepsTaken
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import NO_ROOTS, RootFunctions, Roots
@@ -87,7 +87,7 @@ class _Duties:
 
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
-    ) -> Stretch:
+    ) -> StepsTaken:
         """Accepted steps, up to the first that is not clear or the bounds.
 
         Raises
@@ -96,7 +96,7 @@ class _Duties:
             Where the solver could not go on.
         """
         done = steps_to_roots(self._steps, self._at_root, tau, first, excess, bounds, e)
-        flag, stretch = done[0], Stretch(*done[1:])
+        flag, stretch = done[0], StepsTaken(*done[1:])
         if flag < 0:
             raise StandstillError(
                 f"{self.name} could not continue ({self.messages[flag].rstrip('.')}); "
@@ -331,21 +331,21 @@ class InDescriptorForm(_Duties):
         self._modes = modes
         self._scratch = on_loan(blank(*modes.model.counts))
         self._own: DescriptorMode
-        self._problem: Problem
+        self._problem: DescriptorProblem
         self._followed: Followed
         self._begun: float | None = None
 
     def start(self, start: Start) -> None:
         """Begin with the clusters in the state given; the tolerances are those of the run."""
         self._own = self._modes.of(start.mode)
-        self._problem = on_loan(Problem(self._own.descriptor, start.forcing, start.frame))
+        self._problem = on_loan(DescriptorProblem(self._own.descriptor, start.forcing, start.frame))
         self._followed = on_loan(Followed(self._problem, self.drift, self.scales.acceleration))
         super().start(start)
         self._begun = start.tau
 
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
-    ) -> Stretch:
+    ) -> StepsTaken:
         """Accepted steps, up to the first that is not clear or the bounds."""
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.

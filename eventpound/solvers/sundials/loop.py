@@ -35,7 +35,7 @@ BRACKET = 100.0
 """Width of the bracket that SUNDIALS leaves of a root, in roundings of ``|t| + |h|``."""
 
 Numbers = tuple[int, int, float, float, int, float, int]
-"""A flag of SUNDIALS, then those of a `Stretch`."""
+"""A flag of SUNDIALS, then those of `StepsTaken`."""
 Steps = Callable[[float, int, float, Bounds, Examination], Numbers]
 """`carry_on` from its fifth argument on."""
 AtRoot = Callable[[float, float, Floats, float, Floats], tuple[int, float]]

@@ -1,6 +1,6 @@
 """CVODE and IDA objects, made and freed through the library's own functions.
 
-How CVODE is set up for a mode, its `Layout`, stands here; what IDA is,
+How CVODE is set up for a mode, its `MemoryLayout`, stands here; what IDA is,
 `eventpound.solvers.sundials.descriptor_modes` says.
 """
 
@@ -35,7 +35,7 @@ BANDED_FROM = 48
 """Length of the state vector from which a banded Jacobian is used where it is narrow."""
 
 
-class Layout(NamedTuple):
+class MemoryLayout(NamedTuple):
     """Tolerances of a step and half bandwidth of the Jacobian, 0 where it is dense.
 
     `key` tells layouts apart.
@@ -51,7 +51,7 @@ class Layout(NamedTuple):
         return self.rtol, self.atol.tobytes(), self.band
 
 
-def layout(system: Reduced, frame: Floats, rtol: float, atol: Floats) -> Layout:
+def layout(system: Reduced, frame: Floats, rtol: float, atol: Floats) -> MemoryLayout:
     """The layout for a mode.
 
     Parameters
@@ -69,7 +69,7 @@ def layout(system: Reduced, frame: Floats, rtol: float, atol: Floats) -> Layout:
     # Positions in a moving frame are larger than what they stand for.
     framed = frame.shape[1] > 0
     share = LOCAL_SHARE * (BENT_SHARE if (system.iz < SMOOTH_CODES).any() else 1.0)
-    return Layout(
+    return MemoryLayout(
         NO_RTOL if framed else max(share * rtol, NO_RTOL),
         (2.0 if framed else 1.0) * share * atol,
         band if 3 * band < system.size else 0,
@@ -171,7 +171,7 @@ class CvodeMemory(_Memory):
         See `eventpound.solvers.sundials.library.library`.
     method : str
         ``"Adams"`` or ``"BDF"``.
-    layout : Layout
+    layout : MemoryLayout
         Tolerances, and which Jacobian.
     callback, data : int
         Addresses of the right-hand side and of what it is handed.
@@ -186,7 +186,9 @@ class CvodeMemory(_Memory):
 
     prefix = "CVode"
 
-    def __init__(self, library: Any, method: str, layout: Layout, callback: int, data: int) -> None:
+    def __init__(
+        self, library: Any, method: str, layout: MemoryLayout, callback: int, data: int
+    ) -> None:
         def create(context: Any) -> int:
             made: int = library.CVodeCreate(FAMILIES[method], context)
             return made

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.descriptor import Descriptor
-from eventpound.mechanics.descriptor_motion import Problem, dot
+from eventpound.mechanics.descriptor_motion import DescriptorProblem, dot
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,
@@ -54,7 +54,9 @@ def _observe_clusters(y: Floats, bodies: Bodies, out: Observed) -> None:
 
 
 @kernel
-def descriptor_roots(tau: float, y: Floats, problem: Problem, roots: Roots, out: Floats) -> None:
+def descriptor_roots(
+    tau: float, y: Floats, problem: DescriptorProblem, roots: Roots, out: Floats
+) -> None:
     """Fill `out` (2 n,) from unknowns relative to the ground, whose λ is overwritten."""
     if roots.forces:
         look_at_descriptor(tau, y, problem, roots.seen)

@@ -44,12 +44,12 @@ if library() is None:
     raise ImportError("the SUNDIALS library cannot be reached from compiled code")
 
 REACHED, TURNED = 0, 1
-"""Places of `Handles.reached`: where CVODE is, and where a link has reversed last (s)."""
+"""Places of `CvodeHandles.reached`: where CVODE is, and where a link has reversed last (s)."""
 NEVER = -1.0
 """No time: no link has."""
 
 
-class Given(NamedTuple):
+class CvodeData(NamedTuple):
     """What CVODE's callbacks are handed, on loan.
 
     calls (2,): of the right-hand side; Jacobians. system: of the mode, whose directions of
@@ -65,7 +65,7 @@ class Given(NamedTuple):
     roots: Roots
 
 
-class Handles(NamedTuple):
+class CvodeHandles(NamedTuple):
     """Addresses of a CVODE object and its state vector, and where times are put; on loan.
 
     look: a vector for interpolated states. given: what its callbacks are handed. rtol: that of
@@ -76,12 +76,12 @@ class Handles(NamedTuple):
     vector: int
     reached: Floats
     look: int
-    given: Given
+    given: CvodeData
     rtol: float
     spent: Ints
 
 
-def right_hand_side(tau: float, y: int, rate: int, given: Given) -> int:
+def right_hand_side(tau: float, y: int, rate: int, given: CvodeData) -> int:
     """CVODE's callback, a `CVRhsFn`."""
     given.calls[0] += 1
     state = array_at(array_pointer(y), given.system.size, np.float64)
@@ -92,11 +92,11 @@ def right_hand_side(tau: float, y: int, rate: int, given: Given) -> int:
 
 @loop_kernel
 def advance(
-    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
+    handles: CvodeHandles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
 ) -> Numbers:
     """Steps from `tau` (s), each examined, as `Integrator.advance` says.
 
-    CVODE's last flag, then the numbers of the `Stretch`.
+    CVODE's last flag, then the numbers of `StepsTaken`.
     """
     done = carry_on(_take, _check, _write, handles, tau, first, excess, bounds, e)
     _count_jacobians(handles)
@@ -105,7 +105,7 @@ def advance(
 
 @kernel
 def _take(
-    handles: Handles, start: float, first: int, bounds: Bounds, e: Examination
+    handles: CvodeHandles, start: float, first: int, bounds: Bounds, e: Examination
 ) -> tuple[int, float, bool]:
     """A step from `start` (s) up to where a link reverses; see `carry_on`."""
     system, direction = e.dynamics.system, handles.given.system.direction
@@ -130,20 +130,20 @@ def _take(
 
 @kernel
 def _check(
-    handles: Handles, start: float, end: float, first: int, allowed: float, e: Examination
+    handles: CvodeHandles, start: float, end: float, first: int, allowed: float, e: Examination
 ) -> tuple[int, float]:
     """`examine`."""
     return examine(start, end, first, allowed, e)
 
 
 @kernel
-def _write(handles: Handles, start: float, end: float, e: Examination) -> None:
+def _write(handles: CvodeHandles, start: float, end: float, e: Examination) -> None:
     """History at the output times of a step."""
     write_samples(_show, handles, start, end, e)
 
 
 @kernel
-def _show(handles: Handles, tau: float, seen: Observed, e: Examination) -> None:
+def _show(handles: CvodeHandles, tau: float, seen: Observed, e: Examination) -> None:
     """Observe the motion at `tau` (s) of the last step."""
     system = e.dynamics.system
     y = array_at(array_pointer(handles.look), system.size, np.float64)
@@ -154,7 +154,7 @@ def _show(handles: Handles, tau: float, seen: Observed, e: Examination) -> None:
 
 
 @kernel
-def _begin_anew(handles: Handles, tau: float, first: int, e: Examination) -> None:
+def _begin_anew(handles: CvodeHandles, tau: float, first: int, e: Examination) -> None:
     """Begin at the local time tau (s) with the state of a row, without a past."""
     system = e.dynamics.system
     state = array_at(array_pointer(handles.vector), system.size, np.float64)
@@ -167,7 +167,7 @@ def _begin_anew(handles: Handles, tau: float, first: int, e: Examination) -> Non
 
 
 @kernel
-def _count_jacobians(handles: Handles) -> None:
+def _count_jacobians(handles: CvodeHandles) -> None:
     """Count Jacobians since the last time: those of a start are known once it has made a step."""
     known = handles.spent[0]
     jacobians(handles.memory, handles.spent.ctypes.data)
@@ -175,19 +175,19 @@ def _count_jacobians(handles: Handles) -> None:
 
 
 @kernel
-def _dense(handles: Handles, start: float, end: float) -> Dense:
+def _dense(handles: CvodeHandles, start: float, end: float) -> Dense:
     """The last step on CVODE's own polynomial."""
     Y = derivatives(handles, end)
     return Dense(Y, end, start, end, handles.given.frame, False, Y[:0])
 
 
 @kernel
-def derivatives(handles: Handles, t: float) -> Floats:
+def derivatives(handles: CvodeHandles, t: float) -> Floats:
     """Coefficients of CVODE's own polynomial of its last step about `t` (s).
 
     Parameters
     ----------
-    handles : Handles
+    handles : CvodeHandles
         The CVODE object; the state that it interpolates is overwritten.
     t : float
         Local time (s).
@@ -211,14 +211,14 @@ def derivatives(handles: Handles, t: float) -> Floats:
 
 
 @kernel
-def _roots_at(tau: float, y: Floats, given: Given, out: Floats) -> None:
+def _roots_at(tau: float, y: Floats, given: CvodeData, out: Floats) -> None:
     system, forcing = given.system, given.forcing
     state = y.copy()
     to_frame(given.frame, forcing.start + tau, -1.0, system.iq, system.iv, state)
     cluster_roots(tau, state, system, given.bodies, forcing, given.roots, out)
 
 
-def root_functions(tau: float, y: int, out: int, given: Given) -> int:
+def root_functions(tau: float, y: int, out: int, given: CvodeData) -> int:
     """CVODE's callback, a `CVRootFn`."""
     state = array_at(array_pointer(y), given.system.size, np.float64)
     _roots_at(tau, state, given, array_at(out, 2 * given.roots.noise.size, np.float64))
@@ -226,7 +226,7 @@ def root_functions(tau: float, y: int, out: int, given: Given) -> int:
 
 
 @kernel
-def _values(handles: Handles, tau: float) -> Roots:
+def _values(handles: CvodeHandles, tau: float) -> Roots:
     """Root functions at `tau` (s), where CVODE is."""
     given, roots = handles.given, handles.given.roots
     state = array_at(array_pointer(handles.vector), given.system.size, np.float64)
@@ -235,7 +235,7 @@ def _values(handles: Handles, tau: float) -> Roots:
 
 
 @kernel
-def _whole_step(handles: Handles) -> tuple[float, Floats]:
+def _whole_step(handles: CvodeHandles) -> tuple[float, Floats]:
     """End of CVODE's whole step (s), and every z there; zero for those that do not move."""
     whole, places = np.empty(1), handles.given.bodies.z_of
     current_time(handles.memory, whole.ctypes.data)
@@ -249,7 +249,7 @@ def _whole_step(handles: Handles) -> tuple[float, Floats]:
 
 
 @kernel
-def _put(handles: Handles, tau: float, y: Floats) -> None:
+def _put(handles: CvodeHandles, tau: float, y: Floats) -> None:
     """Fill in the state at `tau` (s) of the last step, relative to the ground."""
     given, system = handles.given, handles.given.system
     get_dky(handles.memory, tau, 0, handles.look)
@@ -259,7 +259,7 @@ def _put(handles: Handles, tau: float, y: Floats) -> None:
 
 @kernel
 def at_root(
-    handles: Handles, start: float, tau: float, bound: Floats, allowed: float, y: Floats
+    handles: CvodeHandles, start: float, tau: float, bound: Floats, allowed: float, y: Floats
 ) -> tuple[int, float]:
     """`root_at` for CVODE."""
     return root_at(_values, _whole_step, _put, handles, start, tau, bound, allowed, y)

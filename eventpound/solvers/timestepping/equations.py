@@ -41,7 +41,7 @@ from eventpound.solvers.timestepping.structure import step_kernel
 from eventpound.tolerances import BALANCE, BALANCE_ROUNDING
 
 
-class Step(NamedTuple):
+class FixedStep(NamedTuple):
     """A step: its start, end and length h (s), ground acceleration at its end and by θ (m/s²)."""
 
     start: float
@@ -52,15 +52,15 @@ class Step(NamedTuple):
 
 
 @step_kernel
-def _step_of(i: int, span: Span, ground: float, forcing: Forcing, theta: float) -> Step:
+def _step_of(i: int, span: Span, ground: float, forcing: Forcing, theta: float) -> FixedStep:
     """Step i of a span, at whose start the ground has this acceleration (m/s²)."""
     start, end = forcing.start + i * span.h, forcing.start + (i + 1) * span.h
     ground_end = ground_acceleration(forcing, end)
-    return Step(start, end, span.h, ground_end, (1.0 - theta) * ground + theta * ground_end)
+    return FixedStep(start, end, span.h, ground_end, (1.0 - theta) * ground + theta * ground_end)
 
 
 @step_kernel
-def predict(step: Step, run: Stepping) -> None:
+def predict(step: FixedStep, run: Stepping) -> None:
     """Velocities at the end of the step if the forces of the links stayed."""
     state, mass = run.state, run.structure.mass
     for b in range(mass.size):
@@ -101,7 +101,7 @@ def end_of_step(h: float, run: Stepping) -> None:
 
 
 @step_kernel
-def momentum_residual(step: Step, run: Stepping) -> None:
+def momentum_residual(step: FixedStep, run: Stepping) -> None:
     """What is missing in the balance of momentum without contacts (N s)."""
     structure, state, trial, equations = run.structure, run.state, run.trial, run.equations
     theta, h = structure.theta, step.h
@@ -150,7 +150,7 @@ def fill_newton_matrix(h: float, run: Stepping) -> None:
 
 
 @step_kernel
-def _add_work(step: Step, run: Stepping) -> None:
+def _add_work(step: FixedStep, run: Stepping) -> None:
     """Add the step's input, viscous and hysteretic work (J), forces by θ, paths by the mean."""
     structure, state, trial, work = run.structure, run.state, run.trial, run.record.work
     theta, law, h = structure.theta, structure.law, step.h
@@ -170,7 +170,7 @@ def _add_work(step: Step, run: Stepping) -> None:
 
 
 @step_kernel
-def _end_step(step: Step, run: Stepping) -> None:
+def _end_step(step: FixedStep, run: Stepping) -> None:
     """Make the end of the step the present state, and record it."""
     _add_work(step, run)
     state, trial = run.state, run.trial
@@ -186,7 +186,7 @@ def _end_step(step: Step, run: Stepping) -> None:
 
 @step_kernel
 def take_steps(
-    take: Callable[[Step, Any, Stepping], int],
+    take: Callable[[FixedStep, Any, Stepping], int],
     most_events: int,
     span: Span,
     forcing: Forcing,

@@ -25,7 +25,12 @@ from eventpound.mechanics.observables import Observed, difference
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.recorder import columns_of, row_width
-from eventpound.solvers.timestepping.structure import Equations, Instant, Structure, step_kernel
+from eventpound.solvers.timestepping.structure import (
+    Equations,
+    FixedStepState,
+    Structure,
+    step_kernel,
+)
 
 DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED = range(4)
 """All steps taken; too little room for the events of the next; Newton's iteration or the
@@ -38,12 +43,12 @@ MESSAGES = {
     "try a smaller time_step",
 }
 STEPS, EVALUATIONS, ROWS = range(COUNT_PLACES, COUNT_PLACES + 3)
-"""Places of `Record.counters`, behind those of `eventpound.contact.cascade`."""
+"""Places of `FixedStepRecord.counters`, behind those of `eventpound.contact.cascade`."""
 INPUT, VISCOUS, HYSTERETIC, CONTACT = range(4)
-"""Places of `Record.work` (J)."""
+"""Places of `FixedStepRecord.work` (J)."""
 
 
-class Record(NamedTuple):
+class FixedStepRecord(NamedTuple):
     """Room for a run: events (e, EVENT_WIDTH), output times (n,), rows and the last two steps.
 
     A row (w,) is that of `eventpound.solvers.events.recorder`; `seen` holds views of the last
@@ -64,10 +69,10 @@ class Stepping(NamedTuple):
     """What the kernels of a method work on: the last step ended at `state`, the next at `trial`."""
 
     structure: Structure
-    state: Instant
-    trial: Instant
+    state: FixedStepState
+    trial: FixedStepState
     equations: Equations
-    record: Record
+    record: FixedStepRecord
 
 
 class Span(NamedTuple):
@@ -81,7 +86,7 @@ class Span(NamedTuple):
     h: float
 
 
-def blank_record(model: Model, times: Floats, scales: Sizes, room: int) -> Record:
+def blank_record(model: Model, times: Floats, scales: Sizes, room: int) -> FixedStepRecord:
     """Room for a run with so many events at first."""
     width, at = row_width(model), places_in(model)
     last = np.zeros((2, width))
@@ -89,7 +94,7 @@ def blank_record(model: Model, times: Floats, scales: Sizes, room: int) -> Recor
     elongation, shear = np.zeros((1, model.springs)), np.zeros(1)
     # Of motion, force and gap only: no second rates, and no pulls.
     seen = u[0], v[0], np.zeros(0), z, force, a, contact, shear, gap, elongation, ground[0]
-    return Record(
+    return FixedStepRecord(
         np.zeros((room, EVENT_WIDTH)),
         times,
         np.zeros((times.size, width)),
@@ -139,7 +144,9 @@ def gap_of(structure: Structure, j: int, u: Floats) -> float:
 
 
 @step_kernel
-def _look(t: float, ground: float, structure: Structure, state: Instant, record: Record) -> None:
+def _look(
+    t: float, ground: float, structure: Structure, state: FixedStepState, record: FixedStepRecord
+) -> None:
     """Fill `seen`, and so the last row, from the present state."""
     seen, acceleration = record.seen, record.seen.acceleration[0]
     record.last[1, 0], seen.ground[0], seen.shear[0] = t, ground, 0.0

@@ -44,7 +44,7 @@ from eventpound.solvers.timestepping.record import (
     blank_record,
     record_step,
 )
-from eventpound.solvers.timestepping.steps import Stretch, stretches
+from eventpound.solvers.timestepping.steps import EqualSteps, stretches
 from eventpound.solvers.timestepping.structure import (
     blank_equations,
     initial_instant,
@@ -59,7 +59,7 @@ ROOM = 256
 
 
 @dataclass
-class Run:
+class FixedStepRun:
     """Everything a stepper works on during one run.
 
     Parameters
@@ -93,7 +93,7 @@ Returns the number of the step before which it stopped, and one of
 """
 
 
-def prepared(task: Task, theta: float) -> Run:
+def prepared(task: Task, theta: float) -> FixedStepRun:
     """A run before its first step, by a rule with θ."""
     clock, model = Stopwatch(), assemble(task.scene)
     scales = scene_scales(task.scene, model, task.end - task.start)
@@ -102,15 +102,15 @@ def prepared(task: Task, theta: float) -> Run:
     equations = blank_equations(model, structure.bandwidth)
     state, trial = initial_instant(model), initial_instant(model)
     work = Stepping(structure, state, trial, equations, record)
-    return Run(task, model, scales, work, laws_of(model), task.start, clock)
+    return FixedStepRun(task, model, scales, work, laws_of(model), task.start, clock)
 
 
-def carry_to_end(run: Run, time_step: float, advance: Advance, contacts: Any) -> Recording:
+def carry_to_end(run: FixedStepRun, time_step: float, advance: Advance, contacts: Any) -> Recording:
     """Take all steps.
 
     Parameters
     ----------
-    run : Run
+    run : FixedStepRun
         At its start.
     time_step : float
         Length that no step exceeds (s).
@@ -145,7 +145,7 @@ def carry_to_end(run: Run, time_step: float, advance: Advance, contacts: Any) ->
     return recording_of(run, message, success=True)
 
 
-def _take_start(run: Run) -> None:
+def _take_start(run: FixedStepRun) -> None:
     """Forces of the initial state, and its place in the record."""
     state, trial = run.work.state, run.work.trial
     end_of_step(0.0, run.work)
@@ -155,7 +155,7 @@ def _take_start(run: Run) -> None:
     record_step(start, ground, run.work)
 
 
-def _carry_over(run: Run, stretch: Stretch, advance: Advance, contacts: Any) -> int:
+def _carry_over(run: FixedStepRun, stretch: EqualSteps, advance: Advance, contacts: Any) -> int:
     """The steps of one stretch; an outcome."""
     forcing, done, most = forcing_of(stretch.piece, stretch.start), 0, run.task.max_steps
     while done < stretch.steps:
@@ -178,7 +178,7 @@ def _carry_over(run: Run, stretch: Stretch, advance: Advance, contacts: Any) -> 
     return DONE
 
 
-def recording_of(run: Run, message: str, *, success: bool) -> Recording:
+def recording_of(run: FixedStepRun, message: str, *, success: bool) -> Recording:
     """What a run leaves, as every solver returns it."""
     model, state, record = run.model, run.work.state, run.work.record
     counters = record.counters
@@ -210,7 +210,7 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
     )
 
 
-def _energy(run: Run) -> Energy | None:
+def _energy(run: FixedStepRun) -> Energy | None:
     """The ledger, where it is kept; it closes as well as the method keeps energy."""
     if not run.task.energy:
         return None

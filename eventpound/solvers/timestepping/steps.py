@@ -131,7 +131,7 @@ def _sampling_interval(task: Task) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class EqualSteps:
     """Equal steps of length `step` (s) from `start` (s), so many of them, on one piece."""
 
     start: float
@@ -140,7 +140,9 @@ class Stretch:
     piece: Piece
 
 
-def stretches(pieces: list[Piece], start: float, end: float, longest: float) -> Iterator[Stretch]:
+def stretches(
+    pieces: list[Piece], start: float, end: float, longest: float
+) -> Iterator[EqualSteps]:
     """Cut a run into stretches of equal steps.
 
     Parameters
@@ -170,12 +172,14 @@ def stretches(pieces: list[Piece], start: float, end: float, longest: float) -> 
         t = stop
 
 
-def _equal(piece: Piece, start: float, stop: float, longest: float) -> Stretch:
+def _equal(piece: Piece, start: float, stop: float, longest: float) -> EqualSteps:
     count = max(1, math.ceil((stop - start) / longest * (1.0 - SAME_SAMPLE)))
-    return Stretch(start, (stop - start) / count, count, piece)
+    return EqualSteps(start, (stop - start) / count, count, piece)
 
 
-def _between_samples(piece: Piece, start: float, stop: float, longest: float) -> Iterator[Stretch]:
+def _between_samples(
+    piece: Piece, start: float, stop: float, longest: float
+) -> Iterator[EqualSteps]:
     """Up to the first sample, from there in parts of the sampling interval, and what is left."""
     dt = float(piece.coefficients[1])
     first = next_sample(piece.coefficients, start, stop)
@@ -186,7 +190,7 @@ def _between_samples(piece: Piece, start: float, stop: float, longest: float) ->
     intervals = math.floor((stop - start) / dt * (1.0 + SAME_SAMPLE))
     if intervals > 0:
         parts = math.ceil(dt / longest * (1.0 - SAME_SAMPLE))
-        yield Stretch(start, dt / parts, parts * intervals, piece)
+        yield EqualSteps(start, dt / parts, parts * intervals, piece)
         start += intervals * dt
     if stop - start > SAME_SAMPLE * dt:
         yield _equal(piece, start, stop, longest)

@@ -53,7 +53,7 @@ class Structure(NamedTuple):
     speed: float
 
 
-class Instant(NamedTuple):
+class FixedStepState(NamedTuple):
     """What is known at one end of a step.
 
     u, v, f (N,): displacement (m), velocity (m/s), force of the links on each
@@ -120,11 +120,11 @@ def structure_of(model: Model, scales: SceneScales, theta: float) -> Structure:
     )
 
 
-def initial_instant(model: Model) -> Instant:
+def initial_instant(model: Model) -> FixedStepState:
     """The start, forces not yet computed."""
     N, L, K, _ = model.counts
     u, v, z = model.u0.copy(), model.v0.copy(), model.z0.copy()
-    return Instant(u, v, np.zeros(N), z, np.zeros(L), np.zeros(K))
+    return FixedStepState(u, v, np.zeros(N), z, np.zeros(L), np.zeros(K))
 
 
 def blank_equations(model: Model, bandwidth: int) -> Equations:

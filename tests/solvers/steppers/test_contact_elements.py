@@ -24,7 +24,7 @@ from eventpound.solvers.events.run import Laws
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.penalty.elements import (
     HERTZ_TIME,
-    Elements,
+    PenaltyElements,
     contact_period,
     contact_stiffness,
     element_force,
@@ -112,7 +112,7 @@ def _force(element: Element, depth: float, rate: float, open_before: float, cut=
     first, kind, cuts = (np.array([number]) for number in (0, int(element), cut))
     laws = Laws(first, kind, np.array([damping]), np.zeros((TOUCH_ROWS, 1)))
     laws.touch[DRAG] = damping
-    elements = Elements(np.array([20.0]), cuts, laws, np.zeros(1))
+    elements = PenaltyElements(np.array([20.0]), cuts, laws, np.zeros(1))
     return element_force(0, elements, depth, rate, open_before)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from eventpound.contact.cascade import T
 from eventpound.mechanics.monitored import update_extreme, update_turning_point
-from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
 from eventpound.solvers.fast.compiled import compiled
@@ -25,7 +25,7 @@ from eventpound.solvers.fast.extremes import (
 )
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import write_row
-from eventpound.solvers.fast.run import OUTPUT, Piece, Run
+from eventpound.solvers.fast.run import OUTPUT, FastRun
 from eventpound.solvers.fast.search import stays_above
 from eventpound.solvers.fast.single.record import acceleration_coefficient
 from eventpound.solvers.fast.single.series import motion
@@ -36,7 +36,7 @@ from eventpound.tolerances import OWN_GAP
 
 
 @compiled
-def _gap_box(j: int, run: Run) -> tuple[float, float]:
+def _gap_box(j: int, run: FastRun) -> tuple[float, float]:
     """Bounds of a gap by those of its bodies (m)."""
     contacts, box = run.plan.contacts, run.series.each.box
     low = high = contacts.gap[j]
@@ -48,7 +48,7 @@ def _gap_box(j: int, run: Run) -> tuple[float, float]:
 
 
 @compiled
-def _gap_at(j: int, t: float, run: Run) -> tuple[float, float]:
+def _gap_at(j: int, t: float, run: FastRun) -> tuple[float, float]:
     """A gap (m) and its rate (m/s) at a time (s) that the series of its bodies reach."""
     contacts, each = run.plan.contacts, run.series.each
     gap, rate = contacts.gap[j], 0.0
@@ -60,7 +60,7 @@ def _gap_at(j: int, t: float, run: Run) -> tuple[float, float]:
 
 
 @compiled
-def _bends(j: int, run: Run) -> tuple[float, float]:
+def _bends(j: int, run: FastRun) -> tuple[float, float]:
     """Bounds of the second derivative of a gap between two bodies, or to a barrier (m/s²).
 
     What the ground does is the same for both bodies; to a barrier nothing is known.
@@ -72,7 +72,7 @@ def _bends(j: int, run: Run) -> tuple[float, float]:
 
 
 @compiled
-def time_of_fall(j: int, now: float, run: Run) -> float:
+def time_of_fall(j: int, now: float, run: FastRun) -> float:
     """When a gap falls to where it is a variable of its own, as far as both series reach (s)."""
     contacts, until, c = run.plan.contacts, run.series.each.until, run.series.c
     least, end = OWN_GAP * run.plan.limits.length, np.inf
@@ -96,7 +96,7 @@ def time_of_fall(j: int, now: float, run: Run) -> float:
 
 
 @compiled
-def _set_gap(j: int, now: float, run: Run) -> int:
+def _set_gap(j: int, now: float, run: FastRun) -> int:
     """Coefficients of a gap about a time (s) into `series.c`; their highest power."""
     contacts, c, order = run.plan.contacts, run.series.c, 3
     c[:] = 0.0
@@ -109,7 +109,7 @@ def _set_gap(j: int, now: float, run: Run) -> int:
 
 
 @compiled
-def _add_body(b: int, factor: float, now: float, run: Run) -> int:
+def _add_body(b: int, factor: float, now: float, run: FastRun) -> int:
     """Add a multiple of the displacement of a body about a time (s) to `series.c`; its order."""
     each, c, d = run.series.each, run.series.c, run.series.d
     body, order, since = each.body[b], each.order[b], now - each.clock[b, T]
@@ -130,7 +130,7 @@ def _add_later(order: int, factor: float, since: float, c: Floats, d: Floats) ->
 
 
 @compiled
-def take_gaps_of(who: int, now: float, run: Run) -> None:
+def take_gaps_of(who: int, now: float, run: FastRun) -> None:
     """Extremes of the gaps between a body, or any for -1, and others, up to a time (s)."""
     plan, each, running = run.plan, run.series.each, run.running
     contacts, first = plan.contacts, running.at.gap
@@ -147,7 +147,7 @@ def take_gaps_of(who: int, now: float, run: Run) -> None:
 
 
 @compiled
-def _take_gap(place: int, j: int, now: float, run: Run) -> None:
+def _take_gap(place: int, j: int, now: float, run: FastRun) -> None:
     """Turning points of a gap since it was looked at last, and its value at a time (s)."""
     series, running, since = run.series, run.running, run.series.each.since[j]
     h, (_, rate), (low, high) = now - since, _gap_at(j, since, run), _bends(j, run)
@@ -159,7 +159,7 @@ def _take_gap(place: int, j: int, now: float, run: Run) -> None:
 
 
 @compiled
-def take_shear(now: float, then: float, piece: Piece, run: Run) -> None:
+def take_shear(now: float, then: float, piece: CurrentPiece, run: FastRun) -> None:
     """Turning points of the base shear between two times (s), and its value at the second."""
     mass, box, running = run.plan.mass, run.series.each.box, run.running
     low = high = 0.0
@@ -178,7 +178,9 @@ def take_shear(now: float, then: float, piece: Piece, run: Run) -> None:
 
 
 @compiled
-def _shear_between(now: float, then: float, piece: Piece, run: Run) -> tuple[float, float, float]:
+def _shear_between(
+    now: float, then: float, piece: CurrentPiece, run: FastRun
+) -> tuple[float, float, float]:
     """Base shear at a time (s), and by how much it falls and grows at most until another (N).
 
     Between two turns the force of a spring goes one way; of a body that all but stands still it
@@ -202,7 +204,7 @@ def _shear_between(now: float, then: float, piece: Piece, run: Run) -> tuple[flo
 
 
 @compiled
-def _follow_shear(place: int, now: float, then: float, run: Run) -> None:
+def _follow_shear(place: int, now: float, then: float, run: FastRun) -> None:
     """Turning points of the base shear by the series of the bodies.
 
     The forces of the links tell how much it is.
@@ -219,7 +221,7 @@ def _follow_shear(place: int, now: float, then: float, run: Run) -> None:
 
 
 @compiled
-def _add_acceleration(b: int, factor: float, now: float, run: Run) -> int:
+def _add_acceleration(b: int, factor: float, now: float, run: FastRun) -> int:
     """As `_add_body` for the absolute acceleration."""
     each, c, d = run.series.each, run.series.c, run.series.d
     body, order, since = each.body[b], each.order[b] - 2, now - each.clock[b, T]
@@ -229,7 +231,7 @@ def _add_acceleration(b: int, factor: float, now: float, run: Run) -> int:
 
 
 @compiled
-def _look(t: float, ground: float, run: Run) -> None:
+def _look(t: float, ground: float, run: FastRun) -> None:
     """Fill `seen` with motion and forces at a time (s) that all series reach."""
     plan, seen, each = run.plan, run.seen, run.series.each
     for b in range(plan.mass.size):
@@ -242,7 +244,7 @@ def _look(t: float, ground: float, run: Run) -> None:
 
 
 @compiled
-def write_rows(now: float, then: float, piece: Piece, run: Run) -> None:
+def write_rows(now: float, then: float, piece: CurrentPiece, run: FastRun) -> None:
     """History at the output times between two times (s)."""
     contacts, seen, state, count = run.plan.contacts, run.seen, run.state, run.state.count
     times = run.plan.output_times

@@ -18,6 +18,7 @@ import numpy as np
 from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T, is_fleeting
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.base import Family
+from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.apart.between import (
     A_HIGH,
@@ -42,12 +43,11 @@ from eventpound.solvers.fast.run import (
     STALLED,
     STEPS,
     Each,
+    FastRun,
     Oscillator,
-    Piece,
-    Run,
 )
 from eventpound.solvers.fast.single.body import (
-    Body,
+    SingleBody,
     SingleRun,
     absolute_acceleration,
     forget,
@@ -74,7 +74,7 @@ def forget_each(each: Each) -> None:
 
 
 @compiled
-def may_go_apart(piece: Piece, run: Run) -> bool:
+def may_go_apart(piece: CurrentPiece, run: FastRun) -> bool:
     """Whether nothing rests or has a kink, no gap closes soon or is small, and it pays.
 
     It does once a link has left the core of its backbone: before, no body ends a step.
@@ -95,7 +95,7 @@ def may_go_apart(piece: Piece, run: Run) -> bool:
 
 
 @compiled_deferred
-def go_apart(budget: int, stop: float, piece: Piece, run: Run) -> None:
+def go_apart(budget: int, stop: float, piece: CurrentPiece, run: FastRun) -> None:
     """Steps of each body by itself, to `stop` (s) at most and `budget` in all; then one instant.
 
     Rows of the history are written on the way. Steps that are cut at that instant, as where the
@@ -140,13 +140,13 @@ def _first_to_end(each: Each) -> int:
 
 
 @compiled
-def _link_of(b: int, run: Run) -> int:
+def _link_of(b: int, run: FastRun) -> int:
     """The hysteretic link of a body, -1 for none."""
     return int(run.plan.links.grounded[b])
 
 
 @compiled_apart
-def _go(b: int, what: int, now: float, stop: float, piece: Piece, run: Run) -> bool:
+def _go(b: int, what: int, now: float, stop: float, piece: CurrentPiece, run: FastRun) -> bool:
     """Let a body do something at a time (s); whether its step, to `stop` (s) at most, holds."""
     plan, each, h = run.plan, run.series.each, _link_of(b, run)
     tables, times = plan.hysteresis.tables, plan.output_times
@@ -184,7 +184,7 @@ def _go(b: int, what: int, now: float, stop: float, piece: Piece, run: Run) -> b
 
 
 @compiled
-def _set_out(b: int, piece: Piece, one: SingleRun, run: Run) -> None:
+def _set_out(b: int, piece: CurrentPiece, one: SingleRun, run: FastRun) -> None:
     """Make the present state of a body that of its own run."""
     state, each, h = run.state, run.series.each, _link_of(b, run)
     body = one.body
@@ -210,7 +210,7 @@ def _set_out(b: int, piece: Piece, one: SingleRun, run: Run) -> None:
 
 
 @compiled
-def _arrive(b: int, now: float, piece: Piece, one: SingleRun, each: Each) -> bool:
+def _arrive(b: int, now: float, piece: CurrentPiece, one: SingleRun, each: Each) -> bool:
     """Take a body to a time (s), the end of its step or within it; whether it may go on."""
     body, begun, order = one.body, one.clock[T], each.order[b]
     if now < each.until[b]:
@@ -225,7 +225,7 @@ def _arrive(b: int, now: float, piece: Piece, one: SingleRun, each: Each) -> boo
 
 
 @compiled
-def _begin(b: int, stop: float, piece: Piece, one: SingleRun, run: Run) -> bool:
+def _begin(b: int, stop: float, piece: CurrentPiece, one: SingleRun, run: FastRun) -> bool:
     """A step of a body from where it is; whether one holds at its end."""
     each, t, wanted = run.series.each, one.clock[T], stop - one.clock[T]
     if piece.family == _GAUSSIAN:
@@ -238,7 +238,7 @@ def _begin(b: int, stop: float, piece: Piece, one: SingleRun, run: Run) -> bool:
 
 
 @compiled
-def _set_box(b: int, tau: float, order: int, body: Body, each: Each) -> None:
+def _set_box(b: int, tau: float, order: int, body: SingleBody, each: Each) -> None:
     """Bounds of displacement and acceleration of a body in its step, of length tau (s).
 
     It goes one way, but where it all but stands still, and so do the forces of springs. With
@@ -258,7 +258,7 @@ def _set_box(b: int, tau: float, order: int, body: Body, each: Each) -> None:
 
 
 @compiled
-def _meet(start: float, now: float, piece: Piece, run: Run) -> None:
+def _meet(start: float, now: float, piece: CurrentPiece, run: FastRun) -> None:
     """Bring all bodies, which went apart at `start` (s), to one instant."""
     plan, state, each, clock = run.plan, run.state, run.series.each, run.state.clock
     take_gaps_of(-1, now, run)
@@ -282,7 +282,7 @@ def _meet(start: float, now: float, piece: Piece, run: Run) -> None:
 
 
 @compiled
-def _take_own(b: int, run: Run) -> None:
+def _take_own(b: int, run: FastRun) -> None:
     """Put the extremes of a body's own run among those of all."""
     each, extremes, running = run.series.each, run.record.extremes, run.running
     own, at = running_of(each.extremes[b], places_of(1, 0, 0)), running.at

@@ -23,7 +23,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import CORE, DOWN, UP, place
-from eventpound.solvers.fast.run import Plan, Run, State
+from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.solvers.fast.search import bound_of_pair
 from eventpound.tolerances import LENGTH, OWN_GAP
@@ -45,7 +45,7 @@ def pair_goes_one_way(
     second: int,
     rate: float,
     next_rate: float,
-    plan: Plan,
+    plan: FastPlan,
     tables: SampleTables,
 ) -> bool:
     """Whether the distance of two bodies, the ground among them, only grows or only shrinks."""
@@ -69,7 +69,7 @@ def pair_goes_one_way(
 
 @compiled
 def stays_open(
-    h: float, what: int, which: int, plan: Plan, state: State, tables: SampleTables
+    h: float, what: int, which: int, plan: FastPlan, state: FastState, tables: SampleTables
 ) -> bool:
     """Whether every gap stays one that is a difference of displacements.
 
@@ -101,7 +101,7 @@ def stays_open(
 
 @compiled
 def keeps_parts(
-    h: float, what: int, which: int, plan: Plan, state: State, tables: SampleTables
+    h: float, what: int, which: int, plan: FastPlan, state: FastState, tables: SampleTables
 ) -> bool:
     """Whether every link keeps its branch and its part; elongations at the end stand.
 
@@ -140,7 +140,7 @@ def _keeps_part(
     sag: float,
     one_way: bool,
     hysteresis: Hysteresis,
-    state: State,
+    state: FastState,
     tables: SampleTables,
 ) -> bool:
     """Whether a hysteretic link stays between the borders of its part and does not turn."""
@@ -162,7 +162,7 @@ def _keeps_part(
 
 @compiled
 def _keeps_branch(
-    a: int, sag: float, one_way: bool, plan: Plan, state: State, tables: SampleTables
+    a: int, sag: float, one_way: bool, plan: FastPlan, state: FastState, tables: SampleTables
 ) -> bool:
     """Whether a link stays on its side of the kink, on which it may have been put just now."""
     side, offset = float(state.branch[a]), plan.links.offset[a]
@@ -180,7 +180,7 @@ def _covered(k: int, now: float, then: float, spread: float, running: Running) -
 
 
 @compiled
-def places_unseen(h: float, tables: SampleTables, run: Run) -> bool:
+def places_unseen(h: float, tables: SampleTables, run: FastRun) -> bool:
     """Whether displacements, elongations and gaps cannot exceed their extremes inside the step.
 
     What is joined to the ground turns with its body.

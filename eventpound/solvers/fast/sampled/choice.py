@@ -23,7 +23,7 @@ from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
 from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, place, reverse
 from eventpound.solvers.fast.record import has_room, put_row
-from eventpound.solvers.fast.run import DUE, EXPANSIONS, Contacts, Run
+from eventpound.solvers.fast.run import DUE, EXPANSIONS, Contacts, FastRun
 from eventpound.solvers.fast.sampled.bounds import (
     BORDER,
     CLOSING,
@@ -37,7 +37,7 @@ from eventpound.solvers.fast.sampled.bounds import (
     stays_open,
 )
 from eventpound.solvers.fast.sampled.exact import SampleTables, propose_by_matrices, set_jerks
-from eventpound.solvers.fast.sampled.forces import Line, accelerations, stretch_links
+from eventpound.solvers.fast.sampled.forces import GroundLine, accelerations, stretch_links
 from eventpound.solvers.fast.sampled.series import (
     end_of_series,
     propose_by_series,
@@ -49,7 +49,7 @@ from eventpound.tolerances import EVENTS_APART, OWN_GAP, SOONEST_EVENT
 
 
 @compiled
-def first_simple_event(order: int, h: float, run: Run) -> tuple[int, int, float]:
+def first_simple_event(order: int, h: float, run: FastRun) -> tuple[int, int, float]:
     """What happens first within a series of length h (s), to which link or contact, and when.
 
     NOTHING where none is beyond an event at the end, or the first is not a simple one.
@@ -91,7 +91,7 @@ def _overlaps(j: int, contacts: Contacts, tables: SampleTables) -> bool:
 
 
 @compiled
-def _when_closed(j: int, order: int, h: float, run: Run) -> float:
+def _when_closed(j: int, order: int, h: float, run: FastRun) -> float:
     """Local time at which a contact closes (s); 0 for one that has all but closed by now."""
     plan, state, series = run.plan, run.state, run.series
     if state.gap[j] < OWN_GAP * plan.limits.length:
@@ -102,7 +102,7 @@ def _when_closed(j: int, order: int, h: float, run: Run) -> float:
 
 
 @compiled
-def _left(a: int, run: Run) -> int:
+def _left(a: int, run: FastRun) -> int:
     """What a link has left at the end of the step proposed."""
     plan, state, series = run.plan, run.state, run.series
     along, hysteresis = series.tables.along, plan.hysteresis
@@ -124,7 +124,7 @@ def _left(a: int, run: Run) -> int:
 
 
 @compiled
-def _when(a: int, kind: int, order: int, h: float, run: Run) -> float:
+def _when(a: int, kind: int, order: int, h: float, run: FastRun) -> float:
     """Local time at which a link leaves its branch, its part or its direction (s)."""
     plan, state, series = run.plan, run.state, run.series
     c, along, hysteresis = series.c, series.tables.along, plan.hysteresis
@@ -151,7 +151,7 @@ def _when(a: int, kind: int, order: int, h: float, run: Run) -> float:
 
 
 @compiled
-def do_event(what: int, which: int, g: float, run: Run) -> None:
+def do_event(what: int, which: int, g: float, run: FastRun) -> None:
     """Do what happened to a link at the end of a step, which is the present; close a contact.
 
     `g` is the acceleration of the ground (m/s²). A kink demands nothing of contacts, none of
@@ -180,7 +180,7 @@ MATRICES, SERIES, UNTIL_EVENT, NO_WAY = range(4)
 towards it as they reach, by the same series until something happens."""
 
 
-class Step(NamedTuple):
+class ProposedStep(NamedTuple):
     """A step proposed.
 
     way: above. table: of which tangents. order: of its series, 0 where there is none. h: its
@@ -196,9 +196,9 @@ class Step(NamedTuple):
 
 
 @compiled
-def clear_step(linear: bool, i: int, line: Line, run: Run) -> Step:
+def clear_step(linear: bool, i: int, line: GroundLine, run: FastRun) -> ProposedStep:
     """The first way in which a step is good, or `NO_WAY`."""
-    none = Step(NO_WAY, i, 0, 0.0, NOTHING, -1)
+    none = ProposedStep(NO_WAY, i, 0, 0.0, NOTHING, -1)
     step, way = none, MATRICES if linear else SERIES
     while True:
         if way == UNTIL_EVENT:
@@ -215,7 +215,7 @@ def clear_step(linear: bool, i: int, line: Line, run: Run) -> Step:
 
 
 @compiled
-def _propose(way: int, i: int, line: Line, run: Run) -> Step:
+def _propose(way: int, i: int, line: GroundLine, run: FastRun) -> ProposedStep:
     """A step by table i along the line: its order, 0 for none, and length."""
     plan, state, series = run.plan, run.state, run.series
     tables, n, longest = series.tables, state.u.size, line.end - state.clock[T]
@@ -223,18 +223,18 @@ def _propose(way: int, i: int, line: Line, run: Run) -> Step:
         tables.bodies.pulled[b] = tables.bodies.acceleration[b] - line.g
     if way == MATRICES:
         propose_by_matrices(n, i, line.slope, state.u, state.v, tables)
-        return Step(way, i, plan.limits.order, tables.step[i], NOTHING, -1)
+        return ProposedStep(way, i, plan.limits.order, tables.step[i], NOTHING, -1)
     state.count[EXPANSIONS] += 1
     if n == 2:
         # The compiler unrolls the loops over two bodies.
         order, h = propose_by_series(2, i, longest, line.slope, run)
     else:
         order, h = propose_by_series(n, i, longest, line.slope, run)
-    return Step(way, i, order, h, NOTHING, -1)
+    return ProposedStep(way, i, order, h, NOTHING, -1)
 
 
 @compiled
-def _until_event(step: Step, run: Run) -> Step:
+def _until_event(step: ProposedStep, run: FastRun) -> ProposedStep:
     """End a step by series where something happens."""
     state, series = run.state, run.series
     what, which, tau = NOTHING, -1, step.h
@@ -242,11 +242,11 @@ def _until_event(step: Step, run: Run) -> Step:
         what, which, tau = first_simple_event(step.order, step.h, run)
     if what != NOTHING:
         end_of_series(step.order, tau, state, series)
-    return Step(UNTIL_EVENT, step.table, step.order, tau, what, which)
+    return ProposedStep(UNTIL_EVENT, step.table, step.order, tau, what, which)
 
 
 @compiled
-def _is_clear(step: Step, line: Line, run: Run) -> bool:
+def _is_clear(step: ProposedStep, line: GroundLine, run: FastRun) -> bool:
     """Whether a step is good and nothing else happens in it.
 
     Extremes inside a step by series are taken; one by matrices may have none.
@@ -292,7 +292,7 @@ def _is_clear(step: Step, line: Line, run: Run) -> bool:
 
 
 @compiled
-def _extremes_inside(step: Step, line: Line, run: Run) -> None:
+def _extremes_inside(step: ProposedStep, line: GroundLine, run: FastRun) -> None:
     """Take the extremes inside a step by series."""
     state, series = run.state, run.series
     order, h = step.order, step.h

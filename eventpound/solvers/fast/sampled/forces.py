@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.elements import pull_per_z
-from eventpound.motion.forcing import next_sample, sample_time
+from eventpound.motion.forcing import CurrentPiece, next_sample, sample_time
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_stepwise
 from eventpound.solvers.fast.links import (
@@ -27,11 +27,11 @@ from eventpound.solvers.fast.links import (
     place,
     tangent,
 )
-from eventpound.solvers.fast.run import Piece, Run
+from eventpound.solvers.fast.run import FastRun
 from eventpound.solvers.fast.sampled.exact import SampleTables, table_of
 
 
-class Line(NamedTuple):
+class GroundLine(NamedTuple):
     """Where the ground is, and where it goes.
 
     end: the sample at which the next step ends at the latest (s), inf where there is none.
@@ -59,23 +59,23 @@ def slope_of(segment: int, dt: float, samples: Floats) -> float:
 
 
 @compiled
-def line_at(segment: int, piece: Piece, t: float) -> Line:
+def line_at(segment: int, piece: CurrentPiece, t: float) -> GroundLine:
     """The line that begins at the sample `segment`, on which t (s) is.
 
     The last line of a record has no next step.
     """
     coefficients, samples = piece.coefficients, piece.samples
     if segment + 2 >= samples.size:
-        return Line(np.inf, 0.0, 0.0, 0.0)
+        return GroundLine(np.inf, 0.0, 0.0, 0.0)
     origin, dt = coefficients[0], coefficients[1]
     since = t - sample_time(origin, dt, segment)
     slope = slope_of(segment, dt, samples)
     g = samples[segment] + slope * since
-    return Line(sample_time(origin, dt, segment + 1), since, g, slope)
+    return GroundLine(sample_time(origin, dt, segment + 1), since, g, slope)
 
 
 @compiled
-def begin(dt: float, run: Run) -> int:
+def begin(dt: float, run: FastRun) -> int:
     """Elongations and absolute accelerations where the bodies are.
 
     Returned is the number of the table for the present tangents of the links and steps of dt (s).
@@ -92,7 +92,7 @@ def begin(dt: float, run: Run) -> int:
 
 
 @compiled
-def accelerations_now(i: int, run: Run) -> None:
+def accelerations_now(i: int, run: FastRun) -> None:
     """Absolute accelerations where the bodies are, after a change of what is linear."""
     state, series = run.state, run.series
     tables = series.tables
@@ -103,7 +103,7 @@ def accelerations_now(i: int, run: Run) -> None:
 
 
 @compiled_stepwise
-def _set_unmoved(run: Run) -> None:
+def _set_unmoved(run: FastRun) -> None:
     """Absolute accelerations at no displacement if every linear link keeps its tangent (m/s²)."""
     plan, state, series = run.plan, run.state, run.series
     links, hysteresis, unmoved = plan.links, plan.hysteresis, series.tables.bodies.unmoved
@@ -130,7 +130,9 @@ def _pull(a: int, force: float, ends: Ints, inverse_mass: Floats, out: Floats) -
 
 
 @compiled_stepwise
-def accelerations(n: int, i: int, x: Floats, u: Floats, v: Floats, out: Floats, run: Run) -> None:
+def accelerations(
+    n: int, i: int, x: Floats, u: Floats, v: Floats, out: Floats, run: FastRun
+) -> None:
     """Absolute accelerations of n bodies at the displacements u and velocities v (m/s²).
 
     x (L,): the elongations there (m). The hysteretic variables of links on curved parts are

@@ -13,13 +13,13 @@ import numpy as np
 
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.links import CORE, SATURATED
-from eventpound.solvers.fast.run import Plan, Run, State
+from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.tolerances import OWN_GAP
 
 
 @compiled
-def set_room(tables: SampleTables, run: Run) -> None:
+def set_room(tables: SampleTables, run: FastRun) -> None:
     """Bounds of all distances: those of the pair (b, c), b < c, of ``u_c - u_b``; (b, b): u_b."""
     plan, state, running = run.plan, run.state, run.running
     room, links, contacts, at = tables.room, plan.links, plan.contacts, running.at
@@ -44,7 +44,7 @@ def set_room(tables: SampleTables, run: Run) -> None:
 
 
 @compiled
-def _room_of_link(a: int, plan: Plan, state: State) -> tuple[float, float, float]:
+def _room_of_link(a: int, plan: FastPlan, state: FastState) -> tuple[float, float, float]:
     """Elongations (m) between which a link keeps branch and part; the direction it must keep."""
     low, high, way = -np.inf, np.inf, 0.0
     if state.branch[a] > 0:
@@ -91,7 +91,7 @@ def _narrow(
 
 
 @compiled
-def stays_in_room(n: int, h: float, state: State, tables: SampleTables) -> bool:
+def stays_in_room(n: int, h: float, state: FastState, tables: SampleTables) -> bool:
     """Whether a step of length h (s) of n bodies stays inside, by the bounds of their motion."""
     bodies, room = tables.bodies, tables.room
     for b in range(n):

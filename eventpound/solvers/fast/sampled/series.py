@@ -23,7 +23,7 @@ from eventpound.solvers.fast.alone import (
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import last_terms, set_weights
-from eventpound.solvers.fast.run import Run, Series, State
+from eventpound.solvers.fast.run import FastRun, FastSeries, FastState
 from eventpound.solvers.fast.search import distance_coefficient
 
 FEWEST = 8
@@ -33,7 +33,9 @@ SHORTEST = 0.05
 
 
 @compiled
-def propose_by_series(n: int, i: int, longest: float, slope: float, run: Run) -> tuple[int, float]:
+def propose_by_series(
+    n: int, i: int, longest: float, slope: float, run: FastRun
+) -> tuple[int, float]:
     """Series for a step of n bodies of at most `longest` (s), its end and its bounds.
 
     `i` is the table that holds K and C. Returned are the order of the series, 0 where
@@ -64,14 +66,14 @@ def propose_by_series(n: int, i: int, longest: float, slope: float, run: Run) ->
 
 
 @compiled
-def end_of_series(order: int, h: float, state: State, series: Series) -> None:
+def end_of_series(order: int, h: float, state: FastState, series: FastSeries) -> None:
     """The motion h (s) after the start of a series, and its bounds until then."""
     for b in range(state.u.size):
         _end_of_body(b, order, h, state, series)
 
 
 @compiled
-def expand_linear(i: int, order: int, slope: float, run: Run) -> None:
+def expand_linear(i: int, order: int, slope: float, run: FastRun) -> None:
     """Series of a step by matrices, whose table is i, for rows between samples."""
     state, series = run.state, run.series
     n = state.u.size
@@ -82,7 +84,7 @@ def expand_linear(i: int, order: int, slope: float, run: Run) -> None:
 
 
 @compiled
-def _start(n: int, run: Run) -> bool:
+def _start(n: int, run: FastRun) -> bool:
     """First terms, and what errors of u and v of each body are to be multiplied by.
 
     Returned is whether a link is on a curved part of its backbone.
@@ -101,7 +103,7 @@ def _start(n: int, run: Run) -> bool:
 
 
 @compiled
-def _linear_part(n: int, i: int, k: int, slope: float, series: Series) -> None:
+def _linear_part(n: int, i: int, k: int, slope: float, series: FastSeries) -> None:
     """What the linear links and the ground add to coefficient k of the relative accelerations."""
     X, tables, first = series.X, series.tables, -slope if k == 1 else 0.0
     for b in range(n):
@@ -113,7 +115,7 @@ def _linear_part(n: int, i: int, k: int, slope: float, series: Series) -> None:
 
 
 @compiled
-def _curved_part(k: int, run: Run) -> None:
+def _curved_part(k: int, run: FastRun) -> None:
     """What the links on curved parts add to it."""
     plan, state, series = run.plan, run.state, run.series
     links, acceleration = plan.links, series.tables.work[0]
@@ -130,7 +132,7 @@ def _curved_part(k: int, run: Run) -> None:
 
 
 @compiled
-def _add_term(n: int, k: int, series: Series) -> None:
+def _add_term(n: int, k: int, series: FastSeries) -> None:
     """Coefficient k + 2 of the displacements, by that of the accelerations."""
     scale = INVERSE[k + 1] * INVERSE[k + 2]
     for b in range(n):
@@ -138,7 +140,7 @@ def _add_term(n: int, k: int, series: Series) -> None:
 
 
 @compiled
-def _end_of_body(b: int, order: int, h: float, state: State, series: Series) -> None:
+def _end_of_body(b: int, order: int, h: float, state: FastState, series: FastSeries) -> None:
     """Where a body is after h (s), and its bounds until then."""
     X, bodies = series.X, series.tables.bodies
     change, rate, acceleration, fastest, bend = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -163,7 +165,7 @@ def _end_of_body(b: int, order: int, h: float, state: State, series: Series) -> 
 
 
 @compiled
-def series_error(order: int, h: float, g: float, series: Series) -> float:
+def series_error(order: int, h: float, g: float, series: FastSeries) -> float:
     """Error of a step in units of its tolerance, by the forces at its end.
 
     `g` is the acceleration of the ground there (m/s²). As
@@ -178,7 +180,7 @@ def series_error(order: int, h: float, g: float, series: Series) -> float:
 
 
 @compiled_apart
-def set_series_jerks(order: int, h: float, slope: float, series: Series) -> None:
+def set_series_jerks(order: int, h: float, slope: float, series: FastSeries) -> None:
     """Rates of the absolute accelerations at both ends of a step (m/s³)."""
     X, bodies = series.X, series.tables.bodies
     for b in range(bodies.jerk.size):

@@ -16,6 +16,7 @@ import math
 from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T
 from eventpound.contact.event_rows import end_cascade
 from eventpound.mechanics.monitored import update_all, update_extreme
+from eventpound.motion.forcing import CurrentPiece
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.links import elongations, gap_of, saturate
 from eventpound.solvers.fast.record import sample_step
@@ -26,16 +27,21 @@ from eventpound.solvers.fast.run import (
     RESTING,
     STALLED,
     STEPS,
-    Piece,
-    Plan,
-    Run,
-    State,
+    FastPlan,
+    FastRun,
+    FastState,
 )
 from eventpound.solvers.fast.sampled.bounds import CLOSING, NOTHING, forces_covered
-from eventpound.solvers.fast.sampled.choice import MATRICES, NO_WAY, Step, clear_step, do_event
+from eventpound.solvers.fast.sampled.choice import (
+    MATRICES,
+    NO_WAY,
+    ProposedStep,
+    clear_step,
+    do_event,
+)
 from eventpound.solvers.fast.sampled.exact import MOST_TURN, propose_by_matrices
 from eventpound.solvers.fast.sampled.forces import (
-    Line,
+    GroundLine,
     accelerations_now,
     base_shear,
     begin,
@@ -50,7 +56,9 @@ from eventpound.tolerances import CASCADE_OVER, SAME_SAMPLE
 
 
 @compiled
-def stretch(n: int, i: int, segment: int, budget: int, until: float, piece: Piece, run: Run) -> int:
+def stretch(
+    n: int, i: int, segment: int, budget: int, until: float, piece: CurrentPiece, run: FastRun
+) -> int:
     """Steps of n bodies by table i from the sample `segment`, no more than `budget`.
 
     Returned is how many were taken, which end at `until` (s) at the latest.
@@ -89,14 +97,14 @@ def stretch(n: int, i: int, segment: int, budget: int, until: float, piece: Piec
 
 
 @compiled
-def _next_output(plan: Plan, state: State) -> float:
+def _next_output(plan: FastPlan, state: FastState) -> float:
     """Time of the next row of the history (s), inf where there is none."""
     i = state.count[OUTPUT]
     return float(plan.output_times[i]) if i < plan.output_times.size else math.inf
 
 
 @compiled
-def _arrive(t: float, since: float, dt: float, run: Run) -> None:
+def _arrive(t: float, since: float, dt: float, run: FastRun) -> None:
     """What goes with the displacements and velocities at t (s)."""
     plan, state, series = run.plan, run.state, run.series
     clock, along = state.clock, series.tables.along
@@ -106,7 +114,7 @@ def _arrive(t: float, since: float, dt: float, run: Run) -> None:
 
 
 @compiled
-def set_gaps(plan: Plan, state: State) -> None:
+def set_gaps(plan: FastPlan, state: FastState) -> None:
     """Gaps and their rates by the displacements and velocities."""
     contacts = plan.contacts
     for j in range(contacts.gap.size):
@@ -114,7 +122,7 @@ def set_gaps(plan: Plan, state: State) -> None:
 
 
 @compiled_apart
-def write_line(i: int, slope: float, t_end: float, piece: Piece, run: Run) -> None:
+def write_line(i: int, slope: float, t_end: float, piece: CurrentPiece, run: FastRun) -> None:
     """Rows of the history before the end of a step by matrices (s)."""
     plan, state = run.plan, run.state
     order = plan.limits.order
@@ -123,7 +131,7 @@ def write_line(i: int, slope: float, t_end: float, piece: Piece, run: Run) -> No
 
 
 @compiled
-def may_go_by_samples(run: Run) -> bool:
+def may_go_by_samples(run: FastRun) -> bool:
     """Whether every body moves freely, and there are few enough of them."""
     plan, state, series = run.plan, run.state, run.series
     if state.count[RESTING] > 0 or plan.limits.ledger or series.tables.turn.shape[1] == 0:
@@ -135,7 +143,7 @@ def may_go_by_samples(run: Run) -> bool:
 
 
 @compiled
-def sample_steps(budget: int, piece_end: float, piece: Piece, run: Run) -> None:
+def sample_steps(budget: int, piece_end: float, piece: CurrentPiece, run: FastRun) -> None:
     """Steps, as far as nothing but what ends a step can happen, and no more than `budget`.
 
     Rows of the history that fall between samples are written on the way, so that
@@ -167,7 +175,7 @@ def sample_steps(budget: int, piece_end: float, piece: Piece, run: Run) -> None:
 
 
 @compiled
-def _is_straight(i: int, run: Run) -> bool:
+def _is_straight(i: int, run: FastRun) -> bool:
     """Whether all links are linear at present and table i is good; saturates links that are due."""
     plan, state, series = run.plan, run.state, run.series
     tables = series.tables
@@ -178,7 +186,9 @@ def _is_straight(i: int, run: Run) -> bool:
 
 
 @compiled
-def _stretch(i: int, segment: int, budget: int, until: float, piece: Piece, run: Run) -> int:
+def _stretch(
+    i: int, segment: int, budget: int, until: float, piece: CurrentPiece, run: FastRun
+) -> int:
     """As `stretch`, whose loops over bodies the compiler unrolls where there are two."""
     state = run.state
     if state.u.size == 2:
@@ -187,7 +197,9 @@ def _stretch(i: int, segment: int, budget: int, until: float, piece: Piece, run:
 
 
 @compiled
-def _take(step: Step, line: Line, t_end: float, piece: Piece, run: Run) -> None:
+def _take(
+    step: ProposedStep, line: GroundLine, t_end: float, piece: CurrentPiece, run: FastRun
+) -> None:
     """Take a step, which ends at t_end (s), and do what happens there."""
     _write_between(step, line, t_end, piece, run)
     _accept(step, t_end, run)
@@ -197,7 +209,9 @@ def _take(step: Step, line: Line, t_end: float, piece: Piece, run: Run) -> None:
 
 
 @compiled
-def _write_between(step: Step, line: Line, t_end: float, piece: Piece, run: Run) -> None:
+def _write_between(
+    step: ProposedStep, line: GroundLine, t_end: float, piece: CurrentPiece, run: FastRun
+) -> None:
     """Rows of the history before the end of a step (s)."""
     plan, state = run.plan, run.state
     count, times = state.count, plan.output_times
@@ -210,7 +224,7 @@ def _write_between(step: Step, line: Line, t_end: float, piece: Piece, run: Run)
 
 
 @compiled
-def _accept(step: Step, t: float, run: Run) -> None:
+def _accept(step: ProposedStep, t: float, run: FastRun) -> None:
     """Make the end of the step, at t (s), the present state, and take it into the extremes."""
     plan, state, series, record = run.plan, run.state, run.series, run.record
     bodies, clock, count = series.tables.bodies, state.clock, state.count
@@ -235,7 +249,7 @@ def _accept(step: Step, t: float, run: Run) -> None:
 
 
 @compiled
-def _take_extremes(t: float, run: Run) -> None:
+def _take_extremes(t: float, run: FastRun) -> None:
     """Take the present state, at t (s), into the extremes."""
     plan, state, series, running = run.plan, run.state, run.series, run.running
     tables, at, acceleration = series.tables, running.at, series.tables.bodies.acceleration

@@ -5,7 +5,7 @@ hysteretic link, or none. That is seen along u: σ is the direction of u, and
 ``ξ = ξ_r + σ (u - u_r) / scale``. It changes from one part of the backbone to another by the
 rules of `eventpound.solvers.fast.links`.
 
-All numbers are in one record, a `Body` (`Series.single`): a function that is given one address,
+All numbers are in one record, a `SingleBody` (`FastSeries.single`): a function given one address,
 not a hundred numbers, costs next to nothing to call. `enter` fills it in from the general
 arrays, `leave` puts back what moves.
 """
@@ -28,13 +28,13 @@ from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import (
     Contacts,
+    FastPlan,
+    FastState,
     Ground,
     Limits,
     Links,
     Oscillator,
-    Plan,
     Single,
-    State,
 )
 from eventpound.tolerances import (
     ACCELERATION,
@@ -49,7 +49,7 @@ ROOM = 48
 """Coefficients there is room for in a series."""
 
 
-class Body(np.record):  # type: ignore[misc]  # final to type checkers only
+class SingleBody(np.record):  # type: ignore[misc]  # final to type checkers only
     """All numbers of a single body: one address to hand on."""
 
     known: bool  # whether the rest is filled in
@@ -140,19 +140,19 @@ class Body(np.record):  # type: ignore[misc]  # final to type checkers only
 
 
 _KINDS: dict[str, Any] = {"float": float, "int": int, "bool": bool, "Floats": (float, ROOM)}
-_FIELDS = [(name, _KINDS[kind]) for name, kind in Body.__annotations__.items()]
-BODY = np.dtype((Body, np.dtype(_FIELDS, align=True)))
-"""Layout of a `Body`, of which an array holds one."""
+_FIELDS = [(name, _KINDS[kind]) for name, kind in SingleBody.__annotations__.items()]
+BODY = np.dtype((SingleBody, np.dtype(_FIELDS, align=True)))
+"""Layout of a `SingleBody`, of which an array holds one."""
 
 
 class SingleRun(NamedTuple):
-    """A run of a single body, lent (`eventpound.numerics.lending`): parts of all that a `Run` is.
+    """A run of a single body, lent (`eventpound.numerics.lending`): parts of a `FastRun`.
 
-    clock, count: those of `State`. springs: elongations among the extremes. times: of output.
-    table: of its backbone. links, contacts, ground, limits, oscillator: those of `Plan`.
+    clock, count: those of `FastState`. springs: elongations among the extremes. times: of output.
+    table: of its backbone. links, contacts, ground, limits, oscillator: those of `FastPlan`.
     """
 
-    body: Body
+    body: SingleBody
     clock: Floats
     count: Ints  # type: ignore[assignment]  # hides the method of tuples
     events: Floats
@@ -170,7 +170,7 @@ class SingleRun(NamedTuple):
 
 
 @compiled
-def place_of(u: float, body: Body) -> float:
+def place_of(u: float, body: SingleBody) -> float:
     """ξ of the hysteretic link at the displacement u (m)."""
     return body.xi_r + body.sigma * (u - body.u_r) * body.per_scale
 
@@ -190,20 +190,20 @@ def spring_state(u: float, run: SingleRun) -> float:
 
 
 @compiled
-def tangent(body: Body) -> float:
+def tangent(body: SingleBody) -> float:
     """Tangent stiffness for each unit of mass (1/s²), where the link is on a line."""
     on_line = body.hysteretic and body.part <= UNLOADING
     return body.stiffness + (body.strength * body.per_scale if on_line else 0.0)
 
 
 @compiled
-def gap_to(way: float, body: Body) -> float:
+def gap_to(way: float, body: SingleBody) -> float:
     """Gap to the barrier in one direction (m)."""
     return body.right if way > 0.0 else body.left
 
 
 @compiled
-def set_tolerance(body: Body) -> None:
+def set_tolerance(body: SingleBody) -> None:
     """Errors that the step from here may leave."""
     body.of_u = body.atol_u + body.rtol * abs(body.u)
     body.of_v = body.atol_v + body.rtol * abs(body.v)
@@ -218,13 +218,13 @@ def look(run: SingleRun) -> None:
 
 
 @compiled
-def absolute_acceleration(u: float, v: float, z: float, body: Body) -> float:
+def absolute_acceleration(u: float, v: float, z: float, body: SingleBody) -> float:
     """Acceleration that the links give the body (m/s²)."""
     return body.pull - body.stiffness * u - body.damping * v - body.strength * z
 
 
 @compiled
-def part_at(xi: float, body: Body) -> int:
+def part_at(xi: float, body: SingleBody) -> int:
     """Part of the backbone that ξ lies on."""
     if xi >= body.saturation:
         return SATURATED
@@ -247,7 +247,7 @@ def turn_round(u: float, run: SingleRun) -> None:
 
 
 @compiled_apart
-def pass_border(u: float, body: Body) -> None:
+def pass_border(u: float, body: SingleBody) -> None:
     """Move a link that has reached the border of its part to the next."""
     part = body.part
     if part == CORE and place_of(u, body) < 0.0:
@@ -260,14 +260,14 @@ def pass_border(u: float, body: Body) -> None:
 
 
 @compiled
-def forget(body: Body) -> None:
+def forget(body: SingleBody) -> None:
     """Leave nothing of the run before."""
     body.known, body.piece_known = False, 0
     body.on_line[0] = body.saturated[0] = 0.0
 
 
 @compiled
-def enter(plan: Plan, state: State, run: SingleRun) -> None:
+def enter(plan: FastPlan, state: FastState, run: SingleRun) -> None:
     """Fill in the constants of a run and what moves, once: from then on it moves here."""
     body, o, contacts = run.body, plan.oscillator, plan.contacts
     set_constants(0, plan, body)
@@ -285,7 +285,7 @@ def enter(plan: Plan, state: State, run: SingleRun) -> None:
 
 
 @compiled
-def set_constants(b: int, plan: Plan, body: Body) -> None:
+def set_constants(b: int, plan: FastPlan, body: SingleBody) -> None:
     """Constants of body b of a scene, without barriers."""
     links, m, h = plan.links, plan.mass[b], -1
     stiffness, damping, pull = 0.0, 0.0, 0.0
@@ -313,7 +313,7 @@ def set_constants(b: int, plan: Plan, body: Body) -> None:
 
 
 @compiled
-def _set_backbone(h: int, plan: Plan, body: Body) -> None:
+def _set_backbone(h: int, plan: FastPlan, body: SingleBody) -> None:
     """What of the hysteretic link h a body wants to know."""
     hysteresis = plan.hysteresis
     force = pull_per_z(hysteresis.link[h], plan.links.law.memory)
@@ -326,7 +326,7 @@ def _set_backbone(h: int, plan: Plan, body: Body) -> None:
 
 
 @compiled
-def _set_limits(b: int, limits: Limits, body: Body) -> None:
+def _set_limits(b: int, limits: Limits, body: SingleBody) -> None:
     """Tolerances of a step, and what is rounding."""
     body.atol_u, body.atol_v = LOCAL_SHARE * limits.atol_u[b], LOCAL_SHARE * limits.atol_v[b]
     body.rtol = LOCAL_SHARE * limits.rtol
@@ -339,7 +339,7 @@ def _set_limits(b: int, limits: Limits, body: Body) -> None:
 
 
 @compiled
-def leave(o: Oscillator, body: Body, state: State) -> None:
+def leave(o: Oscillator, body: SingleBody, state: FastState) -> None:
     """What moves back to where everyone looks for it."""
     state.u[0], state.v[0] = body.u, body.v
     if o.right >= 0:
@@ -353,14 +353,14 @@ def leave(o: Oscillator, body: Body, state: State) -> None:
 
 
 @compiled
-def leave_curve(h: int, body: Body, state: State) -> None:
+def leave_curve(h: int, body: SingleBody, state: FastState) -> None:
     """On which curve the hysteretic link h of a body is, back to where everyone looks for it."""
     state.sigma[h], state.part[h] = body.side * body.sigma, body.part
     state.x_r[h], state.xi_r[h] = body.side * body.u_r, body.xi_r
 
 
 @compiled
-def side_closed(body: Body) -> float:
+def side_closed(body: SingleBody) -> float:
     """1 for the barrier on the right, -1 for that on the left, 0 where both are open."""
     if body.right == 0.0:
         return 1.0
@@ -368,13 +368,13 @@ def side_closed(body: Body) -> float:
 
 
 @compiled
-def acceleration_level(body: Body) -> float:
+def acceleration_level(body: SingleBody) -> float:
     """Rounding of the relative acceleration (m/s²), as the acceleration problem has it."""
     return acceleration_noise(body.a, body.no_acceleration)
 
 
 @compiled
-def set_force(g: float, body: Body) -> None:
+def set_force(g: float, body: SingleBody) -> None:
     """Contact forces (N) under the acceleration g of the ground (m/s²)."""
     side = body.rests_on
     body.right_force = body.mass * (body.a - g) if side > 0.0 else 0.0
@@ -382,7 +382,7 @@ def set_force(g: float, body: Body) -> None:
 
 
 @compiled
-def put_on_barrier(side: float, body: Body) -> None:
+def put_on_barrier(side: float, body: SingleBody) -> None:
     """Make the displacement agree with a gap of zero."""
     if side > 0.0:
         body.u = body.right_gap

@@ -36,18 +36,24 @@ import numpy as np
 from eventpound.contact.cascade import SINCE_IMPACT, T
 from eventpound.mechanics.monitored import update_extreme, update_turning_point
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import ground_acceleration, ground_taylor, next_sample, sample_time
+from eventpound.motion.forcing import (
+    CurrentPiece,
+    ground_acceleration,
+    ground_taylor,
+    next_sample,
+    sample_time,
+)
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
 from eventpound.solvers.fast.extremes import stays_within, turning_times
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
-from eventpound.solvers.fast.run import REST_TERMS, STALLED, STEPS, Piece
+from eventpound.solvers.fast.run import REST_TERMS, STALLED, STEPS
 from eventpound.solvers.fast.sampled.exact import MOST_TURN, put_column
 from eventpound.solvers.fast.search import release_time
 from eventpound.solvers.fast.single.body import (
-    Body,
+    SingleBody,
     SingleRun,
     gap_to,
     look,
@@ -75,10 +81,10 @@ _SAMPLES = int(Family.SAMPLES)
 
 
 @compiled_apart
-def rest_step(stop: float, piece: Piece, run: SingleRun) -> bool:
+def rest_step(stop: float, piece: CurrentPiece, run: SingleRun) -> bool:
     """One step at rest, to `stop` (s) at most; False where the record has no room.
 
-    `Body.released` says then whether the contact force has vanished.
+    `SingleBody.released` says then whether the contact force has vanished.
     """
     body, t, side = run.body, run.clock[T], run.body.rests_on
     if piece.family == _SAMPLES:
@@ -155,7 +161,7 @@ NOT_FREE = -1
 
 
 @compiled
-def swings_freely(body: Body) -> bool:
+def swings_freely(body: SingleBody) -> bool:
     """Whether the body swings as far as it turns or meets a barrier, if the ground stands still."""
     hysteretic = body.hysteretic
     v, a, k = body.v, body.a, tangent(body)
@@ -181,13 +187,13 @@ def swings_freely(body: Body) -> bool:
 
 
 @compiled
-def _way(body: Body) -> float:
+def _way(body: SingleBody) -> float:
     """Direction in which the body moves, or is about to move."""
     return math.copysign(1.0, body.v if body.v != 0.0 else body.a)
 
 
 @compiled_apart
-def swing_freely(stop: float, piece: Piece, run: SingleRun) -> int:
+def swing_freely(stop: float, piece: CurrentPiece, run: SingleRun) -> int:
     """Go to the next turn or barrier, or to `stop` (s); GOING_ON, or why not.
 
     `NOT_FREE` says that the forces do not give the acceleration there, and nothing was done.
@@ -242,7 +248,9 @@ def _fill_table(stiffness: float, damping: float, dt: float, step: Floats) -> No
 
 
 @compiled_deferred_loop
-def sample_steps(budget: int, segment: int, piece_end: float, piece: Piece, run: SingleRun) -> int:
+def sample_steps(
+    budget: int, segment: int, piece_end: float, piece: CurrentPiece, run: SingleRun
+) -> int:
     """Steps from the sample `segment`, where the body is, as far as nothing can happen.
 
     Rows of the history that fall between samples are written on the way, so that

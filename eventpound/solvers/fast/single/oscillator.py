@@ -24,7 +24,13 @@ from eventpound.contact.modes import ACCELERATION, IMPACT, duty, transition_code
 from eventpound.contact.rest import ORDER as MOST_DECIDING
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import decay_time, ground_acceleration, ground_taylor, sample_time
+from eventpound.motion.forcing import (
+    CurrentPiece,
+    decay_time,
+    ground_acceleration,
+    ground_taylor,
+    sample_time,
+)
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.compiled import (
     compiled,
@@ -45,11 +51,10 @@ from eventpound.solvers.fast.run import (
     STALLED,
     STEPS,
     STUCK,
-    Piece,
-    Plan,
-    Record,
+    FastPlan,
+    FastRecord,
+    FastState,
     Single,
-    State,
     piece_of,
 )
 from eventpound.solvers.fast.single.body import (
@@ -88,14 +93,14 @@ def impact_at_barrier(side: float, j: int, run: SingleRun) -> None:
 
 
 @compiled_deferred
-def stays_closed(side: float, piece: Piece, run: SingleRun) -> bool:
+def stays_closed(side: float, piece: CurrentPiece, run: SingleRun) -> bool:
     """Whether a body that stands still at a barrier without a contact force stays there.
 
     Parameters
     ----------
     side : float
         1 for a barrier on the right, -1 for one on the left.
-    piece : Piece
+    piece : CurrentPiece
         The ground motion from now on.
     run : SingleRun
         The run.
@@ -111,7 +116,7 @@ def stays_closed(side: float, piece: Piece, run: SingleRun) -> bool:
 
 
 @compiled
-def settle_single(g: float, piece: Piece, run: SingleRun) -> None:
+def settle_single(g: float, piece: CurrentPiece, run: SingleRun) -> None:
     """Do the duties of the present instant; `g` is the acceleration of the ground (m/s²)."""
     body = run.body
     side = side_closed(body)
@@ -147,7 +152,9 @@ _SAMPLES, _GAUSSIAN, _ZERO = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Fami
 
 
 @compiled_loop
-def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Record) -> int:
+def oscillate(
+    budget: int, plan: FastPlan, state: FastState, single: Single, record: FastRecord
+) -> int:
     """Carry a single body to the end of its run, or as far as steps and room reach.
 
     Parameters

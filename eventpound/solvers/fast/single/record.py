@@ -14,14 +14,14 @@ from eventpound.mechanics.monitored import (
     update_extreme,
     update_turning_point,
 )
-from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import stays_within, turning_times
 from eventpound.solvers.fast.record import takes_rows
-from eventpound.solvers.fast.run import OUTPUT, ROWS, Piece
+from eventpound.solvers.fast.run import OUTPUT, ROWS
 from eventpound.solvers.fast.single.body import (
-    Body,
+    SingleBody,
     SingleRun,
     absolute_acceleration,
     set_force,
@@ -85,7 +85,7 @@ def is_due(t_end: float, run: SingleRun) -> bool:
 
 
 @compiled_apart
-def sample_single(t: float, t_end: float, order: int, piece: Piece, run: SingleRun) -> bool:
+def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: SingleRun) -> bool:
     """History at the output times of a step; False where the record has no room.
 
     `order` is that of the step's series, 0 for a free swing and a rest.
@@ -194,7 +194,7 @@ def take_contact_forces(t: float, run: SingleRun) -> None:
 
 
 @compiled
-def acceleration_coefficient(k: int, body: Body) -> float:
+def acceleration_coefficient(k: int, body: SingleBody) -> float:
     """Coefficient k of the absolute acceleration in a step (m/s^(2+k))."""
     ground = body.ground[k] * (body.odd if k & 1 else body.even)
     return (k + 1) * (k + 2) * body.x[k + 2] + ground

@@ -17,15 +17,20 @@ import math
 import numpy as np
 
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import ground_acceleration, ground_taylor, next_sample, sample_time
+from eventpound.motion.forcing import (
+    CurrentPiece,
+    ground_acceleration,
+    ground_taylor,
+    next_sample,
+    sample_time,
+)
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, only_root
 from eventpound.numerics.power_series import integer_power
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.run import Piece
 from eventpound.solvers.fast.search import stays_above
-from eventpound.solvers.fast.single.body import ROOM, Body, tangent
+from eventpound.solvers.fast.single.body import ROOM, SingleBody, tangent
 from eventpound.tolerances import RETRIED, SAME_SAMPLE
 
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, ROOM)])
@@ -39,7 +44,7 @@ SAFETY = 0.95
 
 
 @compiled
-def linear_series(stiffness: float, most: int, body: Body) -> tuple[int, bool]:
+def linear_series(stiffness: float, most: int, body: SingleBody) -> tuple[int, bool]:
     """Coefficients 3 ... p of a linear oscillator; p, and whether the step is good.
 
     x_1 and x_2 stand. p is even, at most `most`.
@@ -74,7 +79,7 @@ def linear_series(stiffness: float, most: int, body: Body) -> tuple[int, bool]:
 
 
 @compiled_apart
-def curved_series(kappa: float, most: int, body: Body) -> int:
+def curved_series(kappa: float, most: int, body: SingleBody) -> int:
     """The same on a curved part, where ``z' = ξ' (1 - κ P)``, ``P = |z|^n``; z is ``σ y``.
 
     P comes from ``n z' P = z P'``. Each term is written out, for k is a constant.
@@ -96,7 +101,7 @@ def curved_series(kappa: float, most: int, body: Body) -> int:
 
 
 @compiled
-def _term(k: int, kappa: float, over: float, lift: float, most: int, body: Body) -> int:
+def _term(k: int, kappa: float, over: float, lift: float, most: int, body: SingleBody) -> int:
     """P_k, z_{k+1} and x_{k+3}; the order if it is the last one, negative if not small, else 0.
 
     The newest factors come last in every sum, for they are waited for.
@@ -135,7 +140,7 @@ def _term(k: int, kappa: float, over: float, lift: float, most: int, body: Body)
 
 
 @compiled
-def shorter(order: int, body: Body) -> float:
+def shorter(order: int, body: SingleBody) -> float:
     """Length at which the last two terms are within the tolerance (s), at most that of the step."""
     h = body.step
     power = h
@@ -152,7 +157,7 @@ def shorter(order: int, body: Body) -> float:
 
 
 @compiled
-def motion(tau: float, order: int, body: Body) -> tuple[float, float, float]:
+def motion(tau: float, order: int, body: SingleBody) -> tuple[float, float, float]:
     """Change of displacement (m), velocity (m/s) and relative acceleration (m/s²) after tau (s)."""
     change, rate, bend = body.x[order], 0.0, 0.0
     for k in range(order - 1, 0, -1):
@@ -165,7 +170,7 @@ def motion(tau: float, order: int, body: Body) -> tuple[float, float, float]:
 
 
 @compiled
-def swing(tau: float, body: Body) -> tuple[float, float]:
+def swing(tau: float, body: SingleBody) -> tuple[float, float]:
     """Change of displacement (m) and velocity (m/s) after tau (s) of a body that swings freely."""
     k = tangent(body)
     omega = math.sqrt(k)
@@ -179,7 +184,7 @@ _ZERO, _SINUSOIDS, _SAMPLES = int(Family.ZERO), int(Family.SINUSOIDS), int(Famil
 
 
 @compiled_apart
-def know_piece(i: int, piece: Piece, body: Body) -> None:
+def know_piece(i: int, piece: CurrentPiece, body: SingleBody) -> None:
     """Fill g for a piece where it is the same throughout."""
     family, coefficients = piece.family, piece.coefficients
     body.piece_known = i + 1
@@ -200,7 +205,7 @@ def know_piece(i: int, piece: Piece, body: Body) -> None:
 
 
 @compiled
-def pair_at(t: float, piece: Piece, body: Body) -> tuple[float, float]:
+def pair_at(t: float, piece: CurrentPiece, body: SingleBody) -> tuple[float, float]:
     """Acceleration (m/s²) and its rate at t (s), a record's on the line after its `segment`."""
     coefficients, samples, segment = piece.coefficients, piece.samples, body.segment
     if piece.family == _SAMPLES:
@@ -218,20 +223,20 @@ def pair_at(t: float, piece: Piece, body: Body) -> tuple[float, float]:
 
 
 @compiled_apart
-def expand_ground(t: float, order: int, piece: Piece, g: Floats) -> float:
+def expand_ground(t: float, order: int, piece: CurrentPiece, g: Floats) -> float:
     """Fill g at t (s) for the other motions, for which even and odd are 1; the acceleration."""
     ground_taylor(piece, t, order, g)
     return float(g[0])
 
 
 @compiled_apart
-def other_acceleration(t: float, piece: Piece) -> float:
+def other_acceleration(t: float, piece: CurrentPiece) -> float:
     """Acceleration of the other motions (m/s²)."""
     return float(ground_acceleration(piece, t))
 
 
 @compiled
-def sample_after(t: float, piece_end: float, piece: Piece) -> tuple[float, int]:
+def sample_after(t: float, piece_end: float, piece: CurrentPiece) -> tuple[float, int]:
     """Next sample of a record after t (s), or the end of the piece; the sample before."""
     coefficients, samples = piece.coefficients, piece.samples
     stop = next_sample(coefficients, t, piece_end)
@@ -243,7 +248,7 @@ def sample_after(t: float, piece_end: float, piece: Piece) -> tuple[float, int]:
 
 
 @compiled
-def first_turn(order: int, first: int, h: float, body: Body, work: Floats) -> float:
+def first_turn(order: int, first: int, h: float, body: SingleBody, work: Floats) -> float:
     """Time in (0, h] at which the velocity changes its sign, or inf.
 
     x[first] is the lowest coefficient, from 1 on, that differs from zero.
@@ -263,7 +268,7 @@ def first_turn(order: int, first: int, h: float, body: Body, work: Floats) -> fl
 
 @compiled_apart
 def _located_turn(
-    sign: float, degree: int, first: int, h: float, body: Body, work: Floats
+    sign: float, degree: int, first: int, h: float, body: SingleBody, work: Floats
 ) -> float:
     c, swing = body.work[:], 0.0
     for k in range(degree, -1, -1):
@@ -277,7 +282,7 @@ def _located_turn(
 
 @compiled
 def first_reached(
-    distance: float, sign: float, order: int, h: float, body: Body, work: Floats
+    distance: float, sign: float, order: int, h: float, body: SingleBody, work: Floats
 ) -> float:
     """Time in (0, h] at which the motion has gone `distance` (m) in the direction `sign`, or inf.
 
@@ -305,7 +310,7 @@ def first_reached(
 
 
 @compiled
-def _put_distance(distance: float, sign: float, order: int, body: Body) -> None:
+def _put_distance(distance: float, sign: float, order: int, body: SingleBody) -> None:
     """The distance (m) still to go in the direction `sign`, a polynomial, into `work`."""
     body.work[0] = distance
     for k in range(1, order + 1):
@@ -313,7 +318,7 @@ def _put_distance(distance: float, sign: float, order: int, body: Body) -> None:
 
 
 @compiled_apart
-def crossing(distance: float, sign: float, order: int, h: float, body: Body) -> float:
+def crossing(distance: float, sign: float, order: int, h: float, body: SingleBody) -> float:
     """The same where the motion goes one way throughout, and further than that within h."""
     _put_distance(distance, sign, order, body)
     return min(only_root(body.work[:], order + 1, h), h)

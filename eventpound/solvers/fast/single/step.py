@@ -13,6 +13,7 @@ import numpy as np
 from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T, end_flight
 from eventpound.contact.event_rows import list_all
 from eventpound.contact.impacts import FULL
+from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.arrays import Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import stays_within
@@ -30,10 +31,9 @@ from eventpound.solvers.fast.run import (
     STALLED,
     STEPS,
     STUCK,
-    Piece,
 )
 from eventpound.solvers.fast.single.body import (
-    Body,
+    SingleBody,
     SingleRun,
     acceleration_level,
     gap_to,
@@ -92,7 +92,7 @@ def expand_step(a_g: float, run: SingleRun) -> tuple[int, int, float]:
     a_g : float
         Acceleration of the ground (m/s²).
     run : SingleRun
-        The run; the longest step is `Body.step`, and a linear body may have `MORE_TERMS` more
+        The run; the longest step is `SingleBody.step`, and a linear body may have `MORE_TERMS` more
         than its order.
 
     Returns
@@ -123,7 +123,7 @@ def expand_step(a_g: float, run: SingleRun) -> tuple[int, int, float]:
 
 
 @compiled_apart
-def _leading(order: int, level: float, body: Body) -> int:
+def _leading(order: int, level: float, body: SingleBody) -> int:
     """First coefficient that differs from rounding, of a body that all but stands still.
 
     One that leaves a barrier from rest has those before made zero.
@@ -144,7 +144,7 @@ def _leading(order: int, level: float, body: Body) -> int:
 
 
 @compiled
-def expected_length(a_g: float, body: Body) -> float:
+def expected_length(a_g: float, body: SingleBody) -> float:
     """Time in which the body is sure to have turned or met a barrier, were its pull constant (s).
 
     A shorter step takes fewer terms. One whose link all but stands still does not end
@@ -164,7 +164,7 @@ def expected_length(a_g: float, body: Body) -> float:
 def first_event(h: float, order: int, first: int, run: SingleRun) -> tuple[float, int, float]:
     """Length of a step of at most h (s), how it ends, and when the body turns (s), or inf.
 
-    The motion at its end stands in `Body` then: `change`, `rate` and `bend`.
+    The motion at its end stands in `SingleBody` then: `change`, `rate` and `bend`.
     """
     body = run.body
     reach = h * (abs(body.v) + h * abs(body.x[2]))
@@ -259,12 +259,12 @@ def _first_unordered(h: float, reach: float, order: int, run: SingleRun) -> tupl
 
 @compiled
 def propose(
-    wanted: float, stop: float, piece: Piece, run: SingleRun
+    wanted: float, stop: float, piece: CurrentPiece, run: SingleRun
 ) -> tuple[int, float, float, int, bool]:
     """A step of at most `wanted` (s), to `stop` (s) at most, that holds at its end.
 
     Returned are the order of its series, 0 where no step holds, its length (s), its end (s), how
-    it ends, and whether the body turns there. The motion at its end stands in `Body`.
+    it ends, and whether the body turns there. The motion at its end stands in `SingleBody`.
     """
     body, t = run.body, run.clock[T]
     a_g = body.even
@@ -292,7 +292,7 @@ def propose(
 
 
 @compiled
-def take_step(wanted: float, stop: float, piece: Piece, run: SingleRun) -> int:
+def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SingleRun) -> int:
     """One step of at most `wanted` (s); GOING_ON, or why not."""
     body, t = run.body, run.clock[T]
     order, tau, t_end, event, turned = propose(wanted, stop, piece, run)
@@ -333,7 +333,7 @@ def pass_time(tau: float, t_end: float, run: SingleRun) -> None:
 
 
 @compiled
-def fits(tau: float, order: int, body: Body) -> bool:
+def fits(tau: float, order: int, body: SingleBody) -> bool:
     """Whether the equations of motion hold at the end of a step, of length tau (s).
 
     A defect that grows like τ^(p-1) leaves τ/p of itself in v and τ²/p² in u.
@@ -343,7 +343,7 @@ def fits(tau: float, order: int, body: Body) -> bool:
 
 
 @compiled_apart
-def _shortened(tau: float, order: int, body: Body) -> float:
+def _shortened(tau: float, order: int, body: SingleBody) -> float:
     """Factor by which a step is to be shortened that does not fit."""
     defect = abs(body.next_a - body.next_g - body.bend) * tau
     error = max(defect / (body.of_v * order), defect * tau / (body.of_u * order))
@@ -351,7 +351,7 @@ def _shortened(tau: float, order: int, body: Body) -> float:
 
 
 @compiled
-def audit(count: Ints, body: Body) -> int:
+def audit(count: Ints, body: SingleBody) -> int:
     """Invariants after every step: finite numbers, no penetration, progress."""
     if not (abs(body.u) < np.inf and abs(body.v) < np.inf):
         return NOT_FINITE
@@ -361,7 +361,7 @@ def audit(count: Ints, body: Body) -> int:
 
 
 @compiled
-def look_at_ground(t: float, piece: Piece, body: Body) -> None:
+def look_at_ground(t: float, piece: CurrentPiece, body: SingleBody) -> None:
     """What the ground is at the end of a step, at t (s)."""
     if body.pair:
         body.next_g, body.next_odd = pair_at(t, piece, body)
@@ -370,7 +370,7 @@ def look_at_ground(t: float, piece: Piece, body: Body) -> None:
 
 
 @compiled
-def _move(body: Body) -> None:
+def _move(body: SingleBody) -> None:
     """Make the end of the step the present state.
 
     A gap that is small is a variable of its own.
