@@ -51,6 +51,7 @@ if TYPE_CHECKING:
         Support,
     )
     from eventpound.scene.modes import rayleigh, stiffness_proportional
+    from eventpound.study.design import design_numbers
     from eventpound.study.many import simulate_many
     from eventpound.study.study import Study, StudyTable
     from eventpound.study.suite import simulate_suite
@@ -88,6 +89,7 @@ __all__ = [
     "Support",
     "TypeC",
     "compare",
+    "design_numbers",
     "load_case",
     "plot",
     "rayleigh",
@@ -125,6 +127,7 @@ _HOME = {
     "simulate": "accuracy.judged",
     "BatchResponse": "batch_response",
     "simulate_many": "study.many",
+    "design_numbers": "study.design",
     "Study": "study.study",
     "StudyTable": "study.study",
     "simulate_suite": "study.suite",

@@ -39,7 +39,7 @@ from eventpound.numerics.compiling import watched
 from eventpound.warned import show_warning
 
 _TASKS = {
-    "one case": ("new", "check", "run", "plot", "floor_spectrum", "report"),
+    "one case": ("new", "check", "run", "design", "plot", "floor_spectrum", "report"),
     "many runs": ("study",),
     "records and motions": ("records",),
     "how sure, how fast": ("verify", "compare", "problems"),

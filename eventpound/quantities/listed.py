@@ -119,13 +119,13 @@ LISTED: tuple[Quantity, ...] = (
              column("largest_gap")),
     Quantity(_CONTACT + "seat_used", "seat width used", D.LENGTH,
              "Largest opening beyond the gap at rest: what a seat loses.", v.seat_used),
-    Quantity(_CONTACT + "avoiding_gap", "gap without contact", D.LENGTH,
+    Quantity(_CONTACT + "avoiding_gap", "separation needed, no other impacts", D.LENGTH,
              "Smallest gap that would have avoided contact, where no other contact closes either.",
              v.avoiding_gap, TakenFrom.APART, tabled=False),
-    Quantity(_CONTACT + "avoiding_gap_alone", "gap without contact here", D.LENGTH,
+    Quantity(_CONTACT + "avoiding_gap_alone", "separation needed", D.LENGTH,
              "Smallest gap that would have avoided this contact, where the others stay as they "
              "are and strike.", v.avoiding_gap_alone, TakenFrom.APART_ALONE, tabled=False),
-    *(Quantity(_CONTACT + rule, f"peaks without contact, {called}", D.LENGTH,
+    *(Quantity(_CONTACT + rule, f"separation by {called} of peaks", D.LENGTH,
                f"Distance by {text} of the peaks of its two ends without contact{where}.",
                value, TakenFrom.FREE, only, tabled=False)
       for rule, called, text, where, value, only in (

@@ -1,0 +1,134 @@
+"""Give the design numbers: separation, seat, impulse, ductility, drift.
+
+Of a run, a suite or a study. For each contact: the least gap at which nothing touches there,
+where the others stay as they are and strike ("separation needed"), and where they do not; what
+codes combine from the peaks without contact; opening, seat width used, impulse. Then springs,
+storeys and bodies. Of a suite the 50 and 84 % fractiles over the records, the largest, and its
+record. What each row is: the page "design" of the documentation.
+
+Files, in CASE/results/design: design.csv, a row a demand (of a study: for each combination of
+its axes), which a spreadsheet opens; beside it all that the runs gave. Further runs are made
+for it: without contact, and one for each contact. A suite or a study that was stopped goes on.
+
+Examples
+--------
+  eventpound design bridge
+  eventpound design bridge --suite "records/*.AT2"
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
+from eventpound.cli.progress import Counter, Forecast, Progress, StudyProgress, Watch
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from eventpound.case import Case
+
+_FOLDER = "design"
+
+
+def add(commands: Commands) -> None:
+    """Add the command to the parser."""
+    design = add_command(commands, "design", _design, __doc__)
+    design.case()
+    design.option("--suite FILES", 'other records: "folder/*.AT2", in quotes, or a list of files')
+    design.out("where table and runs go (CASE/results/design)")
+
+
+def _design(options: Options) -> int:
+    from eventpound.case.loading import read_document
+    from eventpound.results.tables import table_csv
+    from eventpound.study.design import DESIGN_TABLE
+
+    out = options.out or options.results / _FOLDER
+    if "study" in read_document(options.case)[0]:
+        options.refuse(["--suite"], "is for a case without a [study]")
+        table = _of_study(options, out)
+        print(f"design    {len(table)} rows: each demand at each combination of the axes")
+    else:
+        case = arguments.load(options.case, options.suite)
+        arguments.check_solver_of(case)
+        table = _of_run(case, out) if case.suite is None else _of_suite(case, out)
+        print("\n".join(_lines(case, table)))
+    arguments.write(out, {DESIGN_TABLE: table_csv(table)})
+    return 0
+
+
+def _of_run(case: Case, out: Path) -> pd.DataFrame:
+    """Run a case, and what its design numbers need."""
+    from eventpound import results
+    from eventpound.simulation import simulate
+    from eventpound.study.design import asking, design_of_run
+
+    results.check_writable(out)
+    forecast = Forecast(case.run.start_time, case.run.start_time + case.run.duration)
+    with Progress(case, forecast) as progress, Watch(None, progress) as watch:
+        response = simulate(asking(case), progress=watch)
+        progress.begins("again, without contacts")
+        table = design_of_run(response)
+    results.write(response, out, case=case)
+    return table
+
+
+def _of_suite(case: Case, out: Path) -> pd.DataFrame:
+    """Run a case under every record, and what its design numbers need."""
+    from eventpound.study import suite
+    from eventpound.study.design import asking, design_of_suite
+    from eventpound.study.table import SUITE_TABLE, read_table
+
+    plan, case = suite.plan_of(asking(case), None, None, None, intensities=True)
+    with _going_on(), Counter("records") as progress:
+        suite.run_suite(plan, case, out, progress)
+    table = read_table(out, SUITE_TABLE)
+    for record, why in zip(table["record"], table["failed"], strict=True):
+        if why:
+            print(f"eventpound: {record} failed, and is left out: {why}", file=sys.stderr)
+    return design_of_suite(table, case)
+
+
+def _of_study(options: Options, out: Path) -> pd.DataFrame:
+    """Make the runs of a study, and what its design numbers need."""
+    from eventpound.study.design import design_of_study, plan_asking
+    from eventpound.study.engines.local import engine_of
+    from eventpound.study.running import run_study
+    from eventpound.study.table import read_table
+
+    plan = plan_asking(arguments.load_study(options.case).study)
+    with _going_on(), StudyProgress(plan.size) as progress:
+        run_study(plan, out, engine_of(plan.solver, None), progress)
+    table = read_table(out)
+    if failed := int((~table["success"]).sum()):
+        print(
+            f"eventpound: {failed} of {len(table)} runs failed, and are left out", file=sys.stderr
+        )
+    return design_of_study(table, plan)
+
+
+@contextmanager
+def _going_on() -> Iterator[None]:
+    """Say of runs that are stopped that they are kept."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        print("\neventpound: the same command goes on with the rest", file=sys.stderr)
+        raise
+
+
+def _lines(case: Case, table: pd.DataFrame) -> Iterator[str]:
+    """What an engineer asks, to be read: a table a part, in units of the trade."""
+    from eventpound.report.design_tables import design_cells
+    from eventpound.results.cells import lines_of
+
+    if case.suite is not None and case.suite.options.scaling:
+        yield f"scaling   {case.suite.options.scaling}"
+    for heading, cells in design_cells(case.scene, table):
+        yield from ("", heading, *lines_of(cells))

@@ -1,0 +1,219 @@
+"""Design numbers: separation, seat width, impulse, ductility, drift; over records with fractiles.
+
+Of a run each demand is one number. Over many records it has fractiles, the values that so many per
+cent of them do not exceed (linear between the demands in their order), and the largest with its
+record. A record under which nothing touches counts with its zero impulse. Of a study all this
+stands for each combination of its axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eventpound.case.case import Case, Stated
+from eventpound.given import Count, checked
+from eventpound.quantities.lookup import Named, all_of, unstated
+from eventpound.quantities.owners import owners
+from eventpound.response import Response
+from eventpound.scene.scene import Scene
+from eventpound.simulation import simulate
+from eventpound.study.engines.local import engine_of
+from eventpound.study.plan import RECORD, Plan
+from eventpound.study.records import FAILED
+from eventpound.study.running import run_study
+from eventpound.study.study import Study
+from eventpound.study.suite import plan_of, run_suite
+from eventpound.study.table import SUCCESS, SUITE_TABLE, read_table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+DESIGN_TABLE = "design.csv"
+"""What the table is called."""
+FRACTILES = (50.0, 84.0)
+"""Per cent."""
+_CONTACT, _SPRING = "contacts.<contact>.", "springs.<spring>."
+_IMPACTS, _FORCE = _CONTACT + "impacts", _CONTACT + "max_force"
+DEMANDS = (
+    *(_CONTACT + word for word in ("avoiding_gap_alone", "avoiding_gap", "absolute_sum", "srss")),
+    *(_CONTACT + word for word in ("cqc", "largest_gap", "seat_used", "impacts")),
+    *(_CONTACT + word for word in ("impacts_faster", "fastest_closing", "max_impulse")),
+    *(_CONTACT + "estimated_force", _FORCE, _CONTACT + "largest_overlap"),
+    *(_SPRING + word for word in ("ductility", "abs_max_elongation", "residual_elongation")),
+    *(_SPRING + "drift_ratio", "max_drift", "max_drift_ratio", "base_shear.abs_max"),
+    *("peaks.<body>.abs_max", "residual.<body>", "acceleration.<body>.abs_max"),
+)
+"""Quantities that are design numbers, by paths, in their order: those of one owner together."""
+
+
+def demands_of(scene: Scene, stated: Stated) -> list[Named]:
+    """Design numbers that a scene has: of each contact, each spring, the whole and each body."""
+    found = [
+        named
+        for named in all_of(scene)
+        if named.quantity.path in DEMANDS and not unstated(named.name, stated)
+        # Without a law of its own a contact has a force at rest only.
+        if named.quantity.path != _FORCE or scene.contacts[named.i].law is not None
+    ]
+    kinds = list(dict.fromkeys(path.partition(".")[0] for path in DEMANDS))
+
+    def place(named: Named) -> tuple[int, int, int]:
+        path = named.quantity.path
+        whole = not named.quantity.owner
+        kind = len(kinds) if whole else kinds.index(path.partition(".")[0])
+        return kind, named.i, DEMANDS.index(path)
+
+    return sorted(found, key=place)
+
+
+def asking(case: Case) -> Case:
+    """The case with its design numbers among the quantities that ``[run]`` asks for."""
+    stated = case.run.stated
+    names = [named.name for named in demands_of(case.scene, stated)]
+    stated = replace(stated, quantities=tuple(dict.fromkeys((*stated.quantities, *names))))
+    return replace(case, run=replace(case.run, stated=stated))
+
+
+def plan_asking(plan: Plan) -> Plan:
+    """The plan of a study that tabulates design numbers, too."""
+    firsts = [base.at_first().case for base in plan.bases]
+    names = [n.name for case in firsts for n in demands_of(case.scene, case.run.stated)]
+    return replace(plan, quantities=tuple(dict.fromkeys((*plan.quantities, *names))))
+
+
+@checked
+def design_numbers(
+    case: Case | Scene | Study,
+    *,
+    folder: str | Path | None = None,
+    workers: Count | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> pd.DataFrame:
+    """Give the design numbers of a run, a suite or a study, as ``eventpound design`` does.
+
+    Parameters
+    ----------
+    case : Case, Scene or Study
+        A case of a suite has a row a demand, with fractiles over its records.
+    folder : path, optional
+        Where the table of all runs of a suite or a study is kept, which goes on there where it was.
+    workers : int, optional
+        Threads of the fast solver; as many as there are cores.
+    progress : callable, optional
+        Called with the numbers of runs done and of all, of a suite or a study.
+
+    Returns
+    -------
+    DataFrame
+        Columns as in ``design.csv`` (page "design" of the docs), SI.
+
+    Raises
+    ------
+    InputError
+        Where the case cannot be run.
+    ComputationError
+        Where a single run fails; a failed record of a suite is left out.
+    """
+    if isinstance(case, Scene):
+        response = simulate(case)
+        return design_of_run(response)
+    if isinstance(case, Case) and case.suite is None:
+        return design_of_run(simulate(asking(case)))
+    with TemporaryDirectory() as scratch:
+        out = Path(scratch if folder is None else folder)
+        if isinstance(case, Case):
+            plan, own = plan_of(asking(case), None, None, None, intensities=True)
+            run_suite(plan, own, out, progress, workers=workers)
+            return design_of_suite(read_table(out, SUITE_TABLE), own)
+        plan = plan_asking(case.plan)
+
+        def told(done: int, before: int) -> None:
+            if progress is not None:
+                progress(before + done, plan.size)
+
+        run_study(plan, out, engine_of(plan.solver, None), told)
+        return design_of_study(read_table(out), plan)
+
+
+def design_of_run(response: Response) -> pd.DataFrame:
+    """Design numbers of a run: a row a demand, with its ``value``."""
+    import pandas as pd
+
+    demands = demands_of(response.scene, response.stated)
+    values = [response.quantity(named.name) for named in demands]
+    rows = [
+        {**_words(response.scene, named), "value": np.nan if value is None else abs(value)}
+        for named, value in zip(demands, values, strict=True)
+    ]
+    return pd.DataFrame(rows)
+
+
+def design_of_suite(table: pd.DataFrame, case: Case) -> pd.DataFrame:
+    """Design numbers of a suite, from its table: fractiles over the records that did not fail."""
+    import pandas as pd
+
+    done = table[table[FAILED] == ""]
+    demands = demands_of(case.scene, case.run.stated)
+    return _tabled(pd.DataFrame(list(_rows(done, case.scene, demands))))
+
+
+def design_of_study(table: pd.DataFrame, plan: Plan) -> pd.DataFrame:
+    """Design numbers of a study, from its table, for each combination of its axes."""
+    import pandas as pd
+
+    axes = [name for name in plan.columns if name != RECORD]
+    demands: dict[str, tuple[Scene, Named]] = {}
+    for base in plan.bases:
+        case = base.at_first().case
+        for named in demands_of(case.scene, case.run.stated):
+            demands.setdefault(named.name, (case.scene, named))
+    done, rows = table[table[SUCCESS]], []
+    groups = done.groupby(axes, sort=False, dropna=False) if axes else [((), done)]
+    for values, group in groups:
+        at = dict(zip(axes, values, strict=True))
+        for scene, named in demands.values():
+            rows += [at | row for row in _rows(group, scene, [named])]
+    return _tabled(pd.DataFrame(rows))
+
+
+def _tabled(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with whole numbers of records, where there are some."""
+    return table.astype({"pounding": "Int64"}) if "pounding" in table else table
+
+
+def _rows(
+    done: pd.DataFrame, scene: Scene, demands: Sequence[Named]
+) -> Iterator[dict[str, object]]:
+    """A row a demand: over how many records, its fractiles, the largest and its record."""
+    for named in demands:
+        if named.name not in done:
+            continue
+        sizes = done[named.name].abs().dropna()
+        row = {**_words(scene, named), "records": len(sizes)}
+        if named.quantity.owner == "contact":
+            struck = done[_IMPACTS.replace("<contact>", str(row["of"]))]
+            row["pounding"] = int((struck > 0).sum())
+        if len(sizes):
+            parts = np.percentile(sizes, FRACTILES).tolist()
+            row |= {f"{p:g} %": value for p, value in zip(FRACTILES, parts, strict=True)}
+            row |= {"largest": float(sizes.max())}
+            if RECORD in done:
+                row["under"] = done[RECORD][sizes.idxmax()]
+        yield row
+
+
+def _words(scene: Scene, named: Named) -> dict[str, object]:
+    """What a demand is, of what, and its unit."""
+    quantity = named.quantity
+    return {
+        "quantity": named.name,
+        "of": owners(scene, quantity.owner)[named.i],
+        "demand": quantity.called,
+        "unit": quantity.dimension.unit,
+    }

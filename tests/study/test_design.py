@@ -1,0 +1,170 @@
+"""Design numbers: those of single runs, with fractiles over records, as tables and as text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from eventpound import InputError, Study, design_numbers, load_case, simulate
+from eventpound.case.member import member_case
+from eventpound.cli import main
+from eventpound.quantities.lookup import find
+from eventpound.results.trade import three_digits
+from eventpound.study.design import DEMANDS
+from tests.quantities.test_separation import row
+from tests.study.test_suite import CASE, time_series
+
+RECORDS = {"a": 0.02, "b": 0.2, "c": 0.5, "d": 0.8}
+JOINT = "contacts.joint."
+
+
+@pytest.fixture
+def suite(tmp_path: Path) -> Path:
+    for name, amplitude in RECORDS.items():
+        (tmp_path / f"{name}.txt").write_text(time_series(amplitude))
+    (tmp_path / "e.txt").write_text("0.1\nNaN\n")
+    text = 'suite = "?.txt"\nunits = "g"\ntime_step = "0.02 s"'
+    (tmp_path / "case.toml").write_text(CASE.format(text))
+    return tmp_path
+
+
+def by_name(table: pd.DataFrame) -> pd.DataFrame:
+    return table.set_index("quantity")
+
+
+def test_fractiles_are_of_the_runs_of_each_record(suite: Path) -> None:
+    case = load_case(suite)
+    table = by_name(design_numbers(case))
+    assert case.suite is not None
+    members = [m for m in case.suite.members(case.directory) if m.name != "e.txt"]
+    for name in ("avoiding_gap", "max_impulse", "seat_used"):
+        values = []
+        for member in members:
+            one = simulate(member_case(case, member, member.read()), "fast", error_estimate=False)
+            values.append(one.quantity(JOINT + name) or 0.0)
+        found = table.loc[JOINT + name]
+        assert found["records"] == len(values) == 4
+        middle = sorted(values)[1:3]
+        assert found["50 %"] == pytest.approx(sum(middle) / 2.0, rel=1e-9)
+        # At 0.84 of three distances between four values.
+        third, last = sorted(values)[2:]
+        assert found["84 %"] == pytest.approx(third + 0.52 * (last - third), rel=1e-9)
+        assert found["largest"] == pytest.approx(last, rel=1e-9)
+        assert found["under"] == members[int(np.argmax(values))].name
+
+
+def test_records_that_pound_are_counted_and_others_have_no_impulse(suite: Path) -> None:
+    table = by_name(design_numbers(load_case(suite)))
+    assert table.loc[JOINT + "max_impulse", "pounding"] == 3
+    assert pd.isna(table.loc["peaks.deck.abs_max", "pounding"])
+    (suite / "case.toml").write_text((suite / "case.toml").read_text().replace("1.27 cm", "5 m"))
+    table = by_name(design_numbers(load_case(suite)))
+    found = table.loc[JOINT + "max_impulse"]
+    assert [found[key] for key in ("pounding", "50 %", "largest")] == [0, 0.0, 0.0]
+
+
+def test_a_run_has_a_value_of_each_demand(suite: Path) -> None:
+    text = (suite / "case.toml").read_text().replace("suite = ", "file = ").replace("?", "d")
+    (suite / "case.toml").write_text(text + '[run]\ncontact_stiffness = "2e9 N/m"\n')
+    case = load_case(suite)
+    response = simulate(case, error_estimate=False)
+    table = design_numbers(case)
+    values = [abs(response.quantity(name) or 0.0) for name in table["quantity"]]
+    assert table["value"].tolist() == pytest.approx(values, rel=1e-12)
+    assert JOINT + "estimated_force" in set(table["quantity"])
+
+
+def test_a_scene_of_two_bodies_has_what_codes_combine() -> None:
+    table = by_name(design_numbers(row()))
+    assert table.loc[JOINT + "srss", "unit"] == "m"
+    assert table.loc[JOINT + "absolute_sum", "value"] > table.loc[JOINT + "srss", "value"]
+    assert "contacts.wall.srss" not in table.index
+
+
+def test_a_study_has_them_at_each_of_its_points(suite: Path) -> None:
+    gaps = [0.01, 0.02]
+    study = Study(load_case(suite), {"contact.joint.gap": gaps})
+    table = design_numbers(study)
+    alone = by_name(design_numbers(load_case(suite)))
+    for gap in gaps:
+        own = by_name(table[table["contact.joint.gap"] == gap])
+        # What avoids contact is the same for each gap.
+        needed = own.loc[JOINT + "avoiding_gap", "84 %"]
+        assert needed == pytest.approx(alone.loc[JOINT + "avoiding_gap", "84 %"], rel=1e-4)
+    impulses = table[table["quantity"] == JOINT + "max_impulse"]["largest"]
+    assert impulses.iloc[0] != impulses.iloc[1]
+
+
+def test_what_is_no_case_is_refused() -> None:
+    with pytest.raises(InputError, match="design_numbers: case"):
+        design_numbers("bridge")  # type: ignore[arg-type]
+
+
+def test_every_demand_is_a_quantity() -> None:
+    from eventpound.quantities.listed import LISTED
+
+    assert set(DEMANDS) <= {quantity.path for quantity in LISTED}
+    assert find(row(), JOINT + "avoiding_gap_alone") is not None
+
+
+def test_the_command_prints_tables_and_writes_one(
+    suite: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["design", str(suite)]) == 0
+    out, err = capsys.readouterr()
+    assert "Contact joint: deck | barrier, gap 12.7 mm, struck under 3 of 4 records" in out
+    assert "e.txt failed, and is left out" in err
+    file = suite / "results" / "design" / "design.csv"
+    written = file.read_bytes()
+    table = by_name(pd.read_csv(file))
+    shown = three_digits(1e3 * table.loc[JOINT + "seat_used", "84 %"])
+    (line,) = [line for line in out.splitlines() if line.startswith("seat width used, mm")]
+    assert line.split()[-3:] == [shown, shown_largest(table), "d.txt"]
+    # Given again, nothing is run, and nothing changes.
+    assert main(["design", str(suite)]) == 0
+    assert file.read_bytes() == written
+
+
+def shown_largest(table: pd.DataFrame) -> str:
+    return three_digits(1e3 * table.loc[JOINT + "seat_used", "largest"])
+
+
+def test_the_command_takes_a_run_and_a_study(
+    suite: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["design", str(suite), "--suite", str(suite / "d.txt")]) == 0
+    text = (suite / "case.toml").read_text()
+    one = text.replace("suite = ", "file = ").replace("?", "d")
+    (suite / "case.toml").write_text(one)
+    assert main(["design", str(suite)]) == 0
+    assert "seat width used, mm" in capsys.readouterr().out
+    axis = '[study]\n[[study.axis]]\nkey = "contact.joint.gap"\nvalues = ["1 cm", "2 cm"]\n'
+    (suite / "case.toml").write_text(one + axis)
+    assert main(["design", str(suite)]) == 0
+    table = pd.read_csv(suite / "results" / "design" / "design.csv")
+    assert sorted(set(table["contact.joint.gap"])) == [0.01, 0.02]
+    assert main(["design", str(suite), "--suite", "d.txt"]) == 2
+    assert "--suite: is for a case without a [study]" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (1e-13, "0"),
+        (0.012345, "0.0123"),
+        (0.99961, "1.00"),
+        (9.996, "10.0"),
+        (49.0, "49"),
+        (79.94, "79.9"),
+        (-1234.5, "-1230"),
+        (999.6, "1000"),
+        (14237.0, "14200"),
+        (float("nan"), "–"),
+    ],
+)
+def test_three_digits_without_an_exponent(value: float, text: str) -> None:
+    assert three_digits(value) == text
