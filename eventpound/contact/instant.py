@@ -36,11 +36,12 @@ def close_together(at: Instant) -> None:
     """Close every gap that would close within the present instant.
 
     That is a part of the scene's own time, and in a cascade, whose intervals may be shorter than
-    any such part, a part of the time since the last impact.
+    any such part, a part of the time since the last impact. A gap that stands still and that
+    rounding has put below zero is closed, too: bodies that fill the space between two walls.
     """
     instant = min(TOGETHER * at.time, OF_A_FLIGHT * at.clock[SINCE_IMPACT])
     for j in range(at.gap.size):
-        closes = at.gap_rate[j] < 0.0 and not at.resting[j]
+        closes = at.gap_rate[j] <= 0.0 and not at.resting[j]
         if closes and at.gap[j] <= -instant * at.gap_rate[j]:
             at.gap[j] = 0.0
 

@@ -6,10 +6,15 @@ import math
 from itertools import pairwise
 
 import numpy as np
+import pytest
 
+from eventpound.motion.delayed import travelled
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.simulation import simulate
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import Task
+from tests.solvers.random_scenes import driven_scene
 
 
 def _row(middle: dict[str, tuple[float, float]]) -> Scene:
@@ -66,3 +71,22 @@ def test_a_locked_row_is_pressed_as_little_as_may_be(solver: str) -> None:
     np.testing.assert_allclose(force[:, :-1] - force[:, 1:], wanted, atol=1e-12 * size)
     np.testing.assert_allclose(force.min(axis=1), 0.0, atol=1e-14 * size)
     assert force.min() >= 0.0
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_bodies_that_fill_a_moving_support_go_with_it(solver: str, rtol: float) -> None:
+    # Three bodies without play between two walls of one support, which a spring and a force press
+    # now to one side and now to the other: when one wall lets go the other has to take over.
+    scene, end = driven_scene(200179)
+    times = np.linspace(0.0, end, 201)
+    recording = solver_named(solver).solve(Task(scene, 0.0, end, rtol, output_times=times))
+    motion = scene.supports[0].motion
+    assert motion is not None
+    t = recording.history.t
+    wall = travelled(motion, t)[0] - travelled(scene.motion, t)[0]
+    wall -= wall[0]
+    size = np.abs(wall).max()
+    assert size > 0.5
+    assert np.abs(recording.history.u - wall[:, None]).max() < 10.0 * rtol * size
+    assert recording.smallest_gap.min() > -1e-12 * size
+    assert recording.largest_gap.max() < 1e-12 * size
