@@ -124,6 +124,7 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
             NUMBER: "pga psa psa_period psa_damping",
             FLAG: "reverse",
             "BITLMOC": "source",
+            "BILMOC": "psa_at",
         },
     ),
     "read_record": (
@@ -167,6 +168,10 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
             "BITLMO": "progress keep",
             FLAG: "intensities",
         },
+    ),
+    "design_numbers": (
+        {"case": SCENE},
+        {THINGS: "case", "BILMOC": "folder", NUMBER: "workers", "BITLMO": "progress"},
     ),
     "Study": (
         {"case": SCENE, "axes": {"contact.joint.gap": [0.01]}},

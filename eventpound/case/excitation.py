@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,10 +19,13 @@ from eventpound.motion import (
     GroundMotion,
     Harmonic,
     NoMotion,
+    Record,
     RecordData,
     Ricker,
 )
 from eventpound.motion.pulse_fit import PULSES
+from eventpound.scene.periods import period_called
+from eventpound.scene.scene import Scene
 from eventpound.units import Dimension
 
 _FORMULAS: Mapping[str, Callable[..., GroundMotion]] = {**PULSES, "harmonic": Harmonic}
@@ -82,6 +85,25 @@ def read_excitation(table: Table, directory: Path) -> Excitation | None:
         for problem in error.problems:
             table.report("", problem)
     table.close()
+    return excitation
+
+
+def for_scene(excitation: Excitation, scene: Scene) -> Excitation:
+    """The same with records scaled at the period of a scene, where the case says so.
+
+    Raises
+    ------
+    InputError
+        Where the scene has no such period.
+    """
+    suite, motion = excitation.suite, excitation.motion
+    if suite is not None and suite.options.size.psa_at:
+        size = suite.options.size.for_scene(scene)
+        own = replace(suite, options=replace(suite.options, size=size))
+        return replace(excitation, suite=own)
+    if isinstance(motion, Record) and motion.psa_at:
+        period = period_called(scene, motion.psa_at)
+        return replace(excitation, motion=motion.like(psa_period=period))
     return excitation
 
 

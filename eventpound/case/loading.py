@@ -14,7 +14,7 @@ from eventpound.case.building import with_buildings
 from eventpound.case.case import Case
 from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts
-from eventpound.case.excitation import Excitation, bare_accelerations, read_excitation
+from eventpound.case.excitation import Excitation, bare_accelerations, for_scene, read_excitation
 from eventpound.case.figure import Figure, read_figure
 from eventpound.case.options import (
     EQUILIBRIUM,
@@ -175,6 +175,8 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         scene, warnings, carried, driven = _read_scene(
             top, excitation, problems, needed, file.parent
         )
+    if excitation is not None and not problems:
+        excitation, scene = _at_own_period(top, excitation, scene, pi is not None)
     suite = _suite(top, excitation, driven, file.parent)
     sound = not problems and excitation is not None
     if run_table.has("start") and sound:
@@ -213,6 +215,22 @@ def _excitation(top: Table, directory: Path) -> Excitation | None:
         top.report("[excitation]", 'missing; accepted: a table with kind ("none" for free motion)')
         return None
     return read_excitation(top.table("excitation"), directory)
+
+
+def _at_own_period(
+    top: Table, excitation: Excitation, scene: Scene, of_pi: bool
+) -> tuple[Excitation, Scene]:
+    """Motion and scene with records scaled at a period of the scene, if the case says so."""
+    try:
+        own = for_scene(excitation, scene)
+        if own is not excitation and of_pi:
+            raise InputError(
+                "found a period of the scene, which [pi] makes; accepted: a period (s)"
+            )
+    except InputError as error:
+        top.table("excitation").report("psa_period", str(error))
+        return excitation, scene
+    return own, scene if own is excitation else replace(scene, motion=own.motion)
 
 
 def _suite(

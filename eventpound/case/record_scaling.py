@@ -3,7 +3,7 @@
 scale = 1.5                                              # factor on the samples
 pga = "0.4 g"                                            # their peak
 psa = "0.5 g"                                            # PSA at one period
-psa_period = "1.2 s"
+psa_period = "1.2 s"                                     # or "T1", "T1 of deck": of the scene
 psa_damping = "5 %"
 target = "code.csv"                                      # least squares to a spectrum
 target_periods = ["0.2 s", "2 s"]
@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,8 @@ from eventpound.input_files import read_columns, to_numbers
 from eventpound.motion import Record, RecordData
 from eventpound.motion.scaling import DAMPING, Target, factor_to
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.periods import T_1, period_called
+from eventpound.scene.scene import Scene
 from eventpound.units import STANDARD_GRAVITY, Dimension, quantity
 
 _WAYS = ("scale", "pga", "psa", "target")
@@ -50,6 +52,8 @@ class RecordScaling:
         Pseudo-acceleration (m/s^2) that they are scaled to at a period (s).
     psa_damping : float or None
         Its ratio of critical damping, where it is not 5 %.
+    psa_at : str
+        What the case calls the period, where it is one of the scene's (`for_scene`).
     target : Target or None
         Spectrum that they are brought close to.
     """
@@ -60,15 +64,31 @@ class RecordScaling:
     psa_period: float | None = None
     psa_damping: float | None = None
     target: Target | None = None
+    psa_at: str = ""
+
+    def for_scene(self, scene: Scene) -> RecordScaling:
+        """The same with the period of a scene, where the case leaves it to that.
+
+        Raises
+        ------
+        InputError
+            Where the scene has no such period.
+        """
+        if not self.psa_at:
+            return self
+        return replace(self, psa_period=period_called(scene, self.psa_at))
 
     def of(self, data: RecordData, reverse: bool, start: float) -> Record:
         """The ground motion of a file that was read."""
         scale = 1.0 if self.scale is None else self.scale
         if self.target is not None:
             scale = factor_to(self.target, data.acceleration, data.time_step)
-        by_psa = {"psa": self.psa, "psa_period": self.psa_period, "psa_damping": self.psa_damping}
         return Record(
-            data.acceleration, data.time_step, scale, self.pga, reverse, start, data, **by_psa
+            *(data.acceleration, data.time_step, scale, self.pga, reverse, start, data),
+            psa=self.psa,
+            psa_period=self.psa_period,
+            psa_damping=self.psa_damping,
+            psa_at=self.psa_at,
         )
 
     @property
@@ -77,10 +97,9 @@ class RecordScaling:
         if self.pga is not None:
             return f"every record to a PGA of {self.pga:.6g} m/s^2 (pga in [excitation])"
         if self.psa is not None:
-            return (
-                f"every record to a PSA of {self.psa:.6g} m/s^2 at {self.psa_period:g} s "
-                "(psa in [excitation])"
-            )
+            size = f"{self.psa:.6g} m/s^2 ({self.psa / STANDARD_GRAVITY:.4g} g)"
+            at = f"{self.psa_at} = " * bool(self.psa_at) + f"{self.psa_period:.4g} s"
+            return f"every record to a PSA of {size} at {at} (psa in [excitation])"
         if self.target is not None:
             between = f"{self.target.low:g} and {self.target.high:g} s"
             return f"every record to the target between {between} (target in [excitation])"
@@ -99,6 +118,7 @@ class RecordScaling:
         given = {"pga": self.pga, "psa": self.psa, "psa_period": self.psa_period}
         found: dict[str, object] = {key: v for key, v in given.items() if v is not None}
         if self.psa_period is not None:
+            found["psa_period"] = self.psa_at or self.psa_period
             found["psa_damping"] = self.psa_damping or DAMPING
         by_size = self.pga is not None or self.psa is not None
         return found if by_size else {"scale": self.scale or 1.0, **found}
@@ -119,14 +139,16 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
     RecordScaling or None
         None where there are problems; they are noted.
     """
-    dimensions = (
-        ("scale", Dimension.NUMBER),
-        ("pga", Dimension.ACCELERATION),
-        ("psa", Dimension.ACCELERATION),
-        ("psa_period", Dimension.TIME),
-    )
+    dimensions = {
+        "scale": Dimension.NUMBER,
+        "pga": Dimension.ACCELERATION,
+        "psa": Dimension.ACCELERATION,
+    }
     positive = "a positive number; reverse turns a motion round"
-    scale, pga, psa, period = (table.optional_quantity(*each, positive) for each in dimensions)
+    scale, pga, psa = (table.optional_quantity(*each, positive) for each in dimensions.items())
+    at = _own_period(table)
+    # The scene is not known yet; `for_scene` puts its period in this place.
+    period = 1.0 if at else table.optional_quantity("psa_period", Dimension.TIME, positive)
     damping = table.optional_quantity("psa_damping", Dimension.NUMBER)
     if damping is not None:
         table.require("psa_damping", not (damping < 0.0 or damping >= 1.0), "0 to below 1")
@@ -135,12 +157,19 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
         table.reject(given[-1] if given[-1] != "pga" else "scale", f"one of {', '.join(_WAYS)}")
         return None
     if psa is not None and period is None:
-        table.report_missing("psa_period", "the period of psa, as T_1 of `eventpound check`")
+        table.report_missing("psa_period", 'the period of psa (s), or "T1" for that of the scene')
         return None
     target = _read_target(table, directory)
     numbers = [value for value in (scale, pga, psa, period, damping) if value is not None]
     wrong = any(math.isnan(n) or n < 0.0 for n in numbers) or (table.has("target") and not target)
-    return None if wrong else RecordScaling(scale, pga, psa, period, damping, target)
+    return None if wrong else RecordScaling(scale, pga, psa, period, damping, target, at)
+
+
+def _own_period(table: Table) -> str:
+    """What ``psa_period`` calls a period of the scene; empty where it does not."""
+    given = table.data.get("psa_period")
+    named = isinstance(given, str) and (given == T_1 or given.startswith(f"{T_1} of "))
+    return str(given) if named and table.has("psa_period") else ""
 
 
 def _read_target(table: Table, directory: Path) -> Target | None:

@@ -120,7 +120,11 @@ def _own_motion(table: Table, directory: Path, in_suite: bool) -> Excitation | N
         if own.has(key) and not in_suite:
             own.reject(key, "file: records of a support go with those of a suite in [excitation]")
             return None
-    return read_excitation(own, directory)
+    excitation = read_excitation(own, directory)
+    if excitation is not None and isinstance(excitation.table.get("psa_period"), str):
+        own.reject("psa_period", "a period (s)")
+        return None
+    return excitation
 
 
 def _read_forces(

@@ -60,6 +60,9 @@ class Record:
         Its period (s).
     psa_damping : float, optional
         Its ratio of critical damping; 5 % without it.
+    psa_at : str
+        What a case calls its period where that is the scene's own, ``"T1"``: a study takes that
+        of each variant. Empty where `psa_period` is a number.
 
     Raises
     ------
@@ -78,6 +81,7 @@ class Record:
     psa: Annotated[OptionalNumber, Dimension.ACCELERATION] = default(None)
     psa_period: Annotated[OptionalNumber, Dimension.TIME] = default(None)
     psa_damping: Annotated[OptionalNumber, Dimension.NUMBER] = default(None)
+    psa_at: str = ""
 
     def __post_init__(self) -> None:
         try:

@@ -7,7 +7,8 @@ with the smaller of its stiffnesses that are not zero.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,10 +18,13 @@ from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
 from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Linear, Series, Spring
+from eventpound.scene.structures import joined_groups
 
 # Squared frequencies this far below the largest are rigid motions: rounding
 # leaves some N eps of the largest, and a structure spans far fewer decades.
 RIGID = 1.0e-12
+T_1 = "T1"
+"""What a case calls the longest initial period of its scene."""
 
 
 def longest_period(scene: Scene, yielded: bool = False) -> float | None:
@@ -56,6 +60,57 @@ def longest_period(scene: Scene, yielded: bool = False) -> float | None:
     squares = np.linalg.eigvalsh(matrix)
     elastic = squares[squares > RIGID * squares[-1]]
     return 2.0 * math.pi / math.sqrt(elastic[0]) if elastic.size else None
+
+
+def period_called(scene: Scene, word: str) -> float:
+    """Initial period that a case names, ``"T1"`` or ``"T1 of BODY"``.
+
+    That of the whole scene is its longest. Of a body it is the longest of all that swings with
+    it: bodies that springs join to it, but for springs between two that the ground holds by
+    others, as segments of a bridge; the far ends of these are kept still.
+
+    Parameters
+    ----------
+    scene : Scene
+        Without problems.
+    word : str
+        As a case has it.
+
+    Returns
+    -------
+    float
+        In s.
+
+    Raises
+    ------
+    InputError
+        Where there is no such body, or no spring resists.
+    """
+    scene = grounded(scene)
+    names = [body.name for body in scene.bodies]
+    group, name = set(names), word.removeprefix(T_1).removeprefix(" of ")
+    if name:
+        if name not in names:
+            raise InputError(f"found {word!r}; accepted: {T_1}, or {T_1} of {', '.join(names)}")
+        held = {end for s in scene.springs if GROUND in s.between for end in s.between}
+        joints = [s.between for s in scene.springs if not held.issuperset(s.between)]
+        group = next(set(each) for each in joined_groups(names, joints) if name in each)
+    springs = [
+        replace(s, between=ends)
+        for s in scene.springs
+        if set(ends := _kept_still(s.between, group)) != {GROUND}
+    ]
+    bodies = tuple(body for body in scene.bodies if body.name in group)
+    period = longest_period(Scene(bodies, tuple(springs)))
+    if period is None:
+        raise InputError(f"found {word!r}, but no spring resists; accepted: a period (s)")
+    return period
+
+
+def _kept_still(between: tuple[str, str], group: Container[str]) -> tuple[str, str]:
+    """Ends of a spring, with the ground in the place of bodies that are not of a group."""
+    first, second = (end if end in group else GROUND for end in between)
+    return first, second
 
 
 def joined(bodies: Sequence[str], links: Iterable[tuple[tuple[str, str], float]]) -> Floats:

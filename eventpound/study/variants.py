@@ -23,12 +23,15 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
 from eventpound.scene.check import check_scene
 from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.periods import period_called
 from eventpound.scene.pi_columns import ScaleColumns, numbers_with_terms, scale_columns
 from eventpound.scene.pi_terms import of_all
 from eventpound.scene.scene import Scene
 from eventpound.study.axes import PI, values_of_rows
 from eventpound.study.plan import Base
 
+PSA_PERIOD = "excitation.psa_period"
+"""Key of the period at which a record is scaled."""
 _MOST_CHECKED = 1000
 _MOST_SHOWN = 12
 """Keys that a message lists, at most."""
@@ -139,7 +142,23 @@ def rows_with(base: Base, values: Mapping[str, Floats], at: range) -> Rows:
     numbers = dict(direct)
     for key, column in found.items():
         numbers[key] = np.broadcast_to(np.asarray(column, float), (len(at),)).copy()
-    return Rows(base, values, at, numbers)
+    return Rows(base, values, at, numbers | _own_periods(scene, numbers, len(at)))
+
+
+def _own_periods(scene: Scene, numbers: Mapping[str, Floats], count: int) -> dict[str, Floats]:
+    """Periods (s) at which a record is scaled, where they are those of each variant itself."""
+    motion, places = scene.motion, places_of(scene)
+    moving = {places[key]: column for key, column in numbers.items() if key in places}
+    moving = {place: v for place, v in moving.items() if place.kind in ("body", "spring")}
+    named = isinstance(motion, Record) and motion.psa_at
+    if not (named and moving) or PSA_PERIOD in numbers:
+        return {}
+    first, which = distinct(list(moving.values()), count)
+    found = [
+        period_called(with_values(scene, {p: float(v[i]) for p, v in moving.items()}), named)
+        for i in first.tolist()
+    ]
+    return {PSA_PERIOD: np.array(found)[which]}
 
 
 def complete(rows: Rows) -> Rows:
