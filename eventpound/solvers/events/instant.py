@@ -84,7 +84,7 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     clock, count = state.clock, state.count
     t = clock[T]
     stop = next_corner(piece, t, piece.stop)
-    forcing = forcing_now(piece, t)
+    forcing = lend(forcing_now(piece, t))
     series = local_series(run, forcing, mode, stop - t)
     if not series.finite:
         return NOT_FINITE
@@ -176,7 +176,7 @@ def proceed(
         return look_again(run, mode, piece, dense)
     if wanted == TAKE:
         t = dense.end
-        take(run.y[: mode.system.size], t, mode, forcing_now(piece, t), run.state)
+        take(run.y[: mode.system.size], t, mode, lend(forcing_now(piece, t)), run.state)
         return OVER
     make_ready(run, mode, piece)
     if wanted == LAST:
@@ -206,7 +206,7 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
             if run.laws.contact.size > 0:
                 turn_elements(run.laws, at)
             if any_may_rest(at):
-                ended = decide_rests(state.z, forcing_now(piece, clock[T]), at)
+                ended = decide_rests(state.z, lend(forcing_now(piece, clock[T])), at)
                 if ended != DONE:
                     return ended
             count[PHASE] = ARRIVAL

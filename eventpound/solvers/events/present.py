@@ -20,6 +20,7 @@ from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
+from eventpound.numerics.lending import lend
 from eventpound.solvers.events.recorder import WRITTEN, write_row
 from eventpound.solvers.events.run import (
     Dynamics,
@@ -131,7 +132,7 @@ def make_ready(run: Run, mode: Dynamics, piece: CurrentPiece) -> None:
     """
     system, bodies, state = mode.system, mode.bodies, run.state
     rate = run.rate[: system.size]
-    forcing = forcing_now(piece, state.clock[T])
+    forcing = lend(forcing_now(piece, state.clock[T]))
     y = packed(state, system, bodies)
     copy_numbers(y, run.y)
     copy_numbers(tolerances_of_state(run.rules, system, bodies), run.atol)

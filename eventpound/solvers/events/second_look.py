@@ -98,7 +98,8 @@ def look_again(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> i
     """
     rules, state, record = run.rules, run.state, run.record
     origin = state.clock[T]
-    forcing, looks, watched = forcing_now(piece, origin), run.looks, mode.watched
+    forcing = lend(forcing_now(piece, origin))
+    looks, watched = run.looks, mode.watched
     low, high = dense.start, dense.start
     while high < dense.end:
         low, high = high, dense.end

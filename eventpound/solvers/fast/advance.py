@@ -73,7 +73,7 @@ def carry_on(budget: int, run: FastRun) -> int:
         if not has_room(run):
             return FULL
         if ground.family[count[PIECE]] == LOADED and count[STEPS] > 0:
-            _put_supports(piece_of(count[PIECE], ground), run)
+            _put_supports(lend(piece_of(count[PIECE], ground)), run)
         if clock[T] >= end or count[DUE] == 1:
             ended = _settle_instant(run)
             if ended != DONE or clock[T] >= end:
@@ -145,10 +145,10 @@ def _settle_instant(run: FastRun) -> int:
     t, order = state.clock[T], plan.limits.order
     while count[DUE] == 1 and ground.ends[count[PIECE]] <= t:
         count[PIECE] += 1
-    piece = piece_of(count[PIECE], ground)
+    piece = lend(piece_of(count[PIECE], ground))
     g = ground_acceleration(piece, t)
     if count[DUE] == 1:
-        forcing = Forcing(piece.family, piece.coefficients, piece.samples, t)
+        forcing = lend(Forcing(piece.family, piece.coefficients, piece.samples, t))
         at = lend(instant_of(run))
         if lacks_branch(at):
             look_apart(0.0, order, g, run)

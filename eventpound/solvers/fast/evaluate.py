@@ -8,6 +8,7 @@ from eventpound.contact.cascade import T
 from eventpound.mechanics.clusters import is_support
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.expansion import change_at
 from eventpound.solvers.fast.links import (
@@ -104,7 +105,7 @@ def _add_loads(t: float, run: FastRun) -> None:
 
     The accelerations of supports are put into `a`.
     """
-    piece = piece_of(run.state.count[PIECE], run.plan.ground)
+    piece = lend(piece_of(run.state.count[PIECE], run.plan.ground))
     add_body_loads(piece, t, run.seen.body_force, run.seen.a)
 
 
