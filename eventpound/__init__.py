@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from eventpound.scene.modes import rayleigh, stiffness_proportional
     from eventpound.study.design import design_numbers
     from eventpound.study.many import simulate_many
+    from eventpound.study.sensitivities import sensitivities
     from eventpound.study.study import Study, StudyTable
     from eventpound.study.suite import simulate_suite
 
@@ -94,6 +95,7 @@ __all__ = [
     "plot",
     "rayleigh",
     "read_record",
+    "sensitivities",
     "simulate",
     "simulate_many",
     "simulate_suite",
@@ -127,6 +129,7 @@ _HOME = {
     "simulate": "accuracy.judged",
     "BatchResponse": "batch_response",
     "simulate_many": "study.many",
+    "sensitivities": "study.sensitivities",
     "design_numbers": "study.design",
     "Study": "study.study",
     "StudyTable": "study.study",

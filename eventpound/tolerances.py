@@ -177,6 +177,9 @@ LEDGER_WEIGHT = 1e-6
 """Factor of the rows of the ledger in the scene's own scales, those of the momentum being 1."""
 
 # Lengths of steps.
+DIFFERENCE_STEP = 1e-5
+"""Part of a number by which it is varied for a derivative: through dozens of impacts a larger step
+misses by its square, a smaller one by what is left of the tolerance."""
 FIRST_STEP = 1e-3
 """Part of T that a first step may take."""
 FIRST_TRIAL = 1e-6

@@ -9,6 +9,10 @@ The fast solver makes its runs in this process, on all cores; another solver in
 processes of its own, one run at a time each. With --scheduler or --workers a Dask
 cluster makes them: one that runs already, or one on this machine for this study.
 
+--sensitivities, of any case: how quantities follow its numbers, one at a time. Each number is
+varied by 1e-5 of itself; derivatives have an error, and a note where there is none because an
+impact comes or goes. Files: sensitivities.csv, sensitivities.png (per cent for one per cent).
+
 With --spectrum or --fragility no runs are made: the finished table is taken.
 
 --spectrum, of a study in Π-terms, which holds for every amplitude and period of its pulse:
@@ -25,6 +29,7 @@ the documentation.
 Examples
 --------
   eventpound study cases/figure-05
+  eventpound study cases/bridge-el-centro --sensitivities --of contacts.joint.max_impulse
   eventpound study cases/figure-05 --spectrum --amplitude "0.4 g" --period "0.8 s"
   eventpound study ida --fragility --measure excitation.psa \
       --demand peaks.deck.abs_max --limit "5 cm"
@@ -36,16 +41,18 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from eventpound.cli import arguments, finished
 from eventpound.cli.arguments import Commands, Options, add_command
-from eventpound.cli.progress import StudyProgress
+from eventpound.cli.progress import Counter, StudyProgress
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
+    from eventpound.case import Case
     from eventpound.study.engines.base import Engine
 
+_SENSITIVITIES = "--sensitivities --of --to --out --no-figures" + arguments.PAPER
 _RUNS = "--out --no-figures --processes --workers --scheduler"
 
 
@@ -59,6 +66,11 @@ def add(commands: Commands) -> None:
     study.option("--processes N", "N processes of this machine", arguments.count_argument)
     study.option("--workers N", "N Dask workers on this machine", arguments.count_argument)
     study.option("--scheduler ADDRESS", "a Dask scheduler, tcp://HOST:8786")
+    study.group("what a quantity depends on")
+    study.option("--sensitivities", "write and draw it")
+    several: dict[str, Any] = {"action": "append", "default": []}
+    study.option("--of QUANTITY", "by name or path (peaks); may be repeated", **several)
+    study.option("--to NUMBER", "by its key (every number); may be repeated", **several)
     finished.add(study)
 
 
@@ -71,8 +83,12 @@ def _study(options: Options) -> int:
     elif options.fragility:
         _of_finished(options, "--fragility", finished.FRAGILITY, "--measure --demand --limit")
         arguments.write(out, finished.fit_fragility(options, out))
+    elif options.sensitivities:
+        _of_finished(options, "--sensitivities", _SENSITIVITIES, "")
+        arguments.write(out, _sensitivities(options, _scene_of(options.case)))
     else:
-        options.refuse_others(_RUNS, "is not for making runs, but for --spectrum or --fragility")
+        others = "--sensitivities, --spectrum or --fragility"
+        options.refuse_others(_RUNS, f"is not for making runs, but for {others}")
         _make_runs(options, out)
     return 0
 
@@ -83,6 +99,42 @@ def _of_finished(options: Options, name: str, accepted: str, needed: str) -> Non
     missing = [word for word in needed.split() if not getattr(options, word.strip("-"))]
     if missing:
         raise InputError(f"{name}: needs {', '.join(missing)}, too")
+
+
+def _scene_of(path: Path) -> Case:
+    """The case as it is, without what its [study] varies."""
+    from eventpound.case.loading import read_document
+
+    if "study" not in read_document(path)[0]:
+        return arguments.load(path)
+    bases = arguments.load_study(path).study.bases
+    if len(bases) > 1 or bases[0].records:
+        raise InputError("--sensitivities: is of one scene, and this [study] has several")
+    return bases[0].case
+
+
+def _sensitivities(options: Options, case: Case) -> dict[str, bytes]:
+    """Compute, print and draw them; the files."""
+    from eventpound.results.cells import Cells, lines_of
+    from eventpound.results.tables import table_csv
+    from eventpound.study.sensitivities import PEAKS, sensitivities
+
+    with Counter("runs") as progress:
+        table = sensitivities(case, of=options.of or PEAKS, to=options.to, progress=progress)
+    for name, part in table.groupby("quantity", sort=False):
+        shown = zip(part["to"], part["elasticity"], part["note"], strict=True)
+        rows = tuple((to, "" if note else f"{size:+.4f}", note) for to, size, note in shown)
+        print("\n".join(lines_of(Cells((str(name), "% for 1 %", ""), rows, (True, False, True)))))
+    files = {"sensitivities.csv": table_csv(table)}
+    if options.no_figures:
+        return files
+    from eventpound.report.style import on_paper
+    from eventpound.report.tornado import tornado_figure
+
+    figure = tornado_figure(table, case.title)
+    return files | on_paper(
+        {} if figure is None else {"sensitivities.png": figure}, options.paper()
+    )
 
 
 def _make_runs(options: Options, out: Path) -> None:
