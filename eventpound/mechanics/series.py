@@ -205,8 +205,9 @@ def motion_series(
     for k in range(order):
         _set_forces(k, Y, system, terms, speed_noise, force)
         if forcing.family == LOADED:
-            taken[k] = system.own_mass * driven[k] - force - pushed[k]
-            force += pushed[k]
+            for c in range(force.size):
+                taken[k, c] = system.own_mass[c] * driven[k, c] - force[c] - pushed[k, c]
+                force[c] += pushed[k, c]
         for c in range(system.mass.size):
             Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
             free = driven[k, c] if is_support(c, system.mass) else force[c] / system.mass[c]
@@ -218,7 +219,8 @@ def motion_series(
             _add_ledger(k, system, Y, ground, terms.x_rate, out)
             if forcing.family == LOADED:
                 _add_work(k, system, forcing, Y, pushed, taken)
-            out /= k + 1
+            for i in range(out.size):
+                out[i] /= k + 1
     return Y
 
 
