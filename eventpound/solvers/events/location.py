@@ -12,7 +12,8 @@ is known by coefficients: the gaps of a local series).
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -115,7 +116,8 @@ def first_below(sought: Sought, end: float, step: DenseStep) -> float:
         clear = not below and (short or min(c) > 0.05 * (max(c) - min(c)) - noise)
         if not (clear or below) and a.rate < 0.0 < b.rate:
             bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
-            lowest = _sample(_turning_point(bracket, 2.0 * EPS * b.tau, sought, step), sought, step)
+            tau = turning_point(_rate_at, (sought, step), bracket, 2.0 * EPS * b.tau)
+            lowest = _sample(tau, sought, step)
             if lowest.value < -noise:
                 return _falling_root(a, lowest, sought, step)
             clear = True
@@ -159,7 +161,7 @@ class Bracket(NamedTuple):
 
 
 @scalar_kernel
-def next_inside(bracket: Bracket) -> float:
+def _next_inside(bracket: Bracket) -> float:
     """Where the chord of a bracket vanishes; its middle where rounding puts that outside."""
     a, at_a, b, at_b = bracket
     x = b - at_b * (b - a) / (at_b - at_a)
@@ -167,7 +169,7 @@ def next_inside(bracket: Bracket) -> float:
 
 
 @scalar_kernel
-def narrowed(bracket: Bracket, x: float, at_x: float) -> Bracket:
+def _narrowed(bracket: Bracket, x: float, at_x: float) -> Bracket:
     """The bracket with a rate known inside it, by Anderson and Björck's rule.
 
     The end that stays has its rate scaled down, so that the next chord comes from its side
@@ -181,15 +183,25 @@ def narrowed(bracket: Bracket, x: float, at_x: float) -> Bracket:
 
 
 @kernel
-def _turning_point(bracket: Bracket, tolerance: float, sought: Sought, step: DenseStep) -> float:
-    """Time inside a bracket at which the rate of a quantity vanishes (s)."""
+def turning_point(
+    rate_at: Callable[[float, Any], float], of: Any, bracket: Bracket, tolerance: float
+) -> float:
+    """Time inside a bracket at which a rate vanishes, to a tolerance (s).
+
+    `rate_at` tells it at a time (s), from what it is the rate `of`.
+    """
     for _ in range(MOST_ITERATIONS):
-        x = next_inside(bracket)
-        rate = _sample(x, sought, step).rate
+        x = _next_inside(bracket)
+        rate = rate_at(x, of)
         if rate == 0.0 or abs(x - bracket.b) <= tolerance:
             return x
-        bracket = narrowed(bracket, x, rate)
+        bracket = _narrowed(bracket, x, rate)
     return bracket.b
+
+
+@kernel
+def _rate_at(tau: float, of: tuple[Sought, DenseStep]) -> float:
+    return _sample(tau, of[0], of[1]).rate
 
 
 @kernel
@@ -382,6 +394,6 @@ def _take_turn(
     """Take the turning point between two samples, if any, into the extremes."""
     if a.rate * b.rate < 0.0:
         bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
-        tau = _turning_point(bracket, 4.0 * EPS * step.dense.end, sought, step)
+        tau = turning_point(_rate_at, (sought, step), bracket, 4.0 * EPS * step.dense.end)
         value = _sample(tau, sought, step).value
         update_turning_point(sought.index, value, step.forcing.start + tau, near, running)
