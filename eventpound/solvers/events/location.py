@@ -17,6 +17,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from eventpound.contact.kinks import passes_kink
+from eventpound.contact.modes import force_vanishes
 from eventpound.mechanics.monitored import Running, motion_of, update_turning_point
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools
@@ -25,7 +27,7 @@ from eventpound.numerics.hermite import cubic_bernstein
 from eventpound.solvers.events.dense import DenseStep, look
 from eventpound.solvers.events.event_bounds import Found, Watched
 from eventpound.solvers.events.run import Happened, Rules
-from eventpound.tolerances import EPS, LENGTH, VANISHED_WITHIN
+from eventpound.tolerances import EPS, LENGTH
 
 DEPTH = 12
 """Halvings after which a stretch without a change of sign counts as clear."""
@@ -288,9 +290,7 @@ def anything(happened: Happened) -> bool:
 def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happened) -> None:
     """What happens in the instant in which a contact force vanishes.
 
-    Forces that vanish together do so within rounding of each other; one that dies away is
-    small, but does not vanish. Of links that pass their kink in this instant, what follows
-    is told by the other branch.
+    Of links that pass their kink in it, what follows is told by the other branch.
     """
     released = False
     for j in range(happened.released.size):
@@ -298,16 +298,14 @@ def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happe
     if not released:
         return
     for j in range(happened.released.size):
-        force, rate = abs(seen.contact_force[0, j]), abs(seen.contact_force[1, j])
-        falls = force <= rate * (VANISHED_WITHIN * rules.instant)
-        if watched.unlocked[j] and force <= watched.force_noise and falls:
+        force, rate = seen.contact_force[0, j], seen.contact_force[1, j]
+        if watched.unlocked[j] and force_vanishes(force, rate, watched.force_noise, rules.time):
             happened.released[j] = True
     for a in range(happened.kinked.size):
         x, x_rate = seen.elongation[0, a], seen.elongation[1, a]
-        reach = LENGTH * rules.length + rules.instant * abs(x_rate)
-        falls = x_rate < 0.0 and x - watched.kink_low[a] <= reach
-        rises = x_rate > 0.0 and watched.kink_high[a] - x <= reach
-        if falls or rises:
+        length, time = rules.length, rules.time
+        falls = passes_kink(x - watched.kink_low[a], -x_rate, length, time)
+        if falls or passes_kink(watched.kink_high[a] - x, x_rate, length, time):
             happened.kinked[a] = True
 
 
