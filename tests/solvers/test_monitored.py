@@ -65,6 +65,13 @@ def alone() -> Scene:
     return replace(scene, bodies=scene.bodies[:1], springs=scene.springs[:1], contacts=contacts)
 
 
+def damped() -> Scene:
+    """One body that turns within steps from sample to sample, where its acceleration does not."""
+    scene, spring = shaken(), Spring("left", (GROUND, "a"), Linear(4.0))
+    contacts, dashpots = (Contact("end", "a", BARRIER, 1.0, 0.5),), (Dashpot((GROUND, "a"), 1.0),)
+    return Scene(scene.bodies[:1], (spring,), dashpots, contacts, scene.motion)
+
+
 def apart() -> Scene:
     """Two bodies that yield, each on a spring of its own, under a formula."""
     scene = shaken(True)
@@ -84,6 +91,7 @@ SCENES = {
     "a record": shaken(),
     "that yields": shaken(True),
     "alone": alone(),
+    "damped": damped(),
     "apart": apart(),
     "at rest": resting(),
 }
