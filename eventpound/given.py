@@ -123,15 +123,21 @@ def checked(function: _Function) -> _Function:
     """
     signature = inspect.signature(function)
     called = function.__qualname__.removesuffix(".__init__")
+    parameters = signature.parameters.values()
+    places = [each.name for each in parameters if each.kind is each.POSITIONAL_OR_KEYWORD]
+    needed = {each.name for each in parameters if each.default is each.empty}
+    known = {each.name for each in parameters}
 
     @wraps(function)
     def calling(*args: Any, **kwargs: Any) -> Any:
-        bound = signature.bind(*args, **kwargs)
+        given = dict(zip(places, args, strict=False)) | kwargs
+        if len(given) < len(args) + len(kwargs) or not needed <= given.keys() <= known:
+            # Says what is wrong, which takes it long to tell where nothing is.
+            signature.bind(*args, **kwargs)
         for name, kind in _kinds_of_arguments(function):
-            if name in bound.arguments:
-                value = bound.arguments[name]
-                bound.arguments[name] = _read(f"{called}: {name}", kind, value)
-        return function(*bound.args, **bound.kwargs)
+            if name in given:
+                given[name] = _read(f"{called}: {name}", kind, given[name])
+        return function(**given)
 
     return calling  # type: ignore[return-value]
 

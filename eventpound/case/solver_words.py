@@ -66,6 +66,8 @@ def solver_word(
     if not name:
         raise InputError(f"{option}: found {word!r}; accepted: NAME or NAME:key=value:...")
     settings: dict[str, object] = {}
+    if not pairs:
+        return name, settings
     for pair in pairs:
         key, equals, value = pair.partition("=")
         if not (key and equals and value):

@@ -250,6 +250,8 @@ def starts_of_supports(scene: Scene, start: float) -> dict[str, float]:
 
     Those that have no motion are left out.
     """
+    if not scene.supports:
+        return {}
     now = np.array(start)
     reference = travelled(scene.motion, now)[0]
     return {
