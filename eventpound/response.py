@@ -40,11 +40,11 @@ class Response:
     Parameters
     ----------
     task : Task
-        What was asked.
+        What was asked; or a function that tells it when it is first asked for.
     solver : str
         Name of the solver.
     recording : Recording
-        What it returned.
+        What it returned, or such a function.
     error_estimate : mapping, optional
         Errors of peaks and final values, where they were estimated (page "results" of the docs).
     stated : Stated
@@ -425,6 +425,27 @@ class Response:
         )
 
 
+class _MadeWhenAsked:
+    """A field of a frozen dataclass that may be given as a function, which is called once."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, owner: object, kind: type | None = None) -> Any:
+        if owner is None:
+            return self
+        value = owner.__dict__[self._name]
+        if callable(value):
+            value = owner.__dict__[self._name] = value()
+        return value
+
+    def __set__(self, owner: object, value: object) -> None:
+        owner.__dict__[self._name] = value
+
+
+# Once the class is made, for which these would be defaults of the fields.
+for _field in ("task", "recording"):
+    setattr(Response, _field, _MadeWhenAsked(_field))
 HISTORY_UNITS = {
     "t": "s",
     "a_g": "m/s^2",

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from eventpound.case.case import LARGEST_RTOL as LARGEST_RTOL
 from eventpound.case.case import SMALLEST_RTOL as SMALLEST_RTOL
-from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.case.case import Case, RunOptions, SolverOptions, Stated
 from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.options import run_problems, settings_in_si
 from eventpound.case.solver_words import solver_instead
@@ -21,6 +22,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.quantities.lookup import asked, needs_energy
 from eventpound.response import Response
 from eventpound.scene.check import check_scene
+from eventpound.scene.parameters import Place, with_values
 from eventpound.scene.scene import Scene
 from eventpound.solvers import (
     available,
@@ -30,7 +32,7 @@ from eventpound.solvers import (
     takes_loads,
     takes_points,
 )
-from eventpound.solvers.base import Recording, Solver, Task
+from eventpound.solvers.base import ReadyTask, Recording, Solver, Task
 from eventpound.units import Dimension
 
 Progress = Callable[[float], None]
@@ -105,8 +107,54 @@ def simulate(
     asked([(scene, run.stated)])
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
-    recording = solved(solver_named(options.name), task)
-    return Response(task, options.name, recording, stated=run.stated)
+    return ReadyScene(solver_named(options.name), task, run.stated).run({}, task)
+
+
+class ReadyScene:
+    """A task whose scene may be given other numbers, run after run.
+
+    Parameters
+    ----------
+    solver : Solver
+        What runs it.
+    task : Task
+        The run of the scene as it is, checked.
+    stated : Stated
+        Of the responses.
+    """
+
+    def __init__(self, solver: Solver, task: Task, stated: Stated) -> None:
+        make: Callable[[Task], ReadyTask | None] | None = getattr(solver, "ready", None)
+        self._ready = None if make is None else make(task)
+        self.solver, self.stated = solver, stated
+
+    def run(self, values: Mapping[Place, float], task: Task) -> Response:
+        """Run it.
+
+        Parameters
+        ----------
+        values : mapping
+            Numbers instead of those of the scene (SI), checked; none of the motion.
+        task : Task
+            The task with times and the motion of this run.
+
+        Raises
+        ------
+        ComputationError
+            Where it fails.
+        """
+        name, whole = self.solver.name, partial(_with_values, task, values)
+        if self._ready is None:
+            task = whole()
+            return Response(task, name, solved(self.solver, task), stated=self.stated)
+        # Both are made when they are asked for.
+        asked: Any = whole if values else task
+        recording: Any = self._ready.run(values, task)
+        return Response(asked, name, recording, stated=self.stated)
+
+
+def _with_values(task: Task, values: Mapping[Place, float]) -> Task:
+    return replace(task, scene=with_values(task.scene, values))
 
 
 def solved(solver: Solver, task: Task) -> Recording:

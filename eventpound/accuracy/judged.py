@@ -108,7 +108,7 @@ def simulate(
     if progress is True:
         print(f"\r{response.recording.t:.6g} s", file=sys.stderr)
         response = replace(response, task=replace(response.task, progress=None))
-    return replace(response, error_estimate=estimate)
+    return response if estimate is None else replace(response, error_estimate=estimate)
 
 
 def _shown(t: float) -> None:

@@ -170,10 +170,11 @@ def differences(values: Floats, first: Ints, second: Ints) -> Floats:
 
     End -1 is the ground or a barrier, whose value is zero.
     """
-    extended = np.concatenate((values, np.zeros((*values.shape[:-1], 1))), axis=-1)
+    extended = np.zeros((*values.shape[:-1], values.shape[-1] + 1))
+    extended[..., :-1] = values
     # `take` leaves its result in the order of its axes, as compiled code wants it.
-    ahead, behind = (np.take(extended, ends, axis=-1) for ends in (second, first))
-    return np.asarray(ahead - behind)
+    found: Floats = extended.take(second, -1) - extended.take(first, -1)
+    return found
 
 
 def with_elements(model: Model) -> Model:
@@ -282,6 +283,16 @@ def assemble(scene: Scene) -> Model:
         points=points,
         spread=_spread(scene, points, index),
     )
+
+
+def shape_of(model: Model) -> tuple[object, ...]:
+    """What arrays of two scenes that differ in numbers only have in common, to be compared.
+
+    Of scenes whose contacts follow Newton's law and lie between whole bodies.
+    """
+    sizes = model.bodies, model.springs, model.supports, model.loads
+    ends = model.link_ends, model.hysteretic, model.left, model.right
+    return (*sizes, *((each.size, each.tobytes()) for each in ends))
 
 
 def _spread(scene: Scene, points: Ints, index: Mapping[str, int]) -> Floats:

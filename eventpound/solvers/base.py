@@ -13,6 +13,7 @@ from eventpound.contact.event import Event as Event
 from eventpound.contact.event import EventKind as EventKind
 from eventpound.errors import ComputationError
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
 
 
@@ -305,6 +306,28 @@ class Recording:
     largest_gap: Floats | None = None
 
 
+class ReadyTask(Protocol):
+    """A task that is run with other numbers than those of its scene, again and again."""
+
+    def run(self, values: Mapping[Place, float], task: Task) -> Callable[[], Recording]:
+        """Run it.
+
+        Parameters
+        ----------
+        values : mapping
+            New numbers (SI), but for those of the motion. They are checked.
+        task : Task
+            The same task with the times, and the motion of the scene, of this run.
+
+        Returns
+        -------
+        callable
+            Makes the recording, which `solve` would return, when it is asked for. A failure
+            is raised at once.
+        """
+        ...
+
+
 class Solver(Protocol):
     """Duties of a solver.
 
@@ -321,7 +344,9 @@ class Solver(Protocol):
     an attribute ``contact_laws``, a collection of `eventpound.scene.contact_law.ContactLaw` kinds;
     scenes with others are refused. One that takes contacts at points between bodies, with more
     than two bodies in a column of W, says so by ``takes_points = True``. Settings that it had once
-    are in a mapping ``given_up``, each with what to do instead.
+    are in a mapping ``given_up``, each with what to do instead. One that can do once what many
+    runs of a scene have in common has a function ``ready(task)``, which returns a `ReadyTask`, or
+    None for a scene of which it cannot.
     """
 
     @property

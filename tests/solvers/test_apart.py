@@ -30,8 +30,7 @@ from eventpound.scene import (
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.constants import blank_series, plan_of
-from eventpound.solvers.fast.many import _clear as clear_scratch
+from eventpound.solvers.fast.constants import blank_series, clear_scratch, plan_of
 from tests.solvers.stepping import stepper_of
 
 END = 9.0

@@ -10,9 +10,11 @@ import pytest
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
 from eventpound.motion.constant import Constant
+from eventpound.motion.record import Record
 from eventpound.motion.ricker import Ricker
 from eventpound.numerics.compiled import by_python
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Force, Scene, Spring
+from eventpound.scene.parameters import places_of, with_values
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
@@ -115,6 +117,52 @@ def test_order_of_the_series() -> None:
         assert np.exp(-2.0 * order_for(rtol)) <= max(rtol, np.exp(-48.0))
 
 
+def forget_arrays(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the next run of every scene make its arrays anew."""
+    monkeypatch.setattr(fast, "_last_of_thread", fast._LastOfThread())
+
+
+def with_numbers_of(scene: Scene, numbers: dict[str, float]) -> Scene:
+    places = places_of(scene)
+    return with_values(scene, {places[key]: value for key, value in numbers.items()})
+
+
+def test_no_run_depends_on_those_before_it_in_the_same_arrays(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # Other numbers, laws, motions, tolerances and lengths; one fails, and one begins another.
+    ride = Record(np.sin(np.arange(200.0)), 0.05)
+    scenes = [
+        PAIR,
+        replace(PAIR, motion=ride),
+        with_numbers_of(PAIR, {"body.a.mass": 3.0, "contact.joint.gap": 0.2}),
+        replace(PAIR, motion=replace(PAIR.motion, amplitude=0.7)),
+        with_numbers_of(PAIR, {"body.b.displacement": 0.05, "body.a.velocity": -0.3}),
+        replace(PAIR, motion=ride.like(scale=2.0)),
+        PAIR,
+    ]
+    tasks = [
+        Task(scene, 0.0, end, rtol, output_times=np.linspace(0.0, end, rows), energy=energy)
+        for scene in scenes
+        for end, rtol, rows, energy in ((END, 1e-8, 0, False), (0.7 * END, 1e-6, 301, True))
+    ]
+    alone = []
+    for task in tasks:
+        forget_arrays(monkeypatch)
+        alone.append(solver_named("fast").solve(task))
+    forget_arrays(monkeypatch)
+
+    def begin_another(_t: float) -> None:
+        solver_named("fast").solve(tasks[4])
+
+    monkeypatch.setattr(fast, "BUDGET", 40)
+    for task, expected in zip(tasks, alone, strict=True):
+        _equal(solver_named("fast").solve(replace(task, progress=begin_another)), expected)
+        with pytest.raises(ComputationError, match="limit of 30 steps"):
+            solver_named("fast").solve(replace(task, max_steps=30))
+        _equal(solver_named("fast").solve(task), expected)
+
+
 @pytest.mark.parametrize("room", [0, 1, 3])
 @pytest.mark.parametrize("energy", [False, True])
 def test_a_record_that_grows_changes_nothing(
@@ -124,6 +172,7 @@ def test_a_record_that_grows_changes_nothing(
     task = Task(PAIR, 0.0, END, 1e-8, output_times=times, energy=energy)
     large = solver_named("fast").solve(task)
     monkeypatch.setattr(fast, "FIRST_ROOM", room)
+    forget_arrays(monkeypatch)
     _equal(solver_named("fast").solve(task), large)
 
 
@@ -145,6 +194,7 @@ def test_a_record_that_grows_within_an_instant_changes_nothing(
     large = solver_named("fast").solve(task)
     assert sum(event.t == 0.0 for event in large.events) > 24 + 2 * room
     monkeypatch.setattr(fast, "FIRST_ROOM", room)
+    forget_arrays(monkeypatch)
     _equal(solver_named("fast").solve(task), large)
 
 

@@ -30,6 +30,7 @@ from eventpound.mechanics.supported import peak_of
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.latest import Keep, made_anew
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Task
 
@@ -217,21 +218,23 @@ class SceneScales:
         return self.mass * self.speed**2
 
 
-def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
+def scene_scales(
+    scene: Scene, model: Model, duration: float, keep: Keep = made_anew
+) -> SceneScales:
     """Scales of a scene.
 
     Parameters
     ----------
     scene : Scene
-        The scene.
+        The scene; of its numbers only those of the motion count.
     model : Model
         Its arrays.
     duration : float
         Length of the run (s), the last resort for a time scale.
+    keep : Keep
+        Gives what follows from the arrays alone.
     """
     h = model.hysteretic
-    bounds = z_bound(model.law.memory[h])
-    mass = float(model.mass[model.supports :].max())
     motion, push = scene.motion.scales(), push_of(scene.motion)
     if motion is not None:
         length, time = motion.length, 1.0 / motion.omega_g
@@ -239,8 +242,15 @@ def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
         length, time = scales_without(model, duration, push)
     shaken = motion is not None or push > 0.0
     start = InitialState(model.u0, model.v0, model.z0, h)
-    own = own_scales(attached(model), model.mass, start, length, time, length / time**2, shaken)
-    return SceneScales(length, time, mass, bounds, *own)
+    arrays = (*start[:3], model.mass, *model.law, *model.elastic)
+
+    def made() -> SceneScales:
+        mass = float(model.mass[model.supports :].max())
+        bounds = z_bound(model.law.memory[h])
+        own = own_scales(attached(model), model.mass, start, length, time, length / time**2, shaken)
+        return SceneScales(length, time, mass, bounds, *own)
+
+    return keep(("scales", length, time, shaken, *(each.tobytes() for each in arrays)), made)
 
 
 def _free_scales(model: Model, duration: float) -> tuple[float, float]:

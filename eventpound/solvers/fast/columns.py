@@ -8,23 +8,22 @@ N bodies, L links, H hysteretic links, K contacts, D different ground motions.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from eventpound.mechanics.backbone import hysteresis_of
-from eventpound.mechanics.link_law import CONSTANTS, LinkLaw
+from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.monitored import blank_extremes, places_in
+from eventpound.mechanics.numbers import numbers_of, put_numbers, with_numbers
 from eventpound.motion.base import GroundMotion, Scales
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.scene.elastic_laws import ElasticLaws, reduced
+from eventpound.scene.elastic_laws import ElasticLaws
 from eventpound.scene.parameters import Place
-from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Series
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import (
     Attached,
@@ -101,9 +100,10 @@ def rows_of(variants: Variants, low: int, high: int) -> VariantArrays:
     """Arrays of the variants `low` to `high`, ready to run."""
     task, part = variants.task, slice(low, high)
     model = assemble(task.scene)
-    numbers = _numbers(
-        task.scene, model, {p: v[part] for p, v in variants.values.items()}, high - low
-    )
+    numbers = {
+        key: np.repeat(own[None], high - low, axis=0) for key, own in numbers_of(model).items()
+    }
+    put_numbers(task.scene, model, {p: v[part] for p, v in variants.values.items()}, numbers)
     law = LinkLaw(*(numbers[key] for key in LinkLaw._fields))
     links = links_of(model)._replace(
         law=law,
@@ -152,78 +152,6 @@ def rows_of(variants: Variants, low: int, high: int) -> VariantArrays:
     return VariantArrays(plan, state, motions, blank_extremes(places_in(model), scales))
 
 
-def _numbers(
-    scene: Scene, model: Model, values: Mapping[Place, Floats], count: int
-) -> dict[str, Floats]:
-    """Arrays of the model with a leading axis (count,), by their names."""
-    own = {key: getattr(model, key) for key in ("mass", "u0", "v0", "z0", "gap", "restitution")}
-    laws = model.elastic._asdict() | model.law._asdict()
-    rows = {key: np.repeat(row[None], count, axis=0) for key, row in (own | laws).items()}
-    for place, column in values.items():
-        for key in _keys(scene, place):
-            index = place.index
-            if key == "z0":
-                index = int(np.flatnonzero(model.hysteretic == index)[0])
-            if key in CONSTANTS:
-                rows["memory"][:, index, CONSTANTS.index(key)] = column
-            else:
-                rows[key][:, index] = column
-    _put_series(scene, values, rows)
-    _put_dashpots(scene, model, values, rows)
-    return rows
-
-
-def _keys(scene: Scene, place: Place) -> tuple[str, ...]:
-    """Arrays that hold a number of the scene as it is."""
-    match place.kind:
-        case "body":
-            return ({"displacement": "u0", "velocity": "v0"}.get(place.field, place.field),)
-        case "contact":
-            return (place.field,)
-        case "spring" if place.part < 0:
-            if place.field == "stiffness":
-                return ("compression", "extension")
-            return ("z0" if place.field == "initial_z" else place.field,)
-    return ()
-
-
-def _put_series(scene: Scene, values: Mapping[Place, Floats], rows: dict[str, Floats]) -> None:
-    """Springs in series reduced anew, variant by variant."""
-    for s in {place.index for place in values if place.part >= 0}:
-        law = scene.springs[s].law
-        assert isinstance(law, Series)
-        own = {
-            (p.part, p.field): column
-            for p, column in values.items()
-            if p.kind == "spring" and p.index == s
-        }
-        for i in range(rows["offset"].shape[0]):
-            parts: list[Any] = list(law.parts)
-            for (part, field), column in own.items():
-                parts[part] = replace(parts[part], **{field: float(column[i])})
-            whole = reduced(Series(tuple(parts)))
-            for key in ElasticLaws._fields:
-                rows[key][i, s] = getattr(whole, key)
-
-
-def _put_dashpots(
-    scene: Scene, model: Model, values: Mapping[Place, Floats], rows: dict[str, Floats]
-) -> None:
-    """Dampings of the links, summed in the order of `assemble`."""
-    index = {body.name: i for i, body in enumerate(scene.bodies)} | {GROUND: -1}
-    ends = [tuple(pair) for pair in model.link_ends.tolist()]
-    changed = {place.index: column for place, column in values.items() if place.kind == "dashpot"}
-    links = []
-    for dashpot in scene.dashpots:
-        pair = (index[dashpot.between[0]], index[dashpot.between[1]])
-        links.append(next(i for i, e in enumerate(ends) if e in (pair, pair[::-1])))
-    for link in {links[d] for d in changed}:
-        rows["damping"][:, link] = 0.0
-        for d, dashpot in enumerate(scene.dashpots):
-            if links[d] == link:
-                rows["damping"][:, link] += changed.get(d, dashpot.coefficient)
-
-
 class _ScaleColumns(NamedTuple):
     """Scales of some variants (SI), arrays in the place of scalars."""
 
@@ -251,11 +179,12 @@ def _scales(
         return _ScaleColumns(*np.array(known)[of_variant].T.copy())
     lines = []
     for i, m in enumerate(of_variant.tolist()):
-        duration = float(variants.ends[low + i]) - variants.task.start
-        lines.append(
-            known[m]
-            or _scale_numbers(*scales_without(_model_of(model, numbers, i), duration, pushes[m]))
-        )
+        line = known[m]
+        if line is None:
+            duration = float(variants.ends[low + i]) - variants.task.start
+            variant = with_numbers(model, {key: rows[i] for key, rows in numbers.items()})
+            line = _scale_numbers(*scales_without(variant, duration, pushes[m]))
+        lines.append(line)
     return _ScaleColumns(*np.array(lines).T.copy())
 
 
@@ -283,16 +212,6 @@ def _body_tolerances(
         links, numbers["mass"], start, scales.length, scales.time, scales.acceleration, shaken
     )
     return body_tolerance(task, "displacement", length), body_tolerance(task, "velocity", speed)
-
-
-def _model_of(model: Model, numbers: dict[str, Floats], i: int) -> Model:
-    """The assembled scene of one row."""
-    return replace(
-        model,
-        law=LinkLaw(*(numbers[key][i] for key in LinkLaw._fields)),
-        elastic=ElasticLaws(*(numbers[key][i] for key in ElasticLaws._fields)),
-        **{key: numbers[key][i] for key in ("mass", "u0", "v0", "z0", "gap", "restitution")},
-    )
 
 
 def _motions(motions: Sequence[GroundMotion], of_variant: Ints) -> Motions:

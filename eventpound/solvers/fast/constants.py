@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import accumulate
 
 import numpy as np
@@ -13,11 +14,16 @@ from eventpound.mechanics.link_law import yielding
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model, differences, without_rounding
 from eventpound.mechanics.monitored import places_of
 from eventpound.motion.base import Family, Piece
+from eventpound.motion.parametric import Parametric
+from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python
+from eventpound.numerics.latest import Keep, made_anew
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
+from eventpound.solvers.fast.compiled import compiled_apart
+from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.run import (
     CLOCK_SIZE,
     COUNT_SIZE,
@@ -35,6 +41,7 @@ from eventpound.solvers.fast.run import (
     Ground,
     Limits,
     Links,
+    Seen,
     Single,
 )
 from eventpound.solvers.fast.sampled.exact import blank_tables
@@ -105,7 +112,7 @@ def _starts(sizes: list[int]) -> Ints:
     return np.array(list(accumulate(sizes, initial=0)), np.int64)
 
 
-def plan_of(task: Task, model: Model, scales: SceneScales) -> FastPlan:
+def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_anew) -> FastPlan:
     """Constants of a run.
 
     Parameters
@@ -116,17 +123,36 @@ def plan_of(task: Task, model: Model, scales: SceneScales) -> FastPlan:
         Its scene, assembled.
     scales : SceneScales
         The scene's own.
+    keep : Keep
+        Gives what follows from a part of this.
     """
-    atol = tolerances(task, scales)
-    memory = model.law.memory
-    small = float(small_difference(task.rtol, memory, model.mass, scales.acceleration))
-    links, hysteresis = links_of(model), hysteresis_of(memory, model.hysteretic, small)
+    atol, motion = tolerances(task, scales), task.scene.motion
+    memory, elastic = model.law.memory, model.elastic
+    law = memory.tobytes()
+    small = keep(
+        ("small", law, model.mass.tobytes(), scales.acceleration),
+        lambda: float(small_difference(task.rtol, memory, model.mass, scales.acceleration)),
+    )
+    links = keep(
+        ("links", elastic.compression.tobytes(), elastic.extension.tobytes()),
+        lambda: links_of(model),
+    )
+    hysteresis = keep(
+        ("hysteresis", law, small), lambda: hysteresis_of(memory, model.hysteretic, small)
+    )
+
+    def ground() -> Ground:
+        return ground_of(motion.pieces())
+
     return FastPlan(
         mass=model.mass,
         links=links,
         hysteresis=hysteresis,
         contacts=Contacts(model.left, model.right, model.gap, model.restitution),
-        ground=ground_of(task.scene.motion.pieces()),
+        # These two are equal where all their numbers are the same, which cannot change.
+        ground=keep(("ground", motion), ground)
+        if isinstance(motion, Parametric | Record)
+        else ground(),
         limits=Limits(
             end=task.end,
             rtol=task.rtol,
@@ -144,9 +170,10 @@ def plan_of(task: Task, model: Model, scales: SceneScales) -> FastPlan:
     )
 
 
+@lru_cache
 def order_for(rtol: float) -> int:
     """Order of the series: a radius of convergence divided by about e² a step."""
-    return int(np.clip(round(2.0 - 0.6 * np.log(rtol)), 8, 24))
+    return min(max(round(2.0 - 0.6 * np.log(rtol)), 8), 24)
 
 
 MOST_TURNS = 40
@@ -297,5 +324,33 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         single=Single(np.zeros(1, BODY), np.zeros(most), turns, work),
         each=_blank_each(plan, loaded),
         tables=blank_tables(bodies, links),
-        held=np.zeros((4, in_python(places_of)(bodies, plan.links.springs, contacts).end)),
+        held=np.zeros((4, 2 * bodies + links + 2 * contacts + 1)),
     )
+
+
+@compiled_apart
+def clear_scratch(series: FastSeries, happened: FastMarks, seen: Seen) -> None:
+    """Leave nothing of the run before, which may have ended with numbers that are not finite."""
+    series.X[:] = 0.0
+    series.F[:] = 0.0
+    series.z[:] = 0.0
+    series.power[:] = 0.0
+    series.speed[:] = 0.0
+    series.weighted[:] = 0.0
+    series.curve[:] = 0.0
+    series.weights[:] = 0.0
+    series.expected[:] = 0.0
+    series.ground[:] = 0.0
+    series.c[:] = 0.0
+    series.d[:] = 0.0
+    series.work[:] = 0.0
+    series.turns[:] = 0.0
+    series.force[:] = 0.0
+    series.contact_force[:] = 0.0
+    series.swing[:] = 0.0
+    series.travel[:] = 0.0
+    series.reach[:] = 0.0
+    series.tables.step[:] = 0.0
+    clear(happened)
+    happened.vanished[:] = False
+    seen.contact_force[:] = 0.0

@@ -26,10 +26,9 @@ from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.advance import carry_on
 from eventpound.solvers.fast.columns import Motions, VariantArrays
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
-from eventpound.solvers.fast.constants import blank_happened, blank_series
+from eventpound.solvers.fast.constants import blank_happened, blank_series, clear_scratch
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.links import all_variables, elongations
-from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.run import (
     GOING_ON,
     FastMarks,
@@ -202,7 +201,7 @@ def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kep
             continue
         state = state_of_run(i, rows.state, rows.motions)
         record = FastRecord(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
-        _clear(series, happened, seen)
+        clear_scratch(series, happened, seen)
         record.unique[:] = True
         at = places_of(plan.mass.size, plan.links.springs, plan.contacts.gap.size)
         running = running_of(record.extremes, at)
@@ -275,34 +274,6 @@ def _keep(
 def _is_full(events: Floats, kept: Kept) -> bool:
     """Whether the log, where there is one, has too little room for the events of a run."""
     return 0 < kept.log.shape[0] < kept.logged[0] + events.shape[0]
-
-
-@compiled_apart
-def _clear(series: FastSeries, happened: FastMarks, seen: Seen) -> None:
-    """Leave nothing of the run before, which may have ended with numbers that are not finite."""
-    series.X[:] = 0.0
-    series.F[:] = 0.0
-    series.z[:] = 0.0
-    series.power[:] = 0.0
-    series.speed[:] = 0.0
-    series.weighted[:] = 0.0
-    series.curve[:] = 0.0
-    series.weights[:] = 0.0
-    series.expected[:] = 0.0
-    series.ground[:] = 0.0
-    series.c[:] = 0.0
-    series.d[:] = 0.0
-    series.work[:] = 0.0
-    series.turns[:] = 0.0
-    series.force[:] = 0.0
-    series.contact_force[:] = 0.0
-    series.swing[:] = 0.0
-    series.travel[:] = 0.0
-    series.reach[:] = 0.0
-    series.tables.step[:] = 0.0
-    clear(happened)
-    happened.vanished[:] = False
-    seen.contact_force[:] = 0.0
 
 
 @compiled_apart

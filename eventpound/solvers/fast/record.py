@@ -15,7 +15,6 @@ from eventpound.contact.event_rows import events_wanted
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
-from eventpound.mechanics.monitored import copy_extremes
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.motion.loads import (
     LOADED,
@@ -25,6 +24,7 @@ from eventpound.motion.loads import (
     rows_of,
 )
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events.recorder import put_line
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
@@ -100,7 +100,8 @@ def hold(run: FastRun) -> None:
     if not is_fleeting(0.0, state.clock, plan.limits.time):
         return
     state.count[HELD], state.clock[HELD_AT] = state.count[ROWS], state.clock[T]
-    copy_extremes(record.extremes, series.held)
+    for row in range(series.held.shape[0]):
+        copy_numbers(record.extremes[row], series.held[row])
 
 
 @compiled_apart
@@ -114,7 +115,8 @@ def forget(run: FastRun) -> None:
     count[ROWS], clock[T] = count[HELD], clock[HELD_AT]
     while count[OUTPUT] > 0 and times[count[OUTPUT] - 1] >= clock[T]:
         count[OUTPUT] -= 1
-    copy_extremes(series.held, record.extremes)
+    for row in range(series.held.shape[0]):
+        copy_numbers(series.held[row, : record.extremes.shape[1]], record.extremes[row])
 
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)

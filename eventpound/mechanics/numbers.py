@@ -1,0 +1,120 @@
+"""Numbers of a scene in its arrays: which entry each of them is.
+
+The arrays have a leading axis of variants. A spring in series and a sum of dashpots are made
+anew for every value that they have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from eventpound.mechanics.link_law import CONSTANTS, LinkLaw
+from eventpound.mechanics.model import Model
+from eventpound.numerics.arrays import Floats
+from eventpound.scene.elastic_laws import ElasticLaws, reduced
+from eventpound.scene.parameters import Place
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND, Series
+
+OF_MODEL = ("mass", "u0", "v0", "z0", "gap", "restitution")
+"""Fields of a `Model` that are numbers of its scene, beside those of its laws."""
+
+
+def numbers_of(model: Model) -> dict[str, Floats]:
+    """Arrays of a model that hold numbers of its scene, by their names."""
+    own = {key: getattr(model, key) for key in OF_MODEL}
+    return own | model.elastic._asdict() | model.law._asdict()
+
+
+def with_numbers(model: Model, numbers: Mapping[str, Floats]) -> Model:
+    """The model with such arrays in the place of its own."""
+    own: dict[str, Any] = {key: numbers[key] for key in OF_MODEL}
+    own["law"] = LinkLaw(*(numbers[key] for key in LinkLaw._fields))
+    own["elastic"] = ElasticLaws(*(numbers[key] for key in ElasticLaws._fields))
+    return replace(model, **own)
+
+
+def put_numbers(
+    scene: Scene, model: Model, values: Mapping[Place, Floats], rows: Mapping[str, Floats]
+) -> None:
+    """Put numbers of variants into arrays.
+
+    Parameters
+    ----------
+    scene : Scene
+        What the variants have in common.
+    model : Model
+        It, assembled.
+    values : mapping of Place to ndarray, shape (n,)
+        What differs; numbers of the motion are passed over.
+    rows : mapping of str to ndarray, shape (n, ...)
+        Those of `numbers_of`, with a leading axis.
+    """
+    for place, column in values.items():
+        for key in _keys(place):
+            index = place.index
+            if key == "z0":
+                index = int(np.flatnonzero(model.hysteretic == index)[0])
+            if key in CONSTANTS:
+                rows["memory"][:, index, CONSTANTS.index(key)] = column
+            else:
+                rows[key][:, index] = column
+    _put_series(scene, values, rows)
+    _put_dashpots(scene, model, values, rows)
+
+
+def _keys(place: Place) -> tuple[str, ...]:
+    """Arrays that hold a number of the scene as it is."""
+    match place.kind:
+        case "body":
+            return ({"displacement": "u0", "velocity": "v0"}.get(place.field, place.field),)
+        case "contact":
+            return (place.field,)
+        case "spring" if place.part < 0:
+            if place.field == "stiffness":
+                return ("compression", "extension")
+            return ("z0" if place.field == "initial_z" else place.field,)
+    return ()
+
+
+def _put_series(scene: Scene, values: Mapping[Place, Floats], rows: Mapping[str, Floats]) -> None:
+    """Springs in series reduced anew, variant by variant."""
+    for s in {place.index for place in values if place.part >= 0}:
+        law = scene.springs[s].law
+        assert isinstance(law, Series)
+        own = {
+            (p.part, p.field): column
+            for p, column in values.items()
+            if p.kind == "spring" and p.index == s
+        }
+        for i in range(rows["offset"].shape[0]):
+            parts: list[Any] = list(law.parts)
+            for (part, field), column in own.items():
+                parts[part] = replace(parts[part], **{field: float(column[i])})
+            whole = reduced(Series(tuple(parts)))
+            for key in ElasticLaws._fields:
+                rows[key][i, s] = getattr(whole, key)
+
+
+def _put_dashpots(
+    scene: Scene, model: Model, values: Mapping[Place, Floats], rows: Mapping[str, Floats]
+) -> None:
+    """Dampings of the links, summed in the order of `assemble`."""
+    changed = {place.index: column for place, column in values.items() if place.kind == "dashpot"}
+    if not changed:
+        return
+    index = {body.name: i for i, body in enumerate(scene.bodies)} | {GROUND: -1}
+    ends = [tuple(pair) for pair in model.link_ends.tolist()]
+    links = []
+    for dashpot in scene.dashpots:
+        pair = (index[dashpot.between[0]], index[dashpot.between[1]])
+        links.append(next(i for i, e in enumerate(ends) if e in (pair, pair[::-1])))
+    for link in {links[d] for d in changed}:
+        rows["damping"][:, link] = 0.0
+        for d, dashpot in enumerate(scene.dashpots):
+            if links[d] == link:
+                rows["damping"][:, link] += changed.get(d, dashpot.coefficient)
