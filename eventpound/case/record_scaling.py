@@ -95,9 +95,10 @@ class RecordScaling:
     def words(self) -> str:
         """What is done to the size of every record; empty where nothing is."""
         if self.pga is not None:
-            return f"every record to a PGA of {self.pga:.6g} m/s^2 (pga in [excitation])"
+            size = f"{self.pga / STANDARD_GRAVITY:.4g} g"
+            return f"every record to a PGA of {size} (pga in [excitation])"
         if self.psa is not None:
-            size = f"{self.psa:.6g} m/s^2 ({self.psa / STANDARD_GRAVITY:.4g} g)"
+            size = f"{self.psa / STANDARD_GRAVITY:.4g} g"
             at = f"{self.psa_at} = " * bool(self.psa_at) + f"{self.psa_period:.4g} s"
             return f"every record to a PSA of {size} at {at} (psa in [excitation])"
         if self.target is not None:

@@ -6,7 +6,8 @@ codes combine from the peaks without contact; opening, seat width used, impulse.
 storeys and bodies. Of a suite the 50 and 84 % fractiles over the records, the largest, and its
 record. What each row is: the page "design" of the documentation.
 
-Files, in CASE/results/design: design.csv, a row a demand (of a study: for each combination of
+Files, in CASE/results/design: design.pdf and design.html, a report of two pages of A4 (of a run
+or a suite); design.csv, a row a demand (of a study: for each combination of
 its axes), which a spreadsheet opens; beside it all that the runs gave. Further runs are made
 for it: without contact, and one for each contact. A suite or a study that was stopped goes on.
 
@@ -27,13 +28,15 @@ from typing import TYPE_CHECKING
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.progress import Counter, Forecast, Progress, StudyProgress, Watch
+from eventpound.cli.talk import say
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from eventpound.case import Case
+    from eventpound.response import Response
 
-_FOLDER = "design"
+_FOLDER, REPORT, PRINTED = "design", "design.html", "design.pdf"
 
 
 def add(commands: Commands) -> None:
@@ -41,7 +44,8 @@ def add(commands: Commands) -> None:
     design = add_command(commands, "design", _design, __doc__)
     design.case()
     design.option("--suite FILES", 'other records: "folder/*.AT2", in quotes, or a list of files')
-    design.out("where table and runs go (CASE/results/design)")
+    design.option("--no-report", "write the table only")
+    design.out("where table, report and runs go (CASE/results/design)")
 
 
 def _design(options: Options) -> int:
@@ -49,21 +53,44 @@ def _design(options: Options) -> int:
     from eventpound.results.tables import table_csv
     from eventpound.study.design import DESIGN_TABLE
 
-    out = options.out or options.results / _FOLDER
+    out, report = options.out or options.results / _FOLDER, dict[str, bytes]()
     if "study" in read_document(options.case)[0]:
-        options.refuse(["--suite"], "is for a case without a [study]")
+        why = "is for a case without a [study]"
+        options.refuse(["--suite", "--no-report"], why)
         table = _of_study(options, out)
         print(f"design    {len(table)} rows: each demand at each combination of the axes")
     else:
-        case = arguments.load(options.case, options.suite)
+        case, runs = arguments.load(options.case, options.suite), None
         arguments.check_solver_of(case)
-        table = _of_run(case, out) if case.suite is None else _of_suite(case, out)
+        if case.suite is None:
+            table, response = _of_run(case, out)
+        else:
+            case, table, runs = _of_suite(case, out)
+            response = None
         print("\n".join(_lines(case, table)))
-    arguments.write(out, {DESIGN_TABLE: table_csv(table)})
+        if not options.no_report:
+            report = _report(case, table, runs, response)
+    arguments.write(out, {DESIGN_TABLE: table_csv(table)} | report)
     return 0
 
 
-def _of_run(case: Case, out: Path) -> pd.DataFrame:
+def _report(
+    case: Case, table: pd.DataFrame, runs: pd.DataFrame | None, response: Response | None
+) -> dict[str, bytes]:
+    """The two sheets, as HTML and PDF; of a suite with the motion under the governing record."""
+    from eventpound.report.design_report import Told, design_sheets, governing_record, motion_under
+    from eventpound.report.sheets import as_html, as_pdf
+
+    say("draw the report")
+    record = ""
+    if response is None:
+        record = governing_record(case.scene, table)
+        response = motion_under(case, record)
+    sheets = design_sheets(Told(case, table, runs, response, record))
+    return {REPORT: as_html(case.title, sheets), PRINTED: as_pdf(case.title, sheets)}
+
+
+def _of_run(case: Case, out: Path) -> tuple[pd.DataFrame, Response]:
     """Run a case, and what its design numbers need."""
     from eventpound import results
     from eventpound.simulation import simulate
@@ -76,11 +103,11 @@ def _of_run(case: Case, out: Path) -> pd.DataFrame:
         progress.begins("again, without contacts")
         table = design_of_run(response)
     results.write(response, out, case=case)
-    return table
+    return table, response
 
 
-def _of_suite(case: Case, out: Path) -> pd.DataFrame:
-    """Run a case under every record, and what its design numbers need."""
+def _of_suite(case: Case, out: Path) -> tuple[Case, pd.DataFrame, pd.DataFrame]:
+    """Run a case under every record, and what its design numbers need; it as run, all runs."""
     from eventpound.study import suite
     from eventpound.study.design import asking, design_of_suite
     from eventpound.study.table import SUITE_TABLE, read_table
@@ -92,7 +119,7 @@ def _of_suite(case: Case, out: Path) -> pd.DataFrame:
     for record, why in zip(table["record"], table["failed"], strict=True):
         if why:
             print(f"eventpound: {record} failed, and is left out: {why}", file=sys.stderr)
-    return design_of_suite(table, case)
+    return case, design_of_suite(table, case), table
 
 
 def _of_study(options: Options, out: Path) -> pd.DataFrame:

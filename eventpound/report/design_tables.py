@@ -1,23 +1,56 @@
-"""Design numbers as tables to be read: a table a contact, of the springs, of the bodies."""
+"""Design numbers as tables to be read, in units of the trade: all of them, or those of a report."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from eventpound.quantities.lookup import find
-from eventpound.results.cells import Cells
-from eventpound.results.trade import Trade, trade_of
+import numpy as np
+
+from eventpound.quantities.lookup import Named, find
+from eventpound.results.cells import Cells, headed
+from eventpound.results.trade import Trade, three_digits, trade_of
 from eventpound.scene.contact import Contact, weights_of
 from eventpound.scene.scene import Scene
+from eventpound.scene.spring import Hysteretic
 from eventpound.study.design import FRACTILES
+from eventpound.study.records import FAILED
+from eventpound.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import pandas as pd
 
+_Row: TypeAlias = "Mapping[Any, Any]"
 _NUMBERS = ("value", *(f"{p:g} %" for p in FRACTILES), "largest")
 """Columns of numbers, of a run or of many."""
 _OTHERS = {"spring": "Springs", "body": "Bodies", "": "Whole"}
+_CONTACT, _SPRING = "contacts.<contact>.", "springs.<spring>."
+NEEDED = _CONTACT + "avoiding_gap_alone"
+"""The separation that a contact needs."""
+_NO_OTHERS, _RESIDUAL = _CONTACT + "avoiding_gap", _SPRING + "residual_elongation"
+_OF_CONTACTS = (
+    *(NEEDED, _NO_OTHERS),
+    *(_CONTACT + word for word in ("absolute_sum", "srss", "cqc", "seat_used")),
+    *(_CONTACT + word for word in ("impacts_faster", "fastest_closing", "max_impulse")),
+    *(_CONTACT + word for word in ("estimated_force", "max_force")),
+)
+_OF_OTHERS = (
+    *(_SPRING + "ductility", _RESIDUAL, _SPRING + "drift_ratio", "max_drift"),
+    *("acceleration.<body>.abs_max", "peaks.<body>.abs_max", "base_shear.abs_max"),
+)
+"""Demands that stand in a report."""
+_MOST_OF_CONTACTS, _MOST_OF_ONE = 3, 4
+"""Contacts in a report; springs or bodies of one demand, those with the largest."""
+_MOST_RECORDS, _IN_ONE_COLUMN = 44, 12
+_LONGEST = 44
+"""Letters of the name of a record."""
+_SAME = 5e-3
+"""Part by which two separations may differ and be told as one."""
+_SIZES = (
+    *(("scale", "scale", 1.0, ""), ("PGA", "PGA", STANDARD_GRAVITY, "g")),
+    *(("T_m", "T_m", 1.0, "s"), ("Sa_T1", "Sa(T1)", STANDARD_GRAVITY, "g")),
+)
+"""Numbers of a record: columns of a suite, what they are called, sizes and units."""
 
 
 def design_cells(scene: Scene, table: pd.DataFrame) -> Iterator[tuple[str, Cells]]:
@@ -31,32 +64,35 @@ def design_cells(scene: Scene, table: pd.DataFrame) -> Iterator[tuple[str, Cells
         As `eventpound.design_numbers` gives it.
     """
     trade = trade_of(scene)
-    kinds = table["quantity"].map(lambda name: _owner(scene, name))
+    kinds = table["quantity"].map(lambda name: _found(scene, name).quantity.owner)
     for contact in scene.contacts:
         rows = table[(kinds == "contact") & (table["of"] == contact.name)]
-        yield _heading(contact, rows, trade), _cells(rows, trade, whose=False)
+        yield f"Contact {contact_words(contact, rows, trade)}", _cells(rows, trade, whose=False)
     for kind, heading in _OTHERS.items():
         rows = table[kinds == kind]
         if len(rows):
             yield heading, _cells(rows, trade, whose=bool(kind))
 
 
-def _owner(scene: Scene, name: str) -> str:
-    """Kind of the owner of a quantity, empty of the whole."""
+def _found(scene: Scene, name: str) -> Named:
+    """A quantity of a table of the scene."""
     found = find(scene, name)
-    return "" if found is None else found.quantity.owner
+    assert found is not None, name
+    return found
 
 
-def _heading(contact: Contact, rows: pd.DataFrame, trade: Trade) -> str:
-    """A contact, its ends and gap, and how many records strike it."""
-    ends = [
-        " + ".join(name for name, _ in weights_of(end)) for end in (contact.left, contact.right)
-    ]
-    text = f"Contact {contact.name}: {' | '.join(ends)}, gap {trade.words(contact.gap, 'm')}"
-    if "pounding" not in rows or rows.empty:
+def contact_words(contact: Contact, rows: pd.DataFrame, trade: Trade) -> str:
+    """A contact, its ends and gap, and how often it is struck, by the rows of its numbers."""
+    ends = (contact.left, contact.right)
+    names = " | ".join(" + ".join(name for name, _ in weights_of(end)) for end in ends)
+    text = f"{contact.name}: {names}, gap {trade.words(contact.gap, 'm')}"
+    if rows.empty:
         return text
-    first = rows.iloc[0]
-    return f"{text}, struck under {first['pounding']:.0f} of {rows['records'].max()} records"
+    if "pounding" in rows:
+        return f"{text}, struck under {rows['pounding'].iloc[0]} of {rows['records'].max()} records"
+    name = f"contacts.{contact.name}.impacts"
+    count = float(rows.loc[rows["quantity"] == name, "value"].iloc[0])
+    return f"{text}, struck {trade.number(count, '', name)} times"
 
 
 def _cells(rows: pd.DataFrame, trade: Trade, whose: bool) -> Cells:
@@ -64,12 +100,132 @@ def _cells(rows: pd.DataFrame, trade: Trade, whose: bool) -> Cells:
     numbers = [name for name in _NUMBERS if name in rows]
     words = ["under"] if "under" in rows else []
     lines = []
-    for _, row in rows.iterrows():
+    for row in rows.to_dict("records"):
         name, unit = str(row["quantity"]), str(row["unit"])
         shown = trade.unit(unit, name)[0]
         called = f"{row['demand']}, {shown}" if shown else str(row["demand"])
         first = f"{row['of']}: {called}" if whose else called
         cells = (trade.number(float(row[number]), unit, name) for number in numbers)
-        lines.append((first, *cells, *("" if row[w] != row[w] else str(row[w]) for w in words)))
+        lines.append((first, *cells, *(_word(row[key]) for key in words)))
     kinds = (True, *(False for _ in numbers), *(True for _ in words))
     return Cells(("", *numbers, *words), tuple(lines), kinds)
+
+
+def _word(value: object) -> str:
+    """A text of a table; empty where it has none."""
+    return "" if value != value else str(value)
+
+
+def report_cells(scene: Scene, table: pd.DataFrame, names: Mapping[str, str]) -> list[Cells]:
+    """The design numbers that a report has room for: at contacts, and of all others.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose they are.
+    table : DataFrame
+        As `eventpound.design_numbers` gives it.
+    names : mapping of str to str
+        What records are called, by their names in the table.
+    """
+    rows = {str(row["quantity"]): row for row in table.to_dict("records")}
+    parts = (_at_contacts(scene, table, rows), _of_others(scene, rows))
+    return [_reported(scene, list(part), names) for part in parts if part]
+
+
+def _at_contacts(
+    scene: Scene, table: pd.DataFrame, rows: Mapping[str, _Row]
+) -> list[tuple[_Row, ...]]:
+    """Rows of each contact, of that first which lacks most of its gap."""
+    found = []
+    for i in lacking_contacts(scene, table):
+        paths = [path.replace("<contact>", scene.contacts[i].name) for path in _OF_CONTACTS]
+        found.append(tuple(rows[name] for name in paths if name in rows and not _told(name, rows)))
+    return found
+
+
+def _of_others(scene: Scene, rows: Mapping[str, _Row]) -> list[tuple[_Row, ...]]:
+    """Rows of each other demand, the largest first."""
+    groups: dict[str, list[_Row]] = {path: [] for path in _OF_OTHERS}
+    for name, row in rows.items():
+        named = _found(scene, name)
+        # An elastic spring has no residual of its own.
+        own = named.quantity.path != _RESIDUAL or isinstance(scene.springs[named.i].law, Hysteretic)
+        if own and named.quantity.path in groups:
+            groups[named.quantity.path].append(row)
+    return [tuple(sorted(group, key=_size, reverse=True)) for group in groups.values() if group]
+
+
+def _size(row: _Row) -> float:
+    """The largest value of a row."""
+    return float(np.nan_to_num(row.get(_NUMBERS[-1], row.get(_NUMBERS[0])), nan=-np.inf))
+
+
+def _told(name: str, rows: Mapping[str, _Row]) -> bool:
+    """Whether a separation without other impacts is the same as with them."""
+    if name not in rows or f"{name}_alone" not in rows:
+        return False
+    own, other = rows[name], rows[f"{name}_alone"]
+    keys = [key for key in _NUMBERS if key in own]
+    return bool(np.allclose([own[k] for k in keys], [other[k] for k in keys], rtol=_SAME))
+
+
+def _reported(scene: Scene, groups: list[tuple[_Row, ...]], names: Mapping[str, str]) -> Cells:
+    """A table of some groups of rows; those that there is no room for are counted."""
+    trade = trade_of(scene)
+    of_contacts = str(groups[0][0]["quantity"]).startswith("contacts.")
+    shown = groups[:_MOST_OF_CONTACTS] if of_contacts else [g[:_MOST_OF_ONE] for g in groups]
+    kept = [row for group in shown for row in group]
+    numbers = [key for key in _NUMBERS if key in kept[0]]
+    under = ["under"] if "under" in kept[0] else []
+    lines, last = [], ""
+    for row in kept:
+        name, unit, of = str(row["quantity"]), str(row["unit"]), str(row["of"]) or "whole"
+        values = (trade.number(float(row[key]), unit, name) for key in numbers)
+        record = (names.get(word := _word(row[key]), word) for key in under)
+        first = of if of != last else ""
+        lines.append((first, str(row["demand"]), trade.unit(unit, name)[0], *values, *record))
+        last = of
+    words = (True, True, True, *(False for _ in numbers), *(True for _ in under))
+    more = sum(map(len, groups)) - len(kept)
+    return Cells(("of", "demand", "unit", *numbers, *under), tuple(lines), words, more)
+
+
+def lacking_contacts(scene: Scene, table: pd.DataFrame) -> list[int]:
+    """Numbers of the contacts, those first whose gap is most below what they need."""
+    largest = table.set_index("quantity")[_NUMBERS[-1] if _NUMBERS[-1] in table else _NUMBERS[0]]
+
+    def lack(i: int) -> float:
+        contact = scene.contacts[i]
+        return float(largest[NEEDED.replace("<contact>", contact.name)]) - contact.gap
+
+    return sorted(range(len(scene.contacts)), key=lambda i: -np.nan_to_num(lack(i), nan=-np.inf))
+
+
+def record_names(runs: pd.DataFrame) -> dict[str, str]:
+    """What records are called, with their numbers: event, station and component, or their names."""
+    names = {}
+    for number, row in enumerate(runs.to_dict("records"), 1):
+        said = [word for key in ("event", "station", "component") if (word := _word(row[key]))]
+        name = ", ".join(said) or str(row["record"])
+        short = name if len(name) <= _LONGEST else name[: _LONGEST - 1] + "…"
+        names[str(row["record"])] = f"{number} {short}"
+    return names
+
+
+def record_cells(runs: pd.DataFrame) -> list[Cells]:
+    """Name and size of each record, as one table, or two where they are many."""
+    there = [size for size in _SIZES if size[0] in runs]
+    heads = ("record", *(headed(called, unit) for _, called, _, unit in there))
+    names, rows = record_names(runs), []
+    for row in runs.to_dict("records"):
+        values = (float(row[key]) / size for key, _, size, _ in there)
+        cells = ("" if value != value else three_digits(value) for value in values)
+        note = " (failed)" if row[FAILED] else ""
+        rows.append((names[str(row["record"])] + note, *cells))
+    words, shown = (True, *(False for _ in there)), rows[:_MOST_RECORDS]
+    half = len(shown) if len(shown) <= _IN_ONE_COLUMN else -(-len(shown) // 2)
+    parts = [shown[low : low + half] for low in range(0, len(shown), half)]
+    more = len(rows) - len(shown)
+    last = len(parts) - 1
+    return [Cells(heads, tuple(p), words, more * (i == last)) for i, p in enumerate(parts)]

@@ -20,7 +20,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.report.law_panel import draw_law, laws_of
 from eventpound.report.model_layout import HIGH, Box, Layout, kinked, layout_of
 from eventpound.report.model_links import WALL, LinkPath, routes_of
-from eventpound.report.style import PALETTE, arrow, length_unit, literal, new_figure, say, styled
+from eventpound.report.style import PALETTE, arrow, literal, new_figure, say, styled
 from eventpound.scene.contact import BARRIER, Contact, End, weights_of
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
@@ -114,7 +114,9 @@ def _draw(
     """All parts of a scene on one ground."""
     for route in routes:
         _link(axes, route, names)
-    joined = {frozenset(route.link.between) for route in routes}
+    # A wall beside a body may have a spring and a contact.
+    level = [route.link.between for route in routes if not route.upright]
+    joined = {frozenset(BARRIER if end == GROUND else end for end in ends) for ends in level}
     for contact in scene.contacts:
         _contact(axes, layout, contact, _UP * (frozenset(contact.ends) in joined), names)
     for body in scene.bodies:
@@ -243,9 +245,8 @@ def _contact(axes: Axes, layout: Layout, contact: Contact, up: float, names: _Na
 
 def _label_of(layout: Layout, contact: Contact, names: _Names) -> tuple[str, float]:
     """What is said of a contact, and how high: between its bodies where there is room for it."""
-    unit = length_unit(abs(contact.gap))
     law = f"$\\epsilon$ = {contact.restitution:g}" if contact.law is None else contact.law.kind
-    said = f"{contact.gap / unit.size:.4g} {unit.name}\n{law}"
+    said = f"{1e3 * contact.gap:.4g} mm\n{law}"
     text = f"{literal(contact.name)}\n{said}" if names.shown else said
     (x_1, y_1), (x_2, y_2) = _faces(layout, contact)
     if names.fitted(contact.name, abs(x_2 - x_1)) == _LETTERS:

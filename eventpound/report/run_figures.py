@@ -54,13 +54,13 @@ def figures(
     InputError
         Where a directory holds no complete results, or a motion has no scales for Π-terms.
     """
-    view, other = _within(view_of_run(source, pi), xlim), None
+    view, other = view_of_run(source, pi).within(xlim), None
     if beside is not None:
         # Times and lengths of both in the units of the first.
         own = replace(view_of_run(beside[0]), units_of=view)
         if set(own.bodies).isdisjoint(view.bodies):
             raise InputError(f"{beside[1]}: none of its bodies is called as one of this run")
-        other = Beside(_within(own, xlim), beside[1])
+        other = Beside(own.within(xlim), beside[1])
     drawn = {"displacements.png": displacement_figure(view, other)}
     if nonlinear_springs(view):
         drawn["loops.png"] = loop_figure(view, other)
@@ -107,18 +107,6 @@ def plot(
     """
     drawn = figures(source, beside, pi, xlim)
     return write_together(directory, on_paper(drawn, paper or Paper()))
-
-
-def _within(view: View, xlim: tuple[float, float] | None) -> View:
-    """Results of a stretch of time (s)."""
-    if xlim is None:
-        return view
-    low, high = xlim
-    tables = view.results.history, view.results.events
-    rows, events = (table[table["t"].between(low, high)] for table in tables)
-    if len(rows) < 2:
-        raise InputError(f"xlim: found {low:g} to {high:g} s, in which there are no rows to draw")
-    return replace(view, results=replace(view.results, history=rows, events=events))
 
 
 def view_of_run(source: Source, pi: bool = False) -> View:

@@ -231,15 +231,17 @@ def svg(figure: Figure) -> str:
     return text[text.index("<svg") :]
 
 
-def png(figure: Figure) -> bytes:
+def png(figure: Figure, dpi: float = _DOTS_PER_INCH) -> bytes:
     """Figure as a PNG file.
 
     Parameters
     ----------
     figure : Figure
         What `eventpound.report` drew.
+    dpi : float
+        Dots an inch.
     """
-    return _written(figure, "png", _DOTS_PER_INCH)
+    return _written(figure, "png", dpi)
 
 
 def on_paper(figures: Mapping[str, Figure], paper: Paper) -> dict[str, bytes]:

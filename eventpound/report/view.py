@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -67,6 +67,25 @@ class View:
     pi: bool = False
     units_of: View | None = None
     """Whose units are used, of a run beside another."""
+
+    def within(self, xlim: tuple[float, float] | None) -> View:
+        """Results of a stretch of time (s), of all of it where none is given.
+
+        Raises
+        ------
+        InputError
+            Where there are no rows to draw.
+        """
+        if xlim is None:
+            return self
+        low, high = xlim
+        tables = self.results.history, self.results.events
+        rows, events = (table[table["t"].between(low, high)] for table in tables)
+        if len(rows) < 2:
+            raise InputError(
+                f"xlim: found {low:g} to {high:g} s, in which there are no rows to draw"
+            )
+        return replace(self, results=replace(self.results, history=rows, events=events))
 
     @property
     def time_unit(self) -> Unit:

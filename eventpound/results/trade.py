@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from eventpound.quantities.lookup import is_whole
 from eventpound.results.input_tables import HEAVY
 from eventpound.scene.scene import Scene
 from eventpound.units import STANDARD_GRAVITY, Dimension
@@ -40,11 +41,17 @@ class Trade:
 
     def number(self, value: float, unit: str, name: str = "") -> str:
         """A value (SI) in the unit of the trade, without its name."""
-        return three_digits(value / self.unit(unit, name)[1])
+        shown = value / self.unit(unit, name)[1]
+        return f"{shown:.{_DIGITS}g}" if _is_count(name, shown) else three_digits(shown)
 
     def words(self, value: float, unit: str, name: str = "") -> str:
         """A value (SI) with its unit of the trade."""
         return f"{self.number(value, unit, name)} {self.unit(unit, name)[0]}".rstrip()
+
+
+def _is_count(name: str, value: float) -> bool:
+    """Whether a value is of a quantity that is counted, and has no more than three digits."""
+    return is_whole(name) and 0.0 <= value < 10**_DIGITS - 1
 
 
 def trade_of(scene: Scene) -> Trade:
@@ -58,8 +65,6 @@ def three_digits(value: float) -> str:
         return "–"
     if abs(value) < _NOTHING:
         return "0"
-    if value.is_integer() and abs(value) < 10**_DIGITS:
-        return f"{value:.0f}"
     places = _DIGITS - 1 - math.floor(math.log10(abs(value)))
     # What rounds up to the next power of ten has one place less.
     rounded = round(value, places)

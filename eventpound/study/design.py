@@ -40,10 +40,11 @@ FRACTILES = (50.0, 84.0)
 """Per cent."""
 _CONTACT, _SPRING = "contacts.<contact>.", "springs.<spring>."
 _IMPACTS, _FORCE = _CONTACT + "impacts", _CONTACT + "max_force"
+_FASTER = _CONTACT + "impacts_faster"
 DEMANDS = (
     *(_CONTACT + word for word in ("avoiding_gap_alone", "avoiding_gap", "absolute_sum", "srss")),
     *(_CONTACT + word for word in ("cqc", "largest_gap", "seat_used", "impacts")),
-    *(_CONTACT + word for word in ("impacts_faster", "fastest_closing", "max_impulse")),
+    *(_FASTER, _CONTACT + "fastest_closing", _CONTACT + "max_impulse"),
     *(_CONTACT + "estimated_force", _FORCE, _CONTACT + "largest_overlap"),
     *(_SPRING + word for word in ("ductility", "abs_max_elongation", "residual_elongation")),
     *(_SPRING + "drift_ratio", "max_drift", "max_drift_ratio", "base_shear.abs_max"),
@@ -148,7 +149,10 @@ def design_of_run(response: Response) -> pd.DataFrame:
     demands = demands_of(response.scene, response.stated)
     values = [response.quantity(named.name) for named in demands]
     rows = [
-        {**_words(response.scene, named), "value": np.nan if value is None else abs(value)}
+        {
+            **_words(response.scene, named, response.stated),
+            "value": np.nan if value is None else abs(value),
+        }
         for named, value in zip(demands, values, strict=True)
     ]
     return pd.DataFrame(rows)
@@ -160,7 +164,7 @@ def design_of_suite(table: pd.DataFrame, case: Case) -> pd.DataFrame:
 
     done = table[table[FAILED] == ""]
     demands = demands_of(case.scene, case.run.stated)
-    return _tabled(pd.DataFrame(list(_rows(done, case.scene, demands))))
+    return _tabled(pd.DataFrame(list(_rows(done, case.scene, case.run.stated, demands))))
 
 
 def design_of_study(table: pd.DataFrame, plan: Plan) -> pd.DataFrame:
@@ -168,17 +172,17 @@ def design_of_study(table: pd.DataFrame, plan: Plan) -> pd.DataFrame:
     import pandas as pd
 
     axes = [name for name in plan.columns if name != RECORD]
-    demands: dict[str, tuple[Scene, Named]] = {}
+    demands: dict[str, tuple[Case, Named]] = {}
     for base in plan.bases:
         case = base.at_first().case
         for named in demands_of(case.scene, case.run.stated):
-            demands.setdefault(named.name, (case.scene, named))
+            demands.setdefault(named.name, (case, named))
     done, rows = table[table[SUCCESS]], []
     groups = done.groupby(axes, sort=False, dropna=False) if axes else [((), done)]
     for values, group in groups:
         at = dict(zip(axes, values, strict=True))
-        for scene, named in demands.values():
-            rows += [at | row for row in _rows(group, scene, [named])]
+        for case, named in demands.values():
+            rows += [at | row for row in _rows(group, case.scene, case.run.stated, [named])]
     return _tabled(pd.DataFrame(rows))
 
 
@@ -188,14 +192,14 @@ def _tabled(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _rows(
-    done: pd.DataFrame, scene: Scene, demands: Sequence[Named]
+    done: pd.DataFrame, scene: Scene, stated: Stated, demands: Sequence[Named]
 ) -> Iterator[dict[str, object]]:
     """A row a demand: over how many records, its fractiles, the largest and its record."""
     for named in demands:
         if named.name not in done:
             continue
         sizes = done[named.name].abs().dropna()
-        row = {**_words(scene, named), "records": len(sizes)}
+        row = {**_words(scene, named, stated), "records": len(sizes)}
         if named.quantity.owner == "contact":
             struck = done[_IMPACTS.replace("<contact>", str(row["of"]))]
             row["pounding"] = int((struck > 0).sum())
@@ -208,12 +212,15 @@ def _rows(
         yield row
 
 
-def _words(scene: Scene, named: Named) -> dict[str, object]:
+def _words(scene: Scene, named: Named, stated: Stated) -> dict[str, object]:
     """What a demand is, of what, and its unit."""
     quantity = named.quantity
+    called = quantity.called
+    if quantity.path == _FASTER:
+        called = f"impacts faster than {100.0 * stated.threshold_speed:.4g} cm/s"
     return {
         "quantity": named.name,
         "of": owners(scene, quantity.owner)[named.i],
-        "demand": quantity.called,
+        "demand": called,
         "unit": quantity.dimension.unit,
     }

@@ -27,7 +27,7 @@ FILE, FAILED = "file", "failed"
 _IDENTITY = (
     *("event", "date", "station", "component", "format", "sha256", "samples", "time_step", "notes"),
 )
-_SCALES, _MEASURES = ("PGA", "T_m", "omega_g", "L_e"), ("PGV", "Sa_T1")
+_SCALES, _MEASURES = ("scale", "PGA", "T_m", "omega_g", "L_e"), ("PGV", "Sa_T1")
 _READ = "seconds.read"
 
 
@@ -62,7 +62,8 @@ def about(member: Member, period: float | None) -> dict[str, object]:
             row |= _identity(member.read())
         return row
     known = (math.nan, math.nan) if scales is None else (scales.omega_g, scales.length)
-    row |= zip(_SCALES, (motion.peak, motion.mean_period, *known), strict=True)
+    sizes = (abs(motion.factor), motion.peak, motion.mean_period)
+    row |= zip(_SCALES, (*sizes, *known), strict=True)
     if period is not None:
         row |= zip(_MEASURES, _measures(motion, period), strict=True)
     row[_READ] = time.perf_counter() - began

@@ -232,7 +232,7 @@ def test_everything_is_drawn_once_and_named() -> None:
     figure = model_figure(everything(), "A bridge")
     (axes,) = figure.axes
     texts = "|".join(text.get_text() for text in axes.texts)
-    for said in ("deck \\$1\n2 t", "deck2\n1 kg", "pier", "bearing", "abutment", "joint\n1.27 cm"):
+    for said in ("deck \\$1\n2 t", "deck2\n1 kg", "pier", "bearing", "abutment", "joint\n12.7 mm"):
         assert texts.count(said) == 1, said
     # A spring is a line of many corners, in the colour of its law.
     springs = [line for line in axes.lines if len(line.get_xdata()) > 10]

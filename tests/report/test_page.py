@@ -36,7 +36,7 @@ class Balanced(HTMLParser):
         given = dict(attrs)
         self.sources += [v or "" for k, v in attrs if k in ("src", "xlink:href", "data")]
         self.links += [given["href"] or ""] if tag == "a" and "href" in given else []
-        self.ids += [given["id"] or ""] if tag == "h2" else []
+        self.ids += [given["id"] or ""] if tag == "h2" and "id" in given else []
         if tag not in VOID:
             self.open.append(tag)
 

@@ -98,7 +98,7 @@ def test_a_suite_has_it_and_says_at_which_period(tmp_path: Path) -> None:
     table = simulate_suite(case, intensities=True)
     assert table["Sa_T1"].to_numpy() / 9.80665 == pytest.approx([0.4, 0.4], rel=1e-9)
     assert case.suite is not None
-    assert "(0.4 g) at T1 = 0.7025 s" in case.suite.options.scaling
+    assert "a PSA of 0.4 g at T1 = 0.7025 s" in case.suite.options.scaling
 
 
 def test_each_variant_of_a_study_has_its_own(tmp_path: Path) -> None:

@@ -234,7 +234,7 @@ def test_a_scale_of_the_case_is_said(case_folder: Path, capsys: pytest.CaptureFi
     file = case_folder / "case.toml"
     for old, new, said in (
         ("[[body]]", "scale = 1.5\n[[body]]", "every record times 1.5 (scale in [excitation])"),
-        ("scale = 1.5", 'pga = "0.2 g"', "every record to a PGA of 1.96133 m/s^2 (pga in"),
+        ("scale = 1.5", 'pga = "0.2 g"', "every record to a PGA of 0.2 g (pga in"),
         ('pga = "0.2 g"', "scale = 1", ""),
     ):
         file.write_text(file.read_text().replace(old, new))

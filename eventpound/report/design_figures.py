@@ -1,0 +1,131 @@
+"""Figures of the report: demands over the records, and the motion under the one that governs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from eventpound.quantities.lookup import Named
+from eventpound.quantities.owners import owners
+from eventpound.report import style
+from eventpound.report.markers import draw_circles
+from eventpound.report.view import View
+from eventpound.results.trade import Trade
+from eventpound.scene.contact import Contact, weights_of
+from eventpound.scene.scene import Scene
+from eventpound.study.design import FRACTILES
+from eventpound.study.records import FAILED
+
+_WIDE, _HIGH = 7.4, 2.3
+"""Inches."""
+_MOST_LINES, _MOST_LEVELS = 6, 2
+"""Contacts or springs in one panel; those whose fractiles are drawn."""
+_NAMES: Any = {"fontsize": 6.5, "ncols": 2, "columnspacing": 1.0, "handletextpad": 0.2}
+
+
+@style.styled()
+def demand_figure(
+    scene: Scene, runs: pd.DataFrame, panels: Sequence[Sequence[Named]], trade: Trade
+) -> Figure:
+    """Draw demands over the numbers of the records.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose they are.
+    runs : DataFrame
+        Table of the suite, a row a record.
+    panels : sequence of sequence of Named
+        Demands of one kind each, of several owners.
+    trade : Trade
+        Units.
+    """
+    figure = style.new_figure(_WIDE, _HIGH)
+    numbers = np.arange(1, len(runs) + 1)
+    shown = runs.where(runs[FAILED] == "")
+    for axes, demands in zip(np.atleast_1d(figure.subplots(1, len(panels))), panels, strict=True):
+        quantity = demands[0].quantity
+        name, size = trade.unit(quantity.dimension.unit, quantity.path)
+        colors = style.colors(min(len(demands), _MOST_LINES))
+        for named, color in zip(demands[:_MOST_LINES], colors, strict=False):
+            values = shown[named.name].abs().to_numpy(float) / size
+            label = style.literal(owners(scene, quantity.owner)[named.i])
+            axes.plot(numbers, values, "o", markersize=3.0, color=color, label=label)
+            # Lines of more are told apart by nobody.
+            few = FRACTILES if len(demands) <= _MOST_LEVELS else ()
+            for fractile, line in zip(few, (":", "--"), strict=False):
+                level = np.nanpercentile(values, fractile) if np.isfinite(values).any() else np.nan
+                axes.axhline(level, color=color, linestyle=line, linewidth=0.8)
+        axes.set(xlabel="record", ylim=(0.0, None), xlim=(0.0, len(runs) + 1.0))
+        axes.set_ylabel(f"{quantity.called} ({name})" if name else quantity.called)
+        if len(demands) > 1:
+            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), **_NAMES)
+    return figure
+
+
+@style.styled()
+def governing_figure(view: View, contact: Contact | None, body: str) -> Figure:
+    """Draw the ground, what moves at a contact, and its gap.
+
+    Parameters
+    ----------
+    view : View
+        Results of the run.
+    contact : Contact, optional
+        Which; without one only the body is drawn.
+    body : str
+        What is drawn without a contact.
+    """
+    ends = [body] if contact is None else _bodies(view, contact)
+    view = view.within(_strong(view, ends))
+    figure = style.new_figure(_WIDE, 3.6 if contact else 2.6)
+    heights = [1.0, 1.6, 1.2] if contact else [1.0, 1.6]
+    ground, motion, *gaps = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    for axes in (ground, motion, *gaps):
+        style.zero_lines(axes)
+    unit = view.acceleration_unit
+    ground.plot(view.t, view.column("a_g") / unit.size, color="#444444", linewidth=0.7)
+    ground.set_ylabel(f"ground ({unit.name})")
+    for name, color in zip(ends, style.colors(len(ends)), strict=True):
+        line = view.displacement(name) * 1e3
+        motion.plot(view.t, line, color=color, label=style.literal(name))
+        if contact is not None:
+            draw_circles(motion, view, contact.name, (view.t, line), color)
+    motion.set_ylabel("displacement (mm)")
+    motion.legend(loc="upper right", **_NAMES)
+    for axes in gaps:
+        assert contact is not None
+        _draw_gap(axes, view, contact)
+    (gaps or [motion])[-1].set_xlabel("time (s)")
+    motion.set_xlim(view.t[0], view.t[-1])
+    figure.align_ylabels()
+    return figure
+
+
+def _draw_gap(axes: Axes, view: View, contact: Contact) -> None:
+    gap, name = view.column(f"gap.{contact.name}") * 1e3, style.literal(contact.name)
+    axes.plot(view.t, gap, color=style.PALETTE[2], label=name)
+    axes.axhline(contact.gap * 1e3, color=style.PALETTE[2], **style.DASHED)
+    draw_circles(axes, view, contact.name, (view.t[:1], np.zeros(1)), style.PALETTE[2])
+    axes.set_ylabel("gap (mm)")
+    axes.legend(loc="upper right", **_NAMES)
+
+
+def _bodies(view: View, contact: Contact) -> list[str]:
+    """Bodies at the ends of a contact."""
+    ends = [name for end in (contact.left, contact.right) for name, _ in weights_of(end)]
+    return [name for name in ends if name in view.bodies]
+
+
+def _strong(view: View, bodies: Sequence[str]) -> tuple[float, float]:
+    """The stretch of time in which what is drawn moves by more than a twentieth of its peak (s)."""
+    u = np.max([np.abs(view.displacement(name)) for name in bodies], axis=0)
+    moving = np.flatnonzero(u > 0.05 * u.max(initial=0.0))
+    if not moving.size:
+        return float(view.t[0]), float(view.t[-1])
+    return float(view.t[moving[0]]), float(view.t[moving[-1]])

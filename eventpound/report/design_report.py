@@ -1,0 +1,263 @@
+"""The report of design numbers, two sheets: what is needed and of what model; under what, how sure.
+
+In units of the trade with three digits, so that it can be handed on as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+
+from eventpound.case.case import Case
+from eventpound.case.member import member_case
+from eventpound.motion.record import Record
+from eventpound.quantities.lookup import Named
+from eventpound.report.design_figures import demand_figure, governing_figure
+from eventpound.report.design_tables import (
+    NEEDED,
+    contact_words,
+    lacking_contacts,
+    record_cells,
+    record_names,
+    report_cells,
+)
+from eventpound.report.model_figure import model_figure
+from eventpound.report.sheets import Block, Columns, Head, Picture, Sheet, Words
+from eventpound.report.view import View
+from eventpound.response import Response
+from eventpound.results import gather
+from eventpound.results.cells import Cells
+from eventpound.results.input_tables import input_tables
+from eventpound.results.inputs import inputs_of
+from eventpound.results.manifest import sha256, told_of, versions
+from eventpound.results.trade import three_digits, trade_of
+from eventpound.scene.scene import Scene
+from eventpound.simulation import simulate
+from eventpound.study.design import FRACTILES, demands_of
+from eventpound.study.records import FAILED
+from eventpound.units import STANDARD_GRAVITY
+
+_PANELS = (
+    *(NEEDED, "contacts.<contact>.seat_used", "springs.<spring>.ductility"),
+    *("springs.<spring>.drift_ratio", "contacts.<contact>.max_impulse", "peaks.<body>.abs_max"),
+)
+"""Demands that are drawn over the records, the first three that there are."""
+_MOST_PANELS, _MOST_PARTS, _MOST_LISTED, _MOST_WARNINGS = 3, 7, 4, 4
+_SKETCH, _MOTION, _DEMAND = 80.0, 95.0, 58.0
+"""Heights of pictures (mm)."""
+_WIDE = 6
+"""Columns of a table that stands beside no other."""
+_TALL, _MOST_STRUCTURES = 0.7, 2
+"""Height of a sketch over its width; structures whose modes are told."""
+_LEFT_OUT = ("alpha", "mass on it", "F_y/W", "Q (", "height", "offset", "post-yield")
+"""Columns of the model that have no room; they begin so."""
+_LIMITS = (
+    "Bodies move along one line. Impacts follow Newton's law of restitution, or the law of a "
+    "contact that has one; local damage, torsion and vertical motion are not computed.",
+    "Separation needed: the least gap at which nothing touches there, the other contacts as they "
+    "are. By sum, SRSS and CQC: of the peaks without contact (EN 1998-1, 4.4.2.7; ASCE 7-16, "
+    "12.12.3).",
+    "Seat width used is the motion in the earthquake only; the least bearing length, creep, "
+    "shrinkage, temperature and the motion of the ground between supports are to be added.",
+    "Residuals are those at the end of each run, with what still swings then.",
+)
+_FEW = 7
+"""Records from which on codes take a mean (EN 1998-1:2004, 4.3.3.4.3)."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a report is made of.
+
+    Parameters
+    ----------
+    case : Case
+        As it was run.
+    design : DataFrame
+        Its design numbers.
+    runs : DataFrame, optional
+        Table of a suite.
+    response : Response
+        The run, of a suite that under the governing record.
+    record : str
+        Which that is; empty of a single run.
+    """
+
+    case: Case
+    design: pd.DataFrame
+    runs: pd.DataFrame | None
+    response: Response
+    record: str
+
+    @property
+    def scene(self) -> Scene:
+        """What moves."""
+        return self.case.scene
+
+    @property
+    def names(self) -> Mapping[str, str]:
+        """What the records are called."""
+        return {} if self.runs is None else record_names(self.runs)
+
+
+def governing_record(scene: Scene, design: pd.DataFrame) -> str:
+    """The record under which the contact that lacks most needs most, or the largest peak is."""
+    rows = design.set_index("quantity")
+    if scene.contacts:
+        worst = scene.contacts[lacking_contacts(scene, design)[0]]
+        return str(rows.loc[NEEDED.replace("<contact>", worst.name), "under"])
+    peaks = rows.loc[[f"peaks.{body.name}.abs_max" for body in scene.bodies]]
+    return str(peaks.loc[peaks["largest"].idxmax(), "under"])
+
+
+def motion_under(case: Case, record: str) -> Response:
+    """The response to one record of a suite, with its history."""
+    assert case.suite is not None
+    member = next(m for m in case.suite.members(case.directory) if m.name == record)
+    return simulate(member_case(case, member, member.read()))
+
+
+def design_sheets(told: Told) -> list[Sheet]:
+    """The two sheets of a report."""
+    return [list(_first(told)), list(_second(told))]
+
+
+def _first(told: Told) -> Iterator[Block]:
+    """What is needed, and of what model."""
+    yield Head(told.case.title, title=True)
+    yield Words(tuple(_asked(told)))
+    yield Head("Design numbers")
+    numbers = report_cells(told.scene, told.design, told.names)
+    # Of a run they are narrow.
+    beside = Columns(tuple((table,) for table in numbers))
+    yield from (beside,) if told.runs is None else numbers
+    yield Head("Model")
+    yield from _model(told)
+
+
+def _model(told: Told) -> Iterator[Block]:
+    """The sketch and the tables of the parts; a tall sketch stands beside tables."""
+    sketch = Picture(model_figure(told.scene), _SKETCH)
+    tables = [_short(table) for table in input_tables(_inputs(told.case))]
+    narrow = [table for table in tables if len(table.headings) <= _WIDE]
+    wide, high = sketch.figure.get_size_inches()
+    if high > _TALL * wide:
+        yield Columns(((sketch,), tuple(narrow)))
+    else:
+        yield sketch
+        yield Columns(tuple(tuple(narrow[i::2]) for i in range(min(2, len(narrow)))))
+    yield from (table for table in tables if len(table.headings) > _WIDE)
+
+
+def _inputs(case: Case) -> dict[str, Any]:
+    """What was understood, without what says little: modes of single bodies, dashpots of modes."""
+    inputs = inputs_of(case)
+    structures = [each for each in inputs["structures"] if len(each["bodies"]) > 1]
+    inputs["structures"] = structures[:_MOST_STRUCTURES]
+    return inputs | ({"dashpots": []} if structures else {})
+
+
+def _second(told: Told) -> Iterator[Block]:
+    """Under what, when, and how sure."""
+    scene, peaks = told.scene, told.response.peaks["abs_max"]
+    worst = scene.contacts[lacking_contacts(scene, told.design)[0]] if scene.contacts else None
+    under = f" under record {told.names[told.record]}, which governs" if told.record else ""
+    view = View(gather(told.response, told.case), told.response.scene)
+    yield Head(f"Motion{under}")
+    yield Picture(governing_figure(view, worst, str(peaks.idxmax())), _MOTION)
+    if told.runs is not None:
+        yield Head("Demand over the records")
+        panels = demand_figure(scene, told.runs, _panels(told), trade_of(scene))
+        yield Picture(panels, _DEMAND)
+        yield Words((f"Dotted: {FRACTILES[0]:g} %, dashed: {FRACTILES[1]:g} % of the records.",))
+        yield Head("Records")
+        yield Columns(tuple((table,) for table in record_cells(told.runs)))
+    yield Head("Limits and warnings")
+    yield Words(tuple(f"• {text}" for text in _limits(told)))
+    yield Head("Origin")
+    yield Words(tuple(_origin(told)))
+
+
+def _asked(told: Told) -> Iterator[str]:
+    """Under how many records of which size, or under which motion, and what pounds."""
+    suite, runs, design = told.case.suite, told.runs, told.design
+    if suite is None or runs is None:
+        yield f"Under {_motion(told)}."
+    else:
+        scaling = (suite.options.scaling or "every record as it is").partition(" (")[0]
+        yield f"Under {int((runs[FAILED] == '').sum())} records; {scaling}."
+    for i in lacking_contacts(told.scene, design)[:_MOST_LISTED]:
+        contact = told.scene.contacts[i]
+        rows = design[design["quantity"].str.startswith(f"contacts.{contact.name}.")]
+        yield f"Contact {contact_words(contact, rows, trade_of(told.scene))}."
+
+
+def _motion(told: Told) -> str:
+    """The motion of a single run."""
+    motion, record = told.scene.motion, told.case.record
+    if isinstance(motion, Record):
+        said = (record.event, record.date, record.station, record.component) if record else ()
+        name = ", ".join(text for text in said if text) or "a record"
+        peak = three_digits(motion.peak / STANDARD_GRAVITY)
+        return f"{name}, times {three_digits(abs(motion.factor))}, peak {peak} g"
+    scales = motion.scales()
+    if scales is None:
+        return "no ground motion" if motion.kind == "none" else f"a motion, {motion.kind}"
+    peak = three_digits(scales.a_g / STANDARD_GRAVITY)
+    return f"a pulse, {motion.kind}, {peak} g, period {three_digits(scales.period)} s"
+
+
+def _short(table: Cells) -> Cells:
+    """A table of the model with three digits, without what the report has no room for."""
+    kept = [i for i, head in enumerate(table.headings) if not head.startswith(_LEFT_OUT)]
+    rows = tuple(
+        tuple(row[i] if table.words[i] else _three(row[i]) for i in kept)
+        for row in table.rows[:_MOST_PARTS]
+    )
+    more = table.more + max(0, len(table.rows) - _MOST_PARTS)
+    heads, words = [table.headings[i] for i in kept], [table.words[i] for i in kept]
+    return Cells(tuple(heads), rows, tuple(words), more)
+
+
+def _three(cell: str) -> str:
+    """A number with three digits at most."""
+    short = not cell or (f"{float(cell):.3g}" == cell and "e" not in cell)
+    return cell if short else three_digits(float(cell))
+
+
+def _panels(told: Told) -> list[list[Named]]:
+    """Demands that are drawn, those of one kind together."""
+    found = demands_of(told.scene, told.case.run.stated)
+    groups = ([n for n in found if n.quantity.path == path] for path in _PANELS)
+    return [group for group in groups if group][:_MOST_PANELS]
+
+
+def _limits(told: Told) -> Iterator[str]:
+    """What is not in the numbers, and what the case was warned of."""
+    yield from _LIMITS
+    if told.runs is not None:
+        failed = told.runs[told.runs[FAILED] != ""]
+        done = len(told.runs) - len(failed)
+        if done < _FEW:
+            last = f"{FRACTILES[1]:g} % fractile"
+            yield f"{done} records are few: the {last} depends on the largest one or two."
+        for row in failed.head(_MOST_WARNINGS).to_dict("records"):
+            yield f"Left out, because it failed: {row['record']}: {row[FAILED]}."
+    for warning in told.case.warnings[:_MOST_WARNINGS]:
+        yield warning.partition(".toml: ")[2] or warning
+
+
+def _origin(told: Told) -> Iterator[str]:
+    """What computed it, and the hashes that say of what."""
+    solver, record = told.case.solver, told.case.record
+    by = ", ".join(f"{name} {version}" for name, version in versions().items() if version)
+    yield f"Solver {solver.name}, relative tolerance {solver.rtol:g}. {by}."
+    hashes: dict[str, Any] = {"case": told_of(told.case)["case_sha256"]}
+    if told.runs is not None:
+        hashes["all records"] = sha256("".join(map(str, told.runs["sha256"])).encode())
+    elif record is not None:
+        hashes["record"] = record.sha256
+    yield f"SHA-256: {', '.join(f'{name} {value[:16]}' for name, value in hashes.items())}."

@@ -1,0 +1,165 @@
+"""The report of design numbers: two sheets of A4, in units of the trade, from matplotlib alone."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from eventpound import design_numbers, load_case, simulate
+from eventpound.case.case import Case
+from eventpound.cli import main
+from eventpound.report.design_report import Told, design_sheets
+from eventpound.report.model_layout import layout_of
+from eventpound.report.sheets import as_html, as_pdf
+from tests.report.test_page import CHROMIUM, Balanced
+from tests.study.test_suite import time_series
+
+CASES = Path(__file__).parents[2] / "cases"
+HEAD = """\
+title = "Three-span bridge on two piers"
+[excitation]
+kind = "record"
+suite = "?.txt"
+units = "g"
+time_step = "0.02 s"
+psa = "0.5 g"
+psa_period = "T1 of deck 2"
+"""
+PARTS = {
+    "body": [("deck 1", 900), ("deck 2", 1400), ("deck 3", 900), ("pier A", 160), ("pier B", 160)],
+    "bearing": [
+        *(("ground", "deck 1", 6), ("pier A", "deck 1", 9), ("pier A", "deck 2", 40)),
+        *(("pier B", "deck 2", 40), ("pier B", "deck 3", 9), ("deck 3", "ground", 6)),
+    ],
+    "joint": [
+        *(("barrier", "deck 1", 80), ("deck 1", "deck 2", 60)),
+        *(("deck 2", "deck 3", 60), ("deck 3", "barrier", 80)),
+    ],
+}
+
+
+def bridge() -> str:
+    """Three decks on bearings on two piers and two abutments, with a gap at each end of each."""
+    text = HEAD + "".join(
+        f'[[body]]\nname = "{name}"\nmass = "{mass} t"\n' for name, mass in PARTS["body"]
+    )
+    for pier in ("pier A", "pier B"):
+        text += (
+            f'[[spring]]\nname = "column {pier[-1]}"\nbetween = ["ground", "{pier}"]\n'
+            'law = "bouc-wen"\ninitial_stiffness = "120 MN/m"\nyield_force = "3200 kN"\n'
+            "hardening = 0.03\n"
+        )
+    for i, (first, second, k) in enumerate(PARTS["bearing"], 1):
+        text += (
+            f'[[spring]]\nname = "bearing {i}"\nbetween = ["{first}", "{second}"]\n'
+            f'law = "linear"\nstiffness = "{k} MN/m"\n'
+        )
+    for i, (left, right, gap) in enumerate(PARTS["joint"], 1):
+        text += (
+            f'[[contact]]\nname = "joint {i}"\nbetween = ["{left}", "{right}"]\n'
+            f'gap = "{gap} mm"\nrestitution = 0.6\n'
+        )
+    return text
+
+
+@pytest.fixture(scope="module")
+def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("bridge")
+    for name, amplitude in (("a", 0.2), ("b", 0.5), ("c", 0.8)):
+        (folder / f"{name}.txt").write_text(time_series(amplitude))
+    (folder / "case.toml").write_text(bridge())
+    assert main(["design", str(folder)]) == 0
+    return folder / "results" / "design"
+
+
+def told(case: Case) -> Told:
+    """The report of a single run."""
+    response = simulate(case, error_estimate=False)
+    return Told(case, design_numbers(case), None, response, "")
+
+
+def pages(pdf: bytes) -> int:
+    return len(re.findall(rb"/Type\s*/Page[^s]", pdf))
+
+
+def printed(folder: Path, html: bytes) -> int:
+    """Pages that a browser makes of it."""
+    if CHROMIUM is None:
+        pytest.skip("no Chromium here")
+    (folder / "page.html").write_bytes(html)
+    words = ["--headless", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer"]
+    file = folder / "page.pdf"
+    subprocess.run(
+        [CHROMIUM, *words, f"--print-to-pdf={file}", str(folder / "page.html")],
+        check=True,
+        capture_output=True,
+        timeout=120,
+    )
+    return pages(file.read_bytes())
+
+
+def test_the_command_writes_two_sheets_without_a_browser(suite: Path) -> None:
+    assert pages((suite / "design.pdf").read_bytes()) == 2
+    text = (suite / "design.html").read_text(encoding="utf-8")
+    parser = Balanced()
+    parser.feed(text)
+    assert parser.open == []
+    assert parser.links == []
+    assert all(source.startswith(("data:", "#")) for source in parser.sources)
+    assert text.count('<section class="sheet">') == 2
+
+
+def test_a_browser_prints_two_pages_of_it(suite: Path, tmp_path: Path) -> None:
+    assert printed(tmp_path, (suite / "design.html").read_bytes()) == 2
+
+
+@pytest.mark.parametrize("name", ["adjacent-buildings", "pair", "floor-to-column"])
+def test_runs_of_unlike_scenes_fit_on_two_pages(name: str, tmp_path: Path) -> None:
+    sheets = design_sheets(told(load_case(CASES / name)))
+    assert pages(as_pdf(name, sheets)) == 2
+    assert printed(tmp_path, as_html(name, sheets)) == 2
+
+
+def test_a_scene_without_contacts_has_a_report() -> None:
+    sheets = design_sheets(told(load_case(CASES / "elastic-record")))
+    assert "peak displacement" in as_html("", sheets).decode()
+
+
+def test_it_speaks_as_the_trade_does(suite: Path) -> None:
+    text = (suite / "design.html").read_text(encoding="utf-8")
+    plain = re.sub(r"<svg.*?</svg>|<style.*?</style>", "", text, flags=re.DOTALL)
+    numbers = re.findall(r"<td>([^<]+)</td>", plain)
+    assert len(numbers) > 100
+    for number in numbers:
+        digits = number.replace(".", "").lstrip("-0")
+        assert "e" not in digits, number
+        assert len(digits.rstrip("0")) <= 3, number
+    assert not re.search(r"Pi|Π|L_e|docs/|case\.toml|m/s\^2", plain)
+    for word in ("separation needed", "ductility", "kN s", "every record to a PSA of 0.5 g"):
+        assert word in plain
+    assert "3 records are few" in plain
+
+
+def test_it_says_what_is_left_out(suite: Path, tmp_path: Path) -> None:
+    for file in suite.parents[1].glob("*.t*"):
+        shutil.copy(file, tmp_path)
+    (tmp_path / "d.txt").write_text("0.1\nNaN\n")
+    assert main(["design", str(tmp_path)]) == 0
+    text = (tmp_path / "results" / "design" / "design.html").read_text(encoding="utf-8")
+    assert "Left out, because it failed: d.txt: " in text
+
+
+def test_decks_stand_on_bearings_on_piers(suite: Path) -> None:
+    scene = load_case(suite.parents[1]).scene
+    boxes = layout_of(scene).boxes
+    decks, piers = (
+        [boxes[f"{kind} {i}"] for i in names] for kind, names in (("deck", "123"), ("pier", "AB"))
+    )
+    assert [box.x for box in decks] == sorted(box.x for box in decks)
+    for i, pier in enumerate(piers):
+        assert pier.top < decks[0].bottom
+        assert decks[i].x < pier.x < decks[i + 1].x
