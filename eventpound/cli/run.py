@@ -31,6 +31,15 @@ if TYPE_CHECKING:
 
 _WORTH_A_LINE = 2.0
 """Seconds of compilation; kept kernels take less to load."""
+_DEMANDS = {
+    "contacts.<>.largest_gap": ("opening", "m"),
+    "contacts.<>.seat_used": ("seat", "m"),
+    "contacts.<>.max_impulse": ("impulse", "N s"),
+    "springs.<>.ductility": ("ductility", ""),
+}
+"""Quantities of contacts and springs that are printed: words and units (SI)."""
+_MOST_DEMANDS = 12
+"""Contacts and springs with a line."""
 
 
 def add(commands: Commands) -> None:
@@ -186,9 +195,31 @@ def _summary(response: Response) -> Iterator[str]:
         resting = float(sum(recording.resting_time))
         # Some solvers do not know it.
         rested = "" if math.isnan(resting) else f"; resting {resting:.4f} s in all contacts"
-        yield f"impacts   {response.impacts}{rested}"
+        speed = 100.0 * response.stated.threshold_speed
+        faster = response.runs.contact_numbers.impacts_faster.sum()
+        counted = f"{response.impacts}, {faster:.0f} faster than {speed:.4g} cm/s"
+        yield f"impacts   {counted}{rested}"
+    yield from _demands(response)
     work = response.work
     by = f"({response.solver}, rtol {response.task.rtol:g})"
     yield f"work      {work.steps} steps, {work.rhs} right-hand sides, {work.seconds:.3f} s {by}"
     if work.compilation >= _WORTH_A_LINE:
         yield f"compiled  {work.compilation:.0f} s, not needed by later runs"
+
+
+def _demands(response: Response) -> Iterator[str]:
+    """What contacts and yielding springs need, a line each, in units of the trade."""
+    from eventpound.results.trade import trade_of
+
+    trade, numbers = trade_of(response.scene), response.numbers()
+    parts: dict[str, list[str]] = {}
+    for path, (word, unit) in _DEMANDS.items():
+        kind, _, quantity = path.partition(".<>.")
+        for name, value in numbers.items():
+            owner = name.removeprefix(f"{kind}.").removesuffix(f".{quantity}")
+            if name == f"{kind}.{owner}.{quantity}" and value is not None:
+                parts.setdefault(owner, []).append(f"{word} {trade.words(abs(value), unit, name)}")
+    shown = list(parts.items())[:_MOST_DEMANDS]
+    yield from (f"{owner:<16} {', '.join(texts)}" for owner, texts in shown)
+    if len(parts) > len(shown):
+        yield f"{'':<16} and {len(parts) - len(shown)} more; `eventpound design` has all"

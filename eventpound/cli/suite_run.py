@@ -107,7 +107,10 @@ def _summary(case: Case, table: pd.DataFrame) -> Iterator[str]:
         yield f"{body.name:<16} largest |u| {peaks.min():.3e} to {peaks.max():.3e} m"
     if case.scene.contacts:
         struck = int((done["impacts"] > 0).sum())
-        yield f"impacts   {int(done['impacts'].sum())}, under {struck} of {len(done)} records"
+        faster = sum(done[f"contacts.{c.name}.impacts_faster"].sum() for c in case.scene.contacts)
+        speed = f"{100.0 * case.run.stated.threshold_speed:.4g} cm/s"
+        counted = f"{int(done['impacts'].sum())}, {int(faster)} faster than {speed}"
+        yield f"impacts   {counted}, under {struck} of {len(done)} records"
     if "error_estimate" in done:
         yield f"error     {done['error_estimate'].max():.1e} of the peaks, estimated, at most"
     if case.scene.bodies:

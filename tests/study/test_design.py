@@ -168,3 +168,22 @@ def test_the_command_takes_a_run_and_a_study(
 )
 def test_three_digits_without_an_exponent(value: float, text: str) -> None:
     assert three_digits(value) == text
+
+
+def test_a_run_and_a_suite_say_how_many_impacts_matter(
+    suite: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", str(suite), "--no-figures"]) == 0
+    table = pd.read_csv(suite / "results" / "suite.csv")
+    count, faster = (int(table[JOINT + word].sum()) for word in ("impacts", "impacts_faster"))
+    assert (
+        f"impacts   {count}, {faster} faster than 1 cm/s, under 3 of 4" in capsys.readouterr().out
+    )
+    text = (suite / "case.toml").read_text().replace("suite = ", "file = ").replace("?", "d")
+    (suite / "case.toml").write_text(text + '[run]\nthreshold_speed = "20 cm/s"\n')
+    assert main(["run", str(suite), "--no-figures"]) == 0
+    out = capsys.readouterr().out
+    found = simulate(load_case(suite), error_estimate=False)
+    faster = int(found.summary[JOINT + "impacts_faster"])
+    assert f"impacts   {found.impacts}, {faster} faster than 20 cm/s" in out
+    assert f"ductility {three_digits(found.summary['springs.frame.ductility'])}" in out
