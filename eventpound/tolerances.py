@@ -92,9 +92,8 @@ FLEETING = 1e-12
 limit of one cascade do so one after the other here, and rounding decides in which order: what
 accelerates those that are first until the last rests is nobody's acceleration."""
 RELEASED_AT = 1e-9
-"""Part of T within which the series of a contact force tells its zero to rounding."""
-VANISHED_WITHIN = 1e3
-"""Instants within which a force that is nothing must have become so to be one that vanishes."""
+"""Part of T within which a contact force tells its zero to rounding, and those that vanish together
+do so."""
 REVERSAL_WITHIN = 1e-12
 """Part of a step within which a reversal is located: on the wrong side of it z errs by the
 square of the distance. Reversals that are as near to each other or to an end are there."""

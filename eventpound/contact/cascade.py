@@ -11,6 +11,7 @@ without an end while it loses energy, and has a limit; without a loss it has non
     below `FADED` of the fastest of the same instant       rounding: no speed at all
     interval below `LAST_INTERVAL` T                       gaps are zero, plastic
     mode that ends within `FLEETING` T of a rest           not seen in extremes and history
+    no impact for `CASCADE_OVER` T                         over: what was held back is listed
     `WINDOW` problems in one instant lose nothing          an error
     `MOST_PROBLEMS` in one instant                         plastic
 """
@@ -21,10 +22,10 @@ from collections import Counter
 from collections.abc import Sequence
 
 from eventpound.contact.event import Event, EventKind
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.contact import Contact
-from eventpound.tolerances import FLEETING, LAST_SPEED, LISTED_SPEED, LOSSLESS
+from eventpound.tolerances import CASCADE_OVER, FLEETING, LAST_SPEED, LISTED_SPEED, LOSSLESS
 
 CLOCK_PLACES = 9
 (T, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT, SETTLED_AT) = (
@@ -99,6 +100,15 @@ def is_fleeting(tau: float, clock: Floats, time: float) -> bool:
     `time`: the scene's own (s).
     """
     return bool(clock[T] - clock[RESTED_AT] + tau < FLEETING * time)
+
+
+@scalar_kernel
+def is_over(clock: Floats, count: Ints, time: float) -> bool:
+    """Whether a cascade was under way that is over, its last impact long ago.
+
+    `time`: the scene's own (s).
+    """
+    return bool(count[IN_A_ROW] > 0 and clock[SINCE_IMPACT] > CASCADE_OVER * time)
 
 
 def crowded_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:

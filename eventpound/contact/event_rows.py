@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.contact.cascade import EVENTS, GROUPS, RESTED_AT, T
+from eventpound.contact.cascade import EVENTS, GROUPS, IN_A_ROW, RESTED_AT, T
 from eventpound.contact.event import Event, EventKind
 from eventpound.contact.modes import transition_code
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -151,6 +151,7 @@ def gather_unlisted(contact: int, count: Ints, events: Floats) -> None:
 @scalar_kernel
 def list_all(count: Ints, events: Floats) -> None:
     """List the impacts that were held back: their cascade has ended otherwise."""
+    count[IN_A_ROW] = 0
     for i in range(count[EVENTS]):
         if events[i, 1] == UNLISTED:
             events[i, 1] = IMPACT

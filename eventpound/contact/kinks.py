@@ -7,7 +7,7 @@ from eventpound.contact.state import Instant
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import scalar_kernel
-from eventpound.tolerances import LENGTH, SPEED
+from eventpound.tolerances import LENGTH, SPEED, TOGETHER
 
 
 @scalar_kernel
@@ -21,6 +21,15 @@ def _beyond(a: int, at: Instant) -> float:
     """How far the elongation of a link is beyond its kink (m); zero where it is on it."""
     x = difference(at.u, at.ends[a, 0], at.ends[a, 1]) - at.offset[a]
     return x if abs(x) > LENGTH * at.length else 0.0
+
+
+@scalar_kernel
+def passes_kink(distance: float, approach: float, length: float, time: float) -> bool:
+    """Whether a link that nears its kink at a speed (m/s) from a distance (m) is there at once.
+
+    length, time: the scene's own, L (m) and T (s).
+    """
+    return approach > 0.0 and distance <= LENGTH * length + TOGETHER * time * approach
 
 
 @scalar_kernel

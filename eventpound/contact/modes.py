@@ -23,6 +23,7 @@ and where the ground acceleration jumps.
 from __future__ import annotations
 
 from eventpound.numerics.compiled import scalar_kernel
+from eventpound.tolerances import RELEASED_AT
 
 NONE, IMPACT, ACCELERATION = range(3)
 """What an instant demands of a contact: nothing, an impact, the acceleration problem."""
@@ -52,3 +53,13 @@ def transition_code(was_resting: bool, rests: bool, gap_rate: float) -> int:
     if rests:
         return 1
     return 3 if gap_rate > 0.0 else 2
+
+
+@scalar_kernel
+def force_vanishes(force: float, rate: float, level: float, time: float) -> bool:
+    """Whether a contact force (N) vanishes in the instant in which another does.
+
+    Such forces do so within rounding of each other; one that dies away is small, but does not
+    vanish. rate (N/s); level: rounding of the force (N); time: the scene's own (s).
+    """
+    return abs(force) <= level and abs(force) <= abs(rate) * RELEASED_AT * time

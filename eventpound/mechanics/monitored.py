@@ -14,6 +14,7 @@ import numpy as np
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.tolerances import ATTAINED_ANEW, SETTLED
 
@@ -159,6 +160,13 @@ def blank_extremes(at: Places, scales: Sizes) -> Floats:
     for kind, size in zip(KINDS, sizes, strict=True):
         table[..., 4, columns_of_kind(kind, at)] = ATTAINED_ANEW * size[..., None]
     return table
+
+
+@scalar_kernel
+def copy_extremes(source: Floats, target: Floats) -> None:
+    """Copy extremes and their times from one table to another of the same columns."""
+    for row in range(4):
+        copy_numbers(source[row], target[row])
 
 
 @scalar_kernel

@@ -24,10 +24,22 @@ from eventpound.motion.record import Record
 from eventpound.motion.ricker import Ricker
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import by_python, in_python
-from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    BilinearElastic,
+    Body,
+    BoucWen,
+    Contact,
+    Dashpot,
+    Linear,
+    Scene,
+    Spring,
+)
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Extremes, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.fast import solver as fast
 
 MADE_UP = 3
 """Columns of a quantity that is made up, before all others; no value of it is ever new."""
@@ -54,6 +66,13 @@ def alone() -> Scene:
     return replace(scene, bodies=scene.bodies[:1], springs=scene.springs[:1], contacts=contacts)
 
 
+def damped() -> Scene:
+    """One body that turns within steps from sample to sample, where its acceleration does not."""
+    scene, spring = shaken(), Spring("left", (GROUND, "a"), Linear(4.0))
+    contacts, dashpots = (Contact("end", "a", BARRIER, 1.0, 0.5),), (Dashpot((GROUND, "a"), 1.0),)
+    return Scene(scene.bodies[:1], (spring,), dashpots, contacts, scene.motion)
+
+
 def apart() -> Scene:
     """Two bodies that yield, each on a spring of its own, under a formula."""
     scene = shaken(True)
@@ -61,7 +80,22 @@ def apart() -> Scene:
     return replace(scene, springs=springs, dashpots=(), motion=Ricker(4.0, 1.2))
 
 
-SCENES = {"a record": shaken(), "that yields": shaken(True), "alone": alone(), "apart": apart()}
+def resting() -> Scene:
+    """Two bodies that meet and rest: extremes are remembered before a mode that may be none."""
+    pushed = BilinearElastic(4.0, 4.0, 0.1)
+    springs = Spring("left", (GROUND, "a"), pushed), Spring("right", (GROUND, "b"), Linear(1.0))
+    joint = Contact("joint", "a", "b", 0.01, 0.0)
+    return Scene((Body("a", 1.0), Body("b", 1.0)), springs, (), (joint,))
+
+
+SCENES = {
+    "a record": shaken(),
+    "that yields": shaken(True),
+    "alone": alone(),
+    "damped": damped(),
+    "apart": apart(),
+    "at rest": resting(),
+}
 
 
 def test_columns_follow_each_other_and_are_told_for_every_kind() -> None:
@@ -111,6 +145,8 @@ def test_nobody_else_knows_where_they_are(
         table[..., 0, :MADE_UP], table[..., 2, :MADE_UP] = np.inf, -np.inf
         return table
 
+    # No run is made in arrays that were laid out before.
+    monkeypatch.setattr(fast, "_last_of_thread", fast._LastOfThread())
     for module in list(sys.modules.values()):
         if getattr(module, "places_of", None) is original:
             monkeypatch.setattr(module, "places_of", moved)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import (
-    IN_A_ROW,
     STALE,
     endless_message,
     long_message,
@@ -76,7 +75,7 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
         Where an instant has no solution or cascades have no end.
     """
     count = now.state.count
-    count[IN_A_ROW] = count[KNOTS] = count[SHORT_STEPS] = 0
+    count[KNOTS] = count[SHORT_STEPS] = 0
     count[PHASE] = DUTIES
     most = now.steps
     ended = DONE

@@ -12,10 +12,13 @@ is known by coefficients: the gaps of a local series).
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from eventpound.contact.kinks import passes_kink
+from eventpound.contact.modes import force_vanishes
 from eventpound.mechanics.monitored import Running, motion_of, update_turning_point
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools
@@ -24,7 +27,7 @@ from eventpound.numerics.hermite import cubic_bernstein
 from eventpound.solvers.events.dense import DenseStep, look
 from eventpound.solvers.events.event_bounds import Found, Watched
 from eventpound.solvers.events.run import Happened, Rules
-from eventpound.tolerances import EPS, LENGTH, VANISHED_WITHIN
+from eventpound.tolerances import EPS, LENGTH
 
 DEPTH = 12
 """Halvings after which a stretch without a change of sign counts as clear."""
@@ -115,7 +118,8 @@ def first_below(sought: Sought, end: float, step: DenseStep) -> float:
         clear = not below and (short or min(c) > 0.05 * (max(c) - min(c)) - noise)
         if not (clear or below) and a.rate < 0.0 < b.rate:
             bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
-            lowest = _sample(_turning_point(bracket, 2.0 * EPS * b.tau, sought, step), sought, step)
+            tau = turning_point(_rate_at, (sought, step), bracket, 2.0 * EPS * b.tau)
+            lowest = _sample(tau, sought, step)
             if lowest.value < -noise:
                 return _falling_root(a, lowest, sought, step)
             clear = True
@@ -159,7 +163,7 @@ class Bracket(NamedTuple):
 
 
 @scalar_kernel
-def next_inside(bracket: Bracket) -> float:
+def _next_inside(bracket: Bracket) -> float:
     """Where the chord of a bracket vanishes; its middle where rounding puts that outside."""
     a, at_a, b, at_b = bracket
     x = b - at_b * (b - a) / (at_b - at_a)
@@ -167,7 +171,7 @@ def next_inside(bracket: Bracket) -> float:
 
 
 @scalar_kernel
-def narrowed(bracket: Bracket, x: float, at_x: float) -> Bracket:
+def _narrowed(bracket: Bracket, x: float, at_x: float) -> Bracket:
     """The bracket with a rate known inside it, by Anderson and Björck's rule.
 
     The end that stays has its rate scaled down, so that the next chord comes from its side
@@ -181,15 +185,25 @@ def narrowed(bracket: Bracket, x: float, at_x: float) -> Bracket:
 
 
 @kernel
-def _turning_point(bracket: Bracket, tolerance: float, sought: Sought, step: DenseStep) -> float:
-    """Time inside a bracket at which the rate of a quantity vanishes (s)."""
+def turning_point(
+    rate_at: Callable[[float, Any], float], of: Any, bracket: Bracket, tolerance: float
+) -> float:
+    """Time inside a bracket at which a rate vanishes, to a tolerance (s).
+
+    `rate_at` tells it at a time (s), from what it is the rate `of`.
+    """
     for _ in range(MOST_ITERATIONS):
-        x = next_inside(bracket)
-        rate = _sample(x, sought, step).rate
+        x = _next_inside(bracket)
+        rate = rate_at(x, of)
         if rate == 0.0 or abs(x - bracket.b) <= tolerance:
             return x
-        bracket = narrowed(bracket, x, rate)
+        bracket = _narrowed(bracket, x, rate)
     return bracket.b
+
+
+@kernel
+def _rate_at(tau: float, of: tuple[Sought, DenseStep]) -> float:
+    return _sample(tau, of[0], of[1]).rate
 
 
 @kernel
@@ -276,9 +290,7 @@ def anything(happened: Happened) -> bool:
 def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happened) -> None:
     """What happens in the instant in which a contact force vanishes.
 
-    Forces that vanish together do so within rounding of each other; one that dies away is
-    small, but does not vanish. Of links that pass their kink in this instant, what follows
-    is told by the other branch.
+    Of links that pass their kink in it, what follows is told by the other branch.
     """
     released = False
     for j in range(happened.released.size):
@@ -286,16 +298,14 @@ def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happe
     if not released:
         return
     for j in range(happened.released.size):
-        force, rate = abs(seen.contact_force[0, j]), abs(seen.contact_force[1, j])
-        falls = force <= rate * (VANISHED_WITHIN * rules.instant)
-        if watched.unlocked[j] and force <= watched.force_noise and falls:
+        force, rate = seen.contact_force[0, j], seen.contact_force[1, j]
+        if watched.unlocked[j] and force_vanishes(force, rate, watched.force_noise, rules.time):
             happened.released[j] = True
     for a in range(happened.kinked.size):
         x, x_rate = seen.elongation[0, a], seen.elongation[1, a]
-        reach = LENGTH * rules.length + rules.instant * abs(x_rate)
-        falls = x_rate < 0.0 and x - watched.kink_low[a] <= reach
-        rises = x_rate > 0.0 and watched.kink_high[a] - x <= reach
-        if falls or rises:
+        length, time = rules.length, rules.time
+        falls = passes_kink(x - watched.kink_low[a], -x_rate, length, time)
+        if falls or passes_kink(watched.kink_high[a] - x, x_rate, length, time):
             happened.kinked[a] = True
 
 
@@ -382,6 +392,6 @@ def _take_turn(
     """Take the turning point between two samples, if any, into the extremes."""
     if a.rate * b.rate < 0.0:
         bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
-        tau = _turning_point(bracket, 4.0 * EPS * step.dense.end, sought, step)
+        tau = turning_point(_rate_at, (sought, step), bracket, 4.0 * EPS * step.dense.end)
         value = _sample(tau, sought, step).value
         update_turning_point(sought.index, value, step.forcing.start + tau, near, running)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import SINCE_IMPACT, STALE, T
-from eventpound.mechanics.monitored import update_extremes, update_settled
+from eventpound.mechanics.monitored import copy_extremes, update_extremes, update_settled
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,
@@ -160,13 +160,11 @@ def put_present(run: Run, settled: bool) -> None:
 def hold(record: RunRecord) -> None:
     """Remember history and extremes as they are, for `forget_held`."""
     record.held_rows[0] = record.journal.cursor[WRITTEN]
-    for row in range(record.held.shape[0]):
-        copy_numbers(record.extremes[row], record.held[row])
+    copy_extremes(record.extremes, record.held)
 
 
 @kernel
 def forget_held(record: RunRecord) -> None:
     """Take back what has come into history and extremes since `hold`."""
     record.journal.cursor[WRITTEN] = record.held_rows[0]
-    for row in range(record.held.shape[0]):
-        copy_numbers(record.held[row], record.extremes[row])
+    copy_extremes(record.held, record.extremes)

@@ -21,13 +21,7 @@ from eventpound.mechanics.reduced import Reduced, link_motion
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.dense import Dense
-from eventpound.solvers.events.location import (
-    MOST_ITERATIONS,
-    PARTS,
-    Bracket,
-    narrowed,
-    next_inside,
-)
+from eventpound.solvers.events.location import PARTS, Bracket, turning_point
 from eventpound.tolerances import EPS, HELD_BELOW, REVERSAL_WITHIN
 
 NEGLIGIBLE = 0.01
@@ -169,13 +163,14 @@ def _reversal(a: int, way: float, dense: Dense, origin: float, system: Reduced) 
     if at_high >= 0.0:
         return np.inf
     bracket = Bracket(low, at_low, high, at_high)
-    for _ in range(MOST_ITERATIONS):
-        tau = next_inside(bracket)
-        rate = way * _side_on(tau, a, dense, origin, system)
-        if rate == 0.0 or abs(tau - bracket.b) <= _instant(dense):
-            return tau
-        bracket = narrowed(bracket, tau, rate)
-    return bracket.b
+    return turning_point(_ahead, (way, a, dense, origin, system), bracket, _instant(dense))
+
+
+@kernel
+def _ahead(tau: float, of: tuple[float, int, Dense, float, Reduced]) -> float:
+    """`_side_on` along the direction in which the link moves."""
+    way, a, dense, origin, system = of
+    return way * _side_on(tau, a, dense, origin, system)
 
 
 @kernel

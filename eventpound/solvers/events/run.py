@@ -30,8 +30,7 @@ class Rules(NamedTuple):
 
     atol_u (m), atol_v (m/s), shape (N,), atol_z (H,), atol_energy (J), rtol:
     tolerances. length (m), time (s): the scene's own. near: time about a flat peak within
-    which two attainments are one (s). length_noise: lengths without a sign (m). instant: time
-    within which forces that vanish do so together (s).
+    which two attainments are one (s). length_noise: lengths without a sign (m).
     """
 
     atol_u: Floats
@@ -43,7 +42,6 @@ class Rules(NamedTuple):
     time: float
     near: float
     length_noise: float
-    instant: float
 
 
 class State(NamedTuple):

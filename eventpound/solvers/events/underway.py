@@ -62,7 +62,7 @@ from eventpound.solvers.events.run import (
 )
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.events.step_check import broken_contact, contact_error
-from eventpound.tolerances import FLAT_WITHIN, FORCE, GAP, TOGETHER
+from eventpound.tolerances import FLAT_WITHIN, FORCE, GAP
 
 SPARE_ROWS = 64
 """Lines of the history for which there is room at first beside those at output times, and
@@ -298,7 +298,6 @@ def _rules_of(task: Task, scales: SceneScales) -> Rules:
         # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
         near=FLAT_WITHIN * scales.time,
         length_noise=GAP * scales.length,
-        instant=TOGETHER * scales.time,
     )
 
 

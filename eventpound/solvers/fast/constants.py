@@ -324,7 +324,7 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         single=Single(np.zeros(1, BODY), np.zeros(most), turns, work),
         each=_blank_each(plan, loaded),
         tables=blank_tables(bodies, links),
-        held=np.zeros((4, 2 * bodies + links + 2 * contacts + 1)),
+        held=np.zeros((4, in_python(places_of)(bodies, plan.links.springs, contacts).end)),
     )
 
 

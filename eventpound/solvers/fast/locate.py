@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.kinks import still_rate
+from eventpound.contact.modes import force_vanishes
 from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.links import CORE, UNLOADING, UP, place
@@ -40,7 +41,6 @@ from eventpound.tolerances import (
     GAP_COEFFICIENT,
     LENGTH,
     OF_BACKBONE,
-    RELEASED_AT,
     SAME_INSTANT,
 )
 
@@ -262,13 +262,11 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
             happened.released[j] = True
             any_released = True
     if any_released:
-        # Forces that vanish together do so within rounding of each other, on the same series;
-        # one that dies away is small, but does not vanish.
         for j in range(state.resting.size):
             if state.unlocked[j]:
                 value, slope = value_and_slope(forces[j, : order - 1], first)
-                falls = abs(value) <= abs(slope) * RELEASED_AT * limits.time
-                happened.released[j] = happened.released[j] or (abs(value) <= level and falls)
+                vanishes = force_vanishes(value, slope, level, limits.time)
+                happened.released[j] = happened.released[j] or vanishes
     return first
 
 

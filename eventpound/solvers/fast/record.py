@@ -15,6 +15,7 @@ from eventpound.contact.event_rows import events_wanted
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
+from eventpound.mechanics.monitored import copy_extremes
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.motion.loads import (
     LOADED,
@@ -24,7 +25,6 @@ from eventpound.motion.loads import (
     rows_of,
 )
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events.recorder import put_line
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
@@ -100,8 +100,7 @@ def hold(run: FastRun) -> None:
     if not is_fleeting(0.0, state.clock, plan.limits.time):
         return
     state.count[HELD], state.clock[HELD_AT] = state.count[ROWS], state.clock[T]
-    for row in range(series.held.shape[0]):
-        copy_numbers(record.extremes[row], series.held[row])
+    copy_extremes(record.extremes, series.held)
 
 
 @compiled_apart
@@ -115,8 +114,7 @@ def forget(run: FastRun) -> None:
     count[ROWS], clock[T] = count[HELD], clock[HELD_AT]
     while count[OUTPUT] > 0 and times[count[OUTPUT] - 1] >= clock[T]:
         count[OUTPUT] -= 1
-    for row in range(series.held.shape[0]):
-        copy_numbers(series.held[row, : record.extremes.shape[1]], record.extremes[row])
+    copy_extremes(series.held, record.extremes)
 
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)

@@ -215,7 +215,7 @@ class FastSeries(NamedTuple):
     (p + 3, N): of the loads on bodies, empty without any.
     Where contacts rest: contact_force (K, p + 3), rests (K,) and elimination (K, 4) as in
     `eventpound.mechanics.clusters`, the first rows. single: of a single body. each: of
-    bodies that go apart. tables: exact steps from sample to sample. held (4, M or more): extremes
+    bodies that go apart. tables: exact steps from sample to sample. held (4, M): extremes
     before a mode that may be none.
     """
 

@@ -8,7 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import IN_A_ROW, LONGEST_CASCADE, SINCE_IMPACT, T, is_fleeting
+from eventpound.contact.cascade import (
+    IN_A_ROW,
+    LONGEST_CASCADE,
+    SINCE_IMPACT,
+    T,
+    is_fleeting,
+    is_over,
+)
 from eventpound.contact.event_rows import end_cascade
 from eventpound.contact.impacts import DONE
 from eventpound.motion.base import Family
@@ -57,7 +64,7 @@ from eventpound.solvers.fast.run import (
     Seen,
 )
 from eventpound.solvers.fast.search import force_level, set_travel
-from eventpound.tolerances import CASCADE_OVER, DRIFTED, FORCE, PENETRATED, PULLED, RELEASED_AT
+from eventpound.tolerances import DRIFTED, FORCE, PENETRATED, PULLED, RELEASED_AT
 
 _SAMPLES = int(Family.SAMPLES)
 SOONER = 0.2
@@ -108,9 +115,8 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     else:
         clock[GUESS] = tau
         count[STALLED] = 0
-        if count[IN_A_ROW] > 0 and clock[SINCE_IMPACT] > CASCADE_OVER * plan.limits.time:
-            end_cascade(state.resting, state.count, record.events)
-            count[IN_A_ROW] = 0
+        if is_over(clock, count, plan.limits.time):
+            end_cascade(state.resting, count, record.events)
     endless = t_end == t and count[IN_A_ROW] > LONGEST_CASCADE
     return STUCK if endless or count[STALLED] > MOST_STALLS else DONE
 

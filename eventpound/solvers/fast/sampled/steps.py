@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T
+from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T, is_over
 from eventpound.contact.event_rows import end_cascade
 from eventpound.mechanics.monitored import update_all, update_extreme
 from eventpound.motion.forcing import CurrentPiece
@@ -52,7 +52,7 @@ from eventpound.solvers.fast.sampled.forces import (
 )
 from eventpound.solvers.fast.sampled.room import set_room, stays_in_room
 from eventpound.solvers.fast.sampled.series import expand_linear
-from eventpound.tolerances import CASCADE_OVER, SAME_SAMPLE
+from eventpound.tolerances import SAME_SAMPLE
 
 
 @compiled
@@ -238,13 +238,8 @@ def _accept(step: ProposedStep, t: float, run: FastRun) -> None:
     set_gaps(plan, state)
     if step.what == CLOSING:
         state.gap[step.which] = 0.0
-    elif (
-        step.what == NOTHING
-        and count[IN_A_ROW] > 0
-        and clock[SINCE_IMPACT] > CASCADE_OVER * plan.limits.time
-    ):
-        end_cascade(state.resting, state.count, record.events)
-        count[IN_A_ROW] = 0
+    elif step.what == NOTHING and is_over(clock, count, plan.limits.time):
+        end_cascade(state.resting, count, record.events)
     _take_extremes(t, run)
 
 

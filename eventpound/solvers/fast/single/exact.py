@@ -292,11 +292,7 @@ def sample_steps(
         low, high = u_1, u_1
         if not one_way:
             low, high = u - reach, u + reach
-            if (
-                part != CORE
-                or low < running.minimum[0] - running.rounding[0]
-                or high > running.maximum[0] + running.rounding[0]
-            ):
+            if part != CORE or not stays_within(running.at.displacement, low, high, running):
                 break
         if not (lowest < low and high < highest):
             break

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T, end_flight
+from eventpound.contact.cascade import SINCE_IMPACT, T, end_flight, is_over
 from eventpound.contact.event_rows import list_all
 from eventpound.contact.impacts import FULL
 from eventpound.motion.forcing import CurrentPiece
@@ -65,7 +65,7 @@ from eventpound.solvers.fast.single.series import (
     pair_at,
     shorter,
 )
-from eventpound.tolerances import CASCADE_OVER, GAP_COEFFICIENT, OF_BACKBONE
+from eventpound.tolerances import GAP_COEFFICIENT, OF_BACKBONE
 
 FREE, TURNED, CROSSED, CLOSED_RIGHT, CLOSED_LEFT = 0, 1, 2, 3, 4
 """How a step ends."""
@@ -317,8 +317,8 @@ def arrive(tau: float, t_end: float, turned: bool, event: int, run: SingleRun) -
     code = audit(run.count, body)
     if code == GOING_ON and event != FREE:
         _happen(event, t_end, run)
-    elif run.count[IN_A_ROW] > 0:
-        _end_cascade(run)
+    elif is_over(run.clock, run.count, run.limits.time):
+        list_all(run.count, run.events)
     return code
 
 
@@ -383,14 +383,6 @@ def _move(body: SingleBody) -> None:
     body.left = far if far >= body.own_gap else near
     body.u, body.v, body.z, body.a = u, body.rate, body.next_z, body.next_a
     body.even, body.odd = body.next_g, body.next_odd
-
-
-@compiled
-def _end_cascade(run: SingleRun) -> None:
-    """List what was held back once the last impact is long ago."""
-    if run.clock[SINCE_IMPACT] > CASCADE_OVER * run.limits.time:
-        list_all(run.count, run.events)
-        run.count[IN_A_ROW] = 0
 
 
 @compiled
