@@ -312,11 +312,14 @@ class Response:
         """
         import pandas as pd
 
+        return pd.DataFrame(self.event_rows(), columns=list(EVENT_COLUMNS))
+
+    def event_rows(self) -> list[tuple[Any, ...]]:
+        """Rows of `events`."""
         names = [contact.name for contact in self.scene.contacts]
-        rows = [
+        return [
             (e.t, e.kind.value, e.group, names[e.contact], *e[4:]) for e in self.recording.events
         ]
-        return pd.DataFrame(rows, columns=list(EVENT_COLUMNS))
 
     @property
     def history(self) -> pd.DataFrame:
@@ -335,6 +338,14 @@ class Response:
         """
         import pandas as pd
 
+        table = pd.DataFrame(self.history_columns())
+        if not jumps:
+            table = table.drop_duplicates("t", keep="last", ignore_index=True)
+        table.attrs["units"] = {name: HISTORY_UNITS[name.partition(".")[0]] for name in table}
+        return table
+
+    def history_columns(self) -> dict[str, Floats]:
+        """Columns of `history`, by their names."""
         h = self.recording.history
         columns = {"t": h.t, "a_g": h.ground}
         for prefix, values, names in (
@@ -354,11 +365,7 @@ class Response:
                 columns[f"s.{support.name}"] = supports.s[:, column]
                 columns[f"sv.{support.name}"] = supports.sv[:, column]
                 columns[f"sf.{support.name}"] = supports.force[:, column]
-        table = pd.DataFrame(columns)
-        if not jumps:
-            table = table.drop_duplicates("t", keep="last", ignore_index=True)
-        table.attrs["units"] = {name: HISTORY_UNITS[name.partition(".")[0]] for name in columns}
-        return table
+        return columns
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the displacements of the bodies, with circles at impacts.

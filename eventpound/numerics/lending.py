@@ -30,7 +30,6 @@ from numba.core.errors import TypingError
 from numba.core.imputils import lower_builtin, lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import NativeValue, register_model, type_callable, unbox
-from numba.np.arrayobj import populate_array
 from numba.np.numpy_support import from_dtype
 
 _GROUPS = (types.NamedTuple, types.NamedUniTuple)
@@ -38,7 +37,6 @@ _LENGTH = ir.IntType(64)
 _ADDRESS = ir.IntType(8).as_pointer()
 _unpacked: Any = cgutils.unpack_tuple
 _room_for: Any = cgutils.alloca_once
-_populate: Any = populate_array
 _named_tuple: Any = types.BaseTuple.from_types
 _tuple_of: Any = types.UniTuple
 _native: Any = NativeValue
@@ -184,8 +182,12 @@ def _array(context: Any, builder: Any, kind: Any, table: Any, word: int) -> Any:
     strides = [size]
     for length in shape[:0:-1]:
         strides.insert(0, builder.mul(strides[0], length))
+    # A tenth of Numba, which only who compiles needs.
+    from numba.np import arrayobj
+
     array = context.make_array(kind)(context, builder)
-    _populate(
+    populate: Any = arrayobj.populate_array
+    populate(
         array,
         data=_read(builder, table, word, element.as_pointer()),
         shape=shape,

@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
 
 def rows_csv(rows: Iterable[Iterable[object]]) -> bytes:
-    """Rows of cells as CSV, UTF-8; every number reads back as the same double."""
+    """Rows of cells as CSV, UTF-8; every number reads back as the same double, NaN is empty."""
     text = io.StringIO(newline="")
-    csv.writer(text, lineterminator="\n").writerows(rows)
+    cells = (["" if cell != cell else cell for cell in row] for row in rows)
+    csv.writer(text, lineterminator="\n").writerows(cells)
     return text.getvalue().encode()
 
 

@@ -8,12 +8,13 @@ from datetime import datetime
 
 from eventpound.case.case import Case
 from eventpound.given import checked
-from eventpound.response import Response
+from eventpound.response import EVENT_COLUMNS, Response
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
-from eventpound.results.manifest import sha256
-from eventpound.results.read import EVENTS, HISTORY, MANIFEST, SUMMARY, gather
-from eventpound.results.tables import table_csv
+from eventpound.results.manifest import describe_run, sha256
+from eventpound.results.read import EVENTS, HISTORY, MANIFEST, SUMMARY
+from eventpound.results.summary import summarise
+from eventpound.results.tables import rows_csv
 
 
 @checked
@@ -49,12 +50,13 @@ def write(
     InputError
         Where the directory cannot be written to.
     """
-    results = gather(response, case, started, error_estimate)
+    history = response.history_columns()
+    rows = zip(*(column.tolist() for column in history.values()), strict=True)
     contents = {
-        HISTORY: table_csv(results.history),
-        EVENTS: table_csv(results.events),
-        SUMMARY: to_json(results.summary),
+        HISTORY: rows_csv([history, *rows]),
+        EVENTS: rows_csv([EVENT_COLUMNS, *response.event_rows()]),
+        SUMMARY: to_json(summarise(response, error_estimate)),
     }
     hashes = {name: sha256(content) for name, content in contents.items()}
-    contents[MANIFEST] = to_json(results.manifest | {"files": hashes})
+    contents[MANIFEST] = to_json(describe_run(response, case, started) | {"files": hashes})
     write_together(directory, contents)

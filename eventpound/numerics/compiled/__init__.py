@@ -73,7 +73,7 @@ def compile_with(
         "forceinline": inlined,
         "_nrt": counted,
     }
-    store = KernelStore(function, (PLAIN, sorted(options.items()), recipe))
+    store = KernelStore(function, (sorted(options.items()), recipe), PLAIN)
     made: Any
     if PLAIN:
         made = numba.njit(**options)(function)
@@ -189,7 +189,7 @@ def callback(function: Callable[..., Any], signature: Any) -> Any:
     signature : numba signature
         Types of what it returns and is given.
     """
-    store = KernelStore(function, (PLAIN, "callback", EVERY_STEP))
+    store = KernelStore(function, ("callback", EVERY_STEP), PLAIN)
     made: Any
     if PLAIN:
         from numba.core.ccallback import CFunc

@@ -21,9 +21,10 @@ does without this module.
 
 from __future__ import annotations
 
+import inspect
 import threading
 from collections.abc import Callable, Iterator
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -266,6 +267,7 @@ class _PartPipeline(_Pipeline):
         return PartLibrary(self.state.targetctx.codegen(), name)
 
 
+@cache
 def _pipeline(kind: type[EntryLibrary], recipe: Recipe) -> type[_Pipeline]:
     """The pipeline that makes libraries of a kind."""
 
@@ -372,6 +374,8 @@ class Entry(CPUDispatcher):
     def __init__(
         self, function: Callable[..., Any], options: dict[str, Any], recipe: Recipe, store: Any
     ) -> None:
+        # Found out once, for hundreds of functions; Numba would do so three times.
+        function.__signature__ = inspect.signature(function)
         super().__init__(function, {}, options)
         pipeline = _pipeline(EntryLibrary, recipe)
         self._compiler = _EntryCompiler(function, self.targetdescr, options, {}, pipeline)

@@ -16,16 +16,19 @@ from __future__ import annotations
 import contextlib
 import glob
 import hashlib
+import importlib
+import io
 import os
 import pickle
 import sys
 import tempfile
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Iterator
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
 import llvmlite
+import llvmlite.binding as llvm
 import numba
 
 from eventpound.numerics.compiled.sources import source_stamp
@@ -46,13 +49,18 @@ class KernelStore:
         Whose compiled forms are kept.
     way : object
         How it is compiled; whatever tells it has a representation of its own.
+    plain : bool
+        Whether Numba compiles, and loads, in its own way.
     """
 
-    def __init__(self, function: Callable[..., Any], way: object) -> None:
-        self._file = function.__code__.co_filename
-        self._way = way
-        name = f"{Path(self._file).stem}.{function.__qualname__}".replace("<locals>.", "")
-        self._name = name[:_LONGEST_NAME]
+    def __init__(self, function: Callable[..., Any], way: object, plain: bool) -> None:
+        self._file, self._function = function.__code__.co_filename, function.__qualname__
+        self._way, self._plain = way, plain
+
+    @cached_property
+    def _name(self) -> str:
+        name = f"{Path(self._file).stem}.{self._function}".replace("<locals>.", "")
+        return name[:_LONGEST_NAME]
 
     @property
     def cache_path(self) -> str:
@@ -66,16 +74,18 @@ class KernelStore:
         """
         from numba.core.compiler import CompileResult
 
-        context.refresh()
-        name = self._name_of(signature, context.codegen())
-        for folder in _folders(self._file):
-            path = folder / name
+        if self._plain:
+            context.refresh()
+        else:
+            _make_names_known()
+        for path in self._places(signature, context.codegen()):
             try:
                 content = path.read_bytes()
             except OSError:
                 continue
             try:
-                return CompileResult._rebuild(context, *pickle.loads(_checked(content, name)))
+                kept = _Reader(io.BytesIO(_checked(content, path.name))).load()
+                return CompileResult._rebuild(context, *kept)
             except Exception as error:
                 _drop(path, error)
         compilation_begins()
@@ -83,8 +93,7 @@ class KernelStore:
 
     def has(self, signature: Any, context: Any) -> bool:
         """Whether there is a kept kernel for arguments of these types; nothing is loaded."""
-        name = self._name_of(signature, context.codegen())
-        return any((folder / name).is_file() for folder in _folders(self._file))
+        return any(path.is_file() for path in self._places(signature, context.codegen()))
 
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep a kernel, in the first folder that can be written.
@@ -114,11 +123,16 @@ class KernelStore:
                 return
         say_once(f"warning: kernels cannot be kept, so each run compiles anew ({trouble})")
 
+    def _places(self, signature: Any, codegen: Any) -> Iterator[Path]:
+        """The files in which a kernel may be kept, the first choice first."""
+        name = self._name_of(signature, codegen)
+        yield from (folder / name for folder in _folders(self._file))
+
     def _name_of(self, signature: Any, codegen: Any) -> str:
         from numba.core.sigutils import normalize_signature
 
         arguments, _ = normalize_signature(signature)
-        whole = repr((_VERSIONS, codegen.magic_tuple(), self._way, arguments))
+        whole = repr((_VERSIONS, codegen.magic_tuple(), self._plain, self._way, arguments))
         digest = hashlib.blake2b(whole.encode(), digest_size=_DIGEST).hexdigest()
         return f"{self._name}-{source_stamp(self._file)}-{digest}{SUFFIX}"
 
@@ -129,6 +143,47 @@ class KernelStore:
             if name == self._name and stamp != source_stamp(self._file):
                 with contextlib.suppress(OSError):
                     path.unlink()
+
+
+@cache
+def _make_names_known() -> None:
+    """Make known by their names the functions that machine code calls of Numba's runtime.
+
+    Numba refreshes its context instead: it learns all that can be compiled, and compiles the
+    runtime, which takes longer than a short run and half its memory. Who compiles does so.
+    """
+    from numba.core.runtime import _nrt_python
+
+    for name, address in _nrt_python.c_helpers.items():
+        llvm.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
+    importlib.import_module("numba.cpython.hashing")
+
+
+class _Reader(pickle.Unpickler):
+    """Reads a kernel without importing what its parts were defined in, such as half of Numba."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        """What stands for a name."""
+        if (module, name) == ("numba.core.environment", "_rebuild_env"):
+            return _environment
+        return super().find_class(module, name)
+
+
+def _environment(module: str, constants: list[Any], name: str) -> Any:
+    """What machine code finds of Python: its constants.
+
+    Numba adds the names of the module, which are for functions that are not compiled whole.
+    """
+    from numba.core.environment import Environment, lookup_environment
+
+    known = lookup_environment(name)
+    if known is not None:
+        return known
+    made = Environment({"__name__": module})
+    made.consts[:] = constants
+    made.env_name = name
+    Environment._memo[name] = made
+    return made
 
 
 def _with_checksum(result: Any, name: str) -> bytes:

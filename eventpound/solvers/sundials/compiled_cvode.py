@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from sksundae._cy_cvode import CVMESSAGES
 
 from eventpound.mechanics.ground_frame import to_frame
 from eventpound.numerics.arrays import Floats
@@ -43,12 +42,18 @@ class DirectCvode(Direct):
         ``"Adams"`` or ``"BDF"``.
     """
 
-    name, messages = "CVODE", CVMESSAGES
+    name = "CVODE"
 
     def __init__(self, library: Any, rtol: float, method: str) -> None:
         super().__init__()
         self.library, self.rtol, self.method = library, rtol, method
         self._handles: CvodeHandles
+
+    def _meaning(self, flag: int) -> str:
+        # Only a run that fails pays for scikit-sundae, which brings SciPy.
+        from sksundae._cy_cvode import CVMESSAGES
+
+        return CVMESSAGES[flag]
 
     def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
         mode, forcing, frame, roots = self._mode, self._forcing, self._frame, self._present_roots

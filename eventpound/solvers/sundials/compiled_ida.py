@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from sksundae._cy_ida import IDAMESSAGES
 
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.lending import on_loan
@@ -39,13 +38,17 @@ class DirectIda(InDescriptorForm, Direct):
         The forms that the scene takes.
     """
 
-    messages = IDAMESSAGES
-
     def __init__(self, library: IdaLibrary, modes: DescriptorModes) -> None:
         super().__init__(modes)
         self.library = library
         self._memory: IdaMemory
         self._handles: IdaHandles
+
+    def _meaning(self, flag: int) -> str:
+        # Only a run that fails pays for scikit-sundae, which brings SciPy.
+        from sksundae._cy_ida import IDAMESSAGES
+
+        return IDAMESSAGES[flag]
 
     def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
         own = self._own

@@ -6,7 +6,6 @@ out of reach (`Wrapped`); what they ask in return is in `eventpound.solvers.even
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -44,12 +43,9 @@ class _Duties:
     ----------
     name : str
         What SUNDIALS calls the solver.
-    messages : mapping of int to str
-        What its negative flags mean.
     """
 
     name: str
-    messages: Mapping[int, str]
 
     def __init__(self) -> None:
         self.starts = 0
@@ -99,12 +95,16 @@ class _Duties:
         flag, stretch = done[0], StepsTaken(*done[1:])
         if flag < 0:
             raise StandstillError(
-                f"{self.name} could not continue ({self.messages[flag].rstrip('.')}); "
+                f"{self.name} could not continue ({self._meaning(flag).rstrip('.')}); "
                 "try a larger rtol, or look at the state written so far",
                 self._forcing.start + stretch.start,
                 stretch,
             )
         return stretch
+
+    def _meaning(self, flag: int) -> str:
+        """What a negative flag of the library means."""
+        raise NotImplementedError
 
     def _steps(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
@@ -176,6 +176,10 @@ class Wrapped(_Duties):
         # Functions where the last step was left, and the end of SUNDIALS' whole step.
         self._left = np.empty(0)
         self._whole: tuple[float, Floats] = 0.0, self._left
+        self._failure = ""
+
+    def _meaning(self, flag: int) -> str:
+        return self._failure
 
     def _begun_at(self, tau: float) -> None:
         """The present object has been started at the local time `tau` (s)."""
@@ -229,7 +233,7 @@ class Wrapped(_Duties):
             # After interpolating, SUNDIALS first hands out the end of its last step again.
             result = self._present.step(stop, "onestep", stop)
         if not result.success:
-            self.messages = {_FAILED: result.message}
+            self._failure = result.message
             return _FAILED, self._time, result.y
         self._time = result.t
         self.jacobian_calls += result.njev - self._spent

@@ -13,7 +13,12 @@ itself uses, and `CVodeGetDky`, `IDAGetDky`, `IDAGetLastOrder`,
 from __future__ import annotations
 
 import ctypes
+import re
+from contextlib import suppress
 from functools import cache
+from importlib.machinery import PathFinder
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from llvmlite.binding import add_symbol
@@ -74,20 +79,15 @@ def library() -> ctypes.CDLL | None:
     """
     if INTERPRETED:
         return None
-    try:
-        from sksundae import _cy_cvode
-        from sksundae._cy_common import config as built
-    except ImportError:
-        return None
+    built = _built()
     if (
         not built.get("SUNDIALS_VERSION", "").startswith("7.")
         or built.get("SUNDIALS_FLOAT_TYPE") != "double"
         or ctypes.sizeof(ctypes.c_long) != 8
-        or not hasattr(_cy_cvode, "CVMESSAGES")
     ):
         return None
     index = ctypes.c_int32 if built.get("SUNDIALS_INT_TYPE") == "int" else ctypes.c_int64
-    return _made_known(_cy_cvode, _CVODE_COMPILED, _cvode_signatures(index))
+    return _made_known("_cy_cvode", _CVODE_COMPILED, _cvode_signatures(index))
 
 
 @cache
@@ -96,27 +96,44 @@ def ida_library() -> IdaLibrary | None:
     common = library()
     if common is None:
         return None
-    from sksundae import _cy_ida
-
-    if not hasattr(_cy_ida, "IDAMESSAGES"):
-        return None
-    ida = _made_known(_cy_ida, _IDA_COMPILED, _ida_signatures())
+    ida = _made_known("_cy_ida", _IDA_COMPILED, _ida_signatures())
     return None if ida is None else IdaLibrary(common, ida)
 
 
+def _built() -> dict[str, str]:
+    """How scikit-sundae was built, from the text that it was built with; {} without it.
+
+    The package is not imported: it brings SciPy's optimisers, a third of a short run.
+    """
+    for folder in _folders():
+        with suppress(OSError):
+            text = Path(folder, "py_config.pxi").read_text(encoding="utf-8")
+            return dict(re.findall(r'^(\w+) = "(.*)"$', text, re.MULTILINE))
+    return {}
+
+
+def _folders() -> list[str]:
+    """Where scikit-sundae is installed; [] where it is not."""
+    found = find_spec("sksundae")
+    return list((found and found.submodule_search_locations) or ())
+
+
 def _made_known(
-    extension: Any, compiled: list[str], signatures: dict[str, tuple[Any, ...]]
+    extension: str, compiled: list[str], signatures: dict[str, tuple[Any, ...]]
 ) -> ctypes.CDLL | None:
     """The library behind an extension module, for compiled code and for Python.
 
     None where it lacks one of their functions, or was built with MPI.
     """
+    file = PathFinder.find_spec(extension, _folders())
     try:
-        found: Any = ctypes.CDLL(extension.__file__)
+        found: Any = ctypes.CDLL(file.origin) if file else None
     except OSError:
         return None
-    if hasattr(found, "MPI_Init") or not all(
-        hasattr(found, name) for name in (*compiled, *signatures)
+    if (
+        found is None
+        or hasattr(found, "MPI_Init")
+        or not all(hasattr(found, name) for name in (*compiled, *signatures))
     ):
         return None
     for name in compiled:

@@ -48,6 +48,11 @@ def refused(n):
     if n > 3:
         raise ValueError("more than three")
     return n
+
+
+@kernel
+def hashed(n):
+    return hash("word") + n
 """
 """Two kernels with parts; `refused` raises."""
 

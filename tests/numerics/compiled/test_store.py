@@ -120,6 +120,22 @@ def refuse_to_write(path: Path, content: bytes) -> None:
     raise OSError(28, "No space left on device")
 
 
+@pytest.mark.skipif(compiled.PLAIN, reason="Numba loads in its own way here")
+def test_a_new_process_loads_what_is_kept_and_nothing_to_compile_with(tmp_path):
+    """Functions of Numba's runtime, secrets of hashes and errors are there all the same."""
+    file = written(tmp_path)
+    asked = (
+        "(powers(2.0).tolist(), hashed(3) - hash('word'), doubled(1.5)), "
+        "'numba.np.linalg' in sys.modules"
+    )
+    made, kept = (in_a_process(file, asked).stdout for _ in range(2))
+    assert made == "([2.0, 4.0, 8.0, 2.0], 3, 3.0) True\n"
+    assert kept == made.replace("True", "False")
+    errors = [in_a_process(file, "refused(4)").stderr for _ in range(2)]
+    assert errors[0] == errors[1]
+    assert "more than three" in errors[1]
+
+
 def test_a_full_disk_costs_a_warning(tmp_path, monkeypatch, capsys):
     module = imported(written(tmp_path))
     monkeypatch.setattr(store, "_write_whole", refuse_to_write)
