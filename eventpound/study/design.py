@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.case.case import Case, Stated
+from eventpound.case.loading import CASE_FILE
+from eventpound.errors import ComputationError, InputError
 from eventpound.given import Count, checked
 from eventpound.quantities.lookup import Named, all_of, unstated
 from eventpound.quantities.owners import owners
@@ -74,7 +76,16 @@ def demands_of(scene: Scene, stated: Stated) -> list[Named]:
 
 
 def asking(case: Case) -> Case:
-    """The case with its design numbers among the quantities that ``[run]`` asks for."""
+    """The case with its design numbers among the quantities that ``[run]`` asks for.
+
+    Raises
+    ------
+    InputError
+        Where nothing moves.
+    """
+    if not case.scene.bodies:
+        file = case.directory / CASE_FILE
+        raise InputError(f"{file}: [[body]]: missing; design numbers are of bodies that move")
     stated = case.run.stated
     names = [named.name for named in demands_of(case.scene, stated)]
     stated = replace(stated, quantities=tuple(dict.fromkeys((*stated.quantities, *names))))
@@ -119,7 +130,7 @@ def design_numbers(
     InputError
         Where the case cannot be run.
     ComputationError
-        Where a single run fails; a failed record of a suite is left out.
+        Where a single run fails, or all records of a suite; one that failed is left out.
     """
     if isinstance(case, Scene):
         response = simulate(case)
@@ -159,10 +170,19 @@ def design_of_run(response: Response) -> pd.DataFrame:
 
 
 def design_of_suite(table: pd.DataFrame, case: Case) -> pd.DataFrame:
-    """Design numbers of a suite, from its table: fractiles over the records that did not fail."""
+    """Design numbers of a suite, from its table: fractiles over the records that did not fail.
+
+    Raises
+    ------
+    ComputationError
+        Where all of them failed.
+    """
     import pandas as pd
 
     done = table[table[FAILED] == ""]
+    if done.empty:
+        why = f"all {len(table)} records failed, the first because of: {table[FAILED].iloc[0]}"
+        raise ComputationError(why, case.run.start_time)
     demands = demands_of(case.scene, case.run.stated)
     return _tabled(pd.DataFrame(list(_rows(done, case.scene, case.run.stated, demands))))
 

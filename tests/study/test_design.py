@@ -187,3 +187,16 @@ def test_a_run_and_a_suite_say_how_many_impacts_matter(
     faster = int(found.summary[JOINT + "impacts_faster"])
     assert f"impacts   {found.impacts}, {faster} faster than 20 cm/s" in out
     assert f"ductility {three_digits(found.summary['springs.frame.ductility'])}" in out
+
+
+def test_records_without_bodies_and_suites_that_all_fail_are_no_design(
+    suite: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (suite / "f.txt").write_text("0.1\nNaN\n")
+    assert main(["design", str(suite), "--suite", str(suite / "[ef].txt")]) == 1
+    assert "all 2 records failed, the first because of: line 2" in capsys.readouterr().err
+    text = (suite / "case.toml").read_text()
+    figure = '[figure]\nkind = "record-scales"\n'
+    (suite / "case.toml").write_text(text[: text.index("[[body]]")] + figure)
+    assert main(["design", str(suite)]) == 2
+    assert "[[body]]: missing; design numbers are of bodies" in capsys.readouterr().err
