@@ -7,9 +7,9 @@ storeys and bodies. Of a suite the 50 and 84 % fractiles over the records, the l
 record. What each row is: the page "design" of the documentation.
 
 Files, in CASE/results/design: design.pdf and design.html, a report of two pages of A4 (of a run
-or a suite); design.csv, a row a demand (of a study: for each combination of
-its axes), which a spreadsheet opens; beside it all that the runs gave. Further runs are made
-for it: without contact, and one for each contact. A suite or a study that was stopped goes on.
+or a suite); design.csv, a row a demand (of a study: for each combination of its axes), which a
+spreadsheet opens; beside it all that the runs gave. Further runs are made for it: one without
+contact, and one for each contact. A suite or a study that was stopped goes on.
 
 Examples
 --------

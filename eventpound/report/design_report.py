@@ -172,7 +172,9 @@ def _second(told: Told) -> Iterator[Block]:
         yield Head("Demand over the records")
         panels = demand_figure(scene, told.runs, _panels(told), trade_of(scene))
         yield Picture(panels, _DEMAND)
-        yield Words((f"Dotted: {FRACTILES[0]:g} %, dashed: {FRACTILES[1]:g} % of the records.",))
+        low, high = FRACTILES
+        said = f"Numbers of records as below. Dotted lines: {low:g} %, dashed: {high:g} % of them."
+        yield Words((said,))
         yield Head("Records")
         yield Columns(tuple((table,) for table in record_cells(told.runs)))
     yield Head("Limits and warnings")
