@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from eventpound.scene.modes import rayleigh, stiffness_proportional
     from eventpound.study.design import design_numbers
     from eventpound.study.many import simulate_many
+    from eventpound.study.prepared import Prepared, prepare
     from eventpound.study.sensitivities import sensitivities
     from eventpound.study.study import Study, StudyTable
     from eventpound.study.suite import simulate_suite
@@ -78,6 +79,7 @@ __all__ = [
     "MavroeidisPapageorgiou",
     "NoMotion",
     "Point",
+    "Prepared",
     "Record",
     "Response",
     "Ricker",
@@ -93,6 +95,7 @@ __all__ = [
     "design_numbers",
     "load_case",
     "plot",
+    "prepare",
     "rayleigh",
     "read_record",
     "sensitivities",
@@ -129,6 +132,8 @@ _HOME = {
     "simulate": "accuracy.judged",
     "BatchResponse": "batch_response",
     "simulate_many": "study.many",
+    "Prepared": "study.prepared",
+    "prepare": "study.prepared",
     "sensitivities": "study.sensitivities",
     "design_numbers": "study.design",
     "Study": "study.study",

@@ -88,6 +88,33 @@ def simulate(
     ComputationError
         Where the computation failed; what was computed is in its `recording`.
     """
+    ready = made_ready(
+        case,
+        solver,
+        rtol,
+        duration=duration,
+        output_step=output_step,
+        energy=energy,
+        settings=settings,
+        progress=progress,
+        max_steps=max_steps,
+    )
+    return ready.run({}, ready.task)
+
+
+def made_ready(
+    case: Case | Scene,
+    solver: str | Solver | None,
+    rtol: float | str | None,
+    *,
+    duration: float | str | None,
+    output_step: float | str | None,
+    energy: bool | None,
+    settings: Mapping[str, object] | None,
+    progress: Progress | None = None,
+    max_steps: int | None = None,
+) -> ReadyScene:
+    """What `simulate` is asked for, checked; its arguments."""
     number = positive("rtol", rtol, Dimension.NUMBER)
     run, options = options_of(
         case,
@@ -107,7 +134,7 @@ def simulate(
     asked([(scene, run.stated)])
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
-    return ReadyScene(solver_named(options.name), task, run.stated).run({}, task)
+    return ReadyScene(solver_named(options.name), task, run.stated)
 
 
 class ReadyScene:
@@ -126,7 +153,7 @@ class ReadyScene:
     def __init__(self, solver: Solver, task: Task, stated: Stated) -> None:
         make: Callable[[Task], ReadyTask | None] | None = getattr(solver, "ready", None)
         self._ready = None if make is None else make(task)
-        self.solver, self.stated = solver, stated
+        self.solver, self.task, self.stated = solver, task, stated
 
     def run(self, values: Mapping[Place, float], task: Task) -> Response:
         """Run it.
@@ -320,14 +347,14 @@ def task_with(
         run.start_time + run.duration,
         options.rtol,
         options.atol,
-        _output_times(run),
+        output_times(run),
         run.energy or needs_energy(run.stated.quantities),
         options.settings,
         progress,
     )
 
 
-def _output_times(run: RunOptions) -> Floats:
+def output_times(run: RunOptions) -> Floats:
     """Times of the history; the last is the end of the run."""
     count = int(np.floor(run.duration / run.output_step * (1.0 + 1e-12)))
     return run.start_time + run.output_step * np.arange(count + 1, dtype=np.float64)

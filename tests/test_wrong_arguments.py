@@ -148,6 +148,16 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
             "ITLMO": "progress",
         },
     ),
+    "prepare": (
+        {"case": SCENE},
+        {
+            THINGS: "case",
+            "BITLMOC": "solver",
+            NUMBER: "rtol duration output_step",
+            "ITLMOC": "energy",
+            "BITLOC": "settings",
+        },
+    ),
     "sensitivities": (
         {"case": SCENE},
         {
@@ -232,7 +242,7 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
 the arguments that they are wrong for."""
 NOT_CALLED = {
     *(name for name in eventpound.__all__ if name.endswith(("Error", "Warning"))),
-    *("BatchResponse", "Case", "NoMotion", "Response", "StudyTable"),
+    *("BatchResponse", "Case", "NoMotion", "Prepared", "Response", "StudyTable"),
 }
 """What nobody makes by hand, and what takes no argument."""
 

@@ -7,15 +7,17 @@ it may not hold of are found from whole columns. The conditions stand there alon
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 
+from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
-from eventpound.scene.check import WITHIN_BOUND
+from eventpound.scene.check import WITHIN_BOUND, check_scene
 from eventpound.scene.contact import BARRIER, opening
-from eventpound.scene.parameters import Place, value_at
+from eventpound.scene.parameters import Place, value_at, with_values
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 
@@ -60,3 +62,51 @@ def _penetrated(scene: Scene, values: Mapping[Place, Floats], count: int) -> np.
         for i, contact in enumerate(scene.contacts):
             found |= opening(contact, column("contact", i, "gap"), at) < 0.0
     return found
+
+
+class KnownRanges:
+    """Numbers of a scene one by one, between values with which it can be computed.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+    start : float
+        When its runs start (s).
+    """
+
+    def __init__(self, scene: Scene, start: float) -> None:
+        self._scene, self._start = scene, start
+        self._ranges: dict[Place, tuple[float, float]] = {}
+        at = {b.name: b.displacement for b in scene.bodies} | {BARRIER: 0.0, GROUND: 0.0}
+        self._openings = [float(opening(contact, 0.0, at)) for contact in scene.contacts]
+
+    def check(self, values: Mapping[Place, float]) -> None:
+        """Refuse the scene with other numbers, none of its motion, as `check_scene` does."""
+        if all(map(self._is_known, values, values.values())):
+            return
+        check_scene(with_values(self._scene, values), self._start)
+        for place, value in values.items():
+            own = value_at(self._scene, place)
+            if own is not None:
+                self._widen(place, value, *self._ranges.get(place, (own, own)))
+
+    def _widen(self, place: Place, value: float, low: float, high: float) -> None:
+        """Take a value into a range, and one as far again beyond it, if that can be computed."""
+        if not low <= value <= high:
+            probe = 2.0 * value - (low if value > high else high)
+            try:
+                check_scene(with_values(self._scene, {place: probe}), self._start)
+            except InputError:
+                probe = value
+            low, high = min(low, probe), max(high, probe)
+        self._ranges[place] = low, high
+
+    def _is_known(self, place: Place, value: float) -> bool:
+        low, high = self._ranges.get(place, (math.inf, -math.inf))
+        # Where numbers meet in one condition, only all of them say.
+        if not low <= value <= high or self._scene.supports or place.field == "displacement":
+            return False
+        if place.field == "gap":
+            return value + self._openings[place.index] >= 0.0
+        return place.kind != "spring" or place.field not in WITHIN_BOUND

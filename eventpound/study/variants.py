@@ -204,9 +204,7 @@ def _lengths(rows: Rows, scales: ScaleColumns | None) -> Floats:
     scene, start, own = case.scene, case.run.start_time, case.run.duration
     if math.isnan(own):
         own = duration_unsaid(scene, start)
-    kinds = ["excitation", "support"]
-    if isinstance(scene.motion, Record):
-        kinds += ["body", "spring"]
+    kinds = kinds_that_set_lengths(scene)
     places = places_of(scene) if rows.numbers else {}
     deciding = {places[key]: v for key, v in rows.numbers.items() if places[key].kind in kinds}
     if not deciding:
@@ -217,6 +215,12 @@ def _lengths(rows: Rows, scales: ScaleColumns | None) -> Floats:
         for i in first.tolist()
     ]
     return np.array(lengths)[which]
+
+
+def kinds_that_set_lengths(scene: Scene) -> tuple[str, ...]:
+    """Kinds of places whose numbers the default length of a run follows."""
+    own = ("body", "spring") if isinstance(scene.motion, Record) else ()
+    return ("excitation", "support", *own)
 
 
 def scene_of_row(rows: Rows, i: int) -> Scene:

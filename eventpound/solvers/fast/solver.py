@@ -127,7 +127,7 @@ class Ready:
         known = _last_of_thread.arrays
         # Who watches a run may begin another.
         arrays = known.pop(self._shape, None) or Arrays(self._model)
-        columns = {place: np.asarray(value) for place, value in values.items()}
+        columns = {place: np.array((value,)) for place, value in values.items()}
         for key, array in arrays.numbers.items():
             array[...] = self._own[key]
         put_numbers(self._scene, self._model, columns, arrays.rows)

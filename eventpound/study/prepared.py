@@ -1,0 +1,176 @@
+"""One scene, made ready once and run again and again with other numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.errors import InputError
+from eventpound.given import checked, positive
+from eventpound.response import Response
+from eventpound.scene.check import motion_problems
+from eventpound.scene.parameters import motion_with, places_of
+from eventpound.scene.scene import Scene
+from eventpound.scene.worst_variants import KnownRanges
+from eventpound.simulation import ReadyScene, check_case, made_ready, options_of, output_times
+from eventpound.solvers.base import Solver, Task
+from eventpound.study.axes import given_axes
+from eventpound.study.plan import Base, base_of
+from eventpound.study.variants import complete, kinds_that_set_lengths, rows_with, unknown_axes
+from eventpound.units import Dimension
+from eventpound.ways import Way, refuse_options
+
+
+@checked
+def prepare(
+    case: Case | Scene,
+    solver: str | Solver | None = None,
+    rtol: float | str | None = None,
+    *,
+    duration: float | str | None = None,
+    output_step: float | str | None = None,
+    energy: bool | None = None,
+    settings: Mapping[str, object] | None = None,
+) -> Prepared:
+    """Make a scene ready to be run again and again with other numbers.
+
+    Parameters
+    ----------
+    case : Case or Scene
+        What moves, with the numbers that a run does not change.
+    solver : str or Solver, optional
+        As of `simulate`.
+    rtol : float, optional
+        As of `simulate`.
+    duration : float, optional
+        Length of the runs (s); where neither this nor the case says it, that of each motion and
+        four periods.
+    output_step : float, optional
+        Distance of the rows of the history (s); without it there are rows at both ends and at
+        events only.
+    energy : bool, optional
+        Keep the energy ledger.
+    settings : mapping, optional
+        As of `simulate`.
+
+    Returns
+    -------
+    Prepared
+        Whose `run` computes.
+
+    Raises
+    ------
+    InputError
+        Where the scene or an option cannot be run.
+    """
+    check_case(case)
+    length = positive("duration", duration, Dimension.TIME)
+    step = positive("output_step", output_step, Dimension.TIME)
+    run, _ = options_of(case, length, step, energy)
+    if step is None:
+        run = replace(run, output_step=run.duration)
+    ready = made_ready(
+        case,
+        solver,
+        rtol,
+        duration=length,
+        output_step=run.output_step,
+        energy=energy,
+        settings=settings,
+    )
+    base = base_of(case, (), (), SolverOptions(), float("nan") if length is None else length)
+    return Prepared(base, ready, replace(run, output_step=step or float("nan")))
+
+
+class Prepared:
+    """A scene that is ready to be run with other numbers; `prepare` makes it.
+
+    It stays what it was when it was prepared.
+    """
+
+    def __init__(self, base: Base, ready: ReadyScene, run: RunOptions) -> None:
+        self._base, self._ready, self._run = base, ready, run
+        self._places = places_of(self.scene)
+        self._ranges = KnownRanges(self.scene, run.start_time)
+        case, kinds = base.case, kinds_that_set_lengths(self.scene)
+        # Numbers by these keys change nothing but themselves.
+        self._simple = {
+            key: place
+            for key, place in self._places.items()
+            if case.pi is None and (base.own_duration or place.kind not in kinds)
+        }
+
+    @property
+    def scene(self) -> Scene:
+        """What was prepared."""
+        return self._ready.task.scene
+
+    @checked
+    def run(self, values: Mapping[str, float | str] | None = None) -> Response:
+        """Compute how the scene moves with other numbers.
+
+        The response is, to the last bit, that of `simulate` for a scene with these numbers, but
+        without an estimate of its errors.
+
+        Parameters
+        ----------
+        values : mapping of str to float, optional
+            Numbers (SI, or texts with units) by the keys of `simulate_many`, as
+            ``"contact.joint.gap"``; the others are those of the scene.
+
+        Returns
+        -------
+        Response
+            Peaks, events and final state.
+
+        Raises
+        ------
+        InputError
+            Where there is no such number, or the scene cannot be computed with it.
+        ComputationError
+            Where the computation failed; what was computed is in its `recording`.
+        """
+        numbers, length = self._numbers(values or {})
+        placed = {self._places[key]: value for key, value in numbers.items()}
+        still = {place: value for place, value in placed.items() if place.kind != "excitation"}
+        task = self._ready.task
+        if len(still) < len(placed):
+            motion = motion_with(task.scene.motion, placed)
+            if problems := [str(problem) for problem in motion_problems(motion)]:
+                raise InputError(problems)
+            task = replace(task, scene=replace(task.scene, motion=motion))
+        self._ranges.check(still)
+        if length is not None:
+            task = self._of_length(task, length)
+        return self._ready.run(still, task)
+
+    def _numbers(self, values: Mapping[str, float | str]) -> tuple[dict[str, float], float | None]:
+        """Numbers by dotted keys, and the length of the run (s) where it may be another."""
+        found: dict[str, float] = {}
+        for key, value in values.items():
+            if not isinstance(value, float) or key not in self._simple:
+                break
+            found[key] = float(value)
+        else:
+            return found, None
+        if values and self._base.case.run.in_equilibrium:
+            refuse_options(self._base.case, Way.MANY, values)
+        base = replace(self._base, axes=given_axes("values", {k: [v] for k, v in values.items()}))
+        if unknown := [f"values: {key}: {text}" for key, text in unknown_axes(base)]:
+            raise InputError(unknown)
+        columns = {axis.key: axis.values for axis in base.axes}
+        rows = complete(rows_with(base, columns, range(1)))
+        assert rows.lengths is not None
+        numbers = {key: float(column[0]) for key, column in rows.numbers.items()}
+        return numbers, float(rows.lengths[0])
+
+    def _of_length(self, task: Task, length: float) -> Task:
+        """The task with another length (s)."""
+        if length == task.end - task.start:
+            return task
+        step = length if np.isnan(self._run.output_step) else self._run.output_step
+        run = replace(self._run, duration=length, output_step=step)
+        return replace(task, end=task.start + length, output_times=output_times(run))
