@@ -29,6 +29,7 @@ from eventpound.solvers import (
     knows_laws,
     name_of,
     solver_named,
+    takes_branches,
     takes_loads,
     takes_points,
 )
@@ -321,12 +322,15 @@ def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[st
 def _scene_problems(solver: Solver, scene: Scene) -> list[str]:
     """What of a scene a solver cannot take, with the solvers that take all of it."""
     laws = ", ".join(f"{c.name!r} ({c.law.kind})" for c in scene.contacts if c.law is not None)
+    own = {spring.name: spring.law.word for spring in scene.springs}
+    branched = ", ".join(f"{spring!r} ({own[spring]})" for spring in scene.branched_springs)
     points = ", ".join(repr(c.name) for c in scene.contacts if c.at_point)
     kinds = (("supports", scene.supports), ("forces", scene.forces))
     loads = " and ".join(word for word, given in kinds if given)
     name = solver.name
     asked = (
         (knows_laws, f"{name} does not know the laws of contacts {laws}"),
+        (takes_branches, f"{name} does not know the laws of springs {branched}"),
         (takes_points, f"{name} does not take contacts at a point between bodies ({points})"),
         (takes_loads, f"name: the solver {name!r} cannot take {loads}"),
     )

@@ -26,7 +26,7 @@ from eventpound.scene.check import starts_of_supports
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.parameters import Place, places_of, value_at, with_values
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Hysteretic, Law
+from eventpound.scene.spring import GROUND, BoucWen, Law
 
 LARGE, SMALL = 1e-10, 1e-13
 """Relative changes of the inputs."""
@@ -136,7 +136,7 @@ def _admissible(before: Scene, after: Scene) -> Scene:
 
 def _within_bound(law: Law) -> Law:
     """A law with its initial z, if it has one, within its bound."""
-    if not isinstance(law, Hysteretic):
+    if not isinstance(law, BoucWen):
         return law
     bound = law.bound
     return replace(law, initial_z=float(np.clip(law.initial_z, -bound, bound)))

@@ -14,7 +14,7 @@ import numpy as np
 
 from eventpound.response import Response
 from eventpound.simulation import SMALLEST_RTOL
-from eventpound.solvers import knows_contacts, solver_named
+from eventpound.solvers import knows_scene, solver_named
 from eventpound.solvers.base import Task
 
 FINER, DECADE = 100.0, 10.0
@@ -51,7 +51,7 @@ def judge_of(response: Response, *, asked: bool) -> str | None:
         return None
     from eventpound.solvers.fast.solver import kernels_kept
 
-    able = knows_contacts(solver_named(INDEPENDENT), response.scene)
+    able = knows_scene(solver_named(INDEPENDENT), response.scene)
     if able and (asked or kernels_kept(task_of_judge(response, INDEPENDENT))):
         return INDEPENDENT
     return solver if solver in KEEPING else KEEPING[0]

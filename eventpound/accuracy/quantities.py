@@ -49,7 +49,7 @@ def motion_scales(task: Task, recording: Recording) -> MotionScales:
     u = np.maximum(np.abs(x.maximum), np.abs(x.minimum))
     v = np.abs(recording.history.v).max(axis=0)
     u, v = np.where(u > 0.0, u, scene.length), np.where(v > 0.0, v, scene.length / scene.time)
-    return MotionScales(scene.time, u, v, scene.z_bound)
+    return MotionScales(scene.time, u, v, scene.z_size)
 
 
 def values_of(

@@ -21,7 +21,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
 from eventpound.score import Difference, Truth
 from eventpound.simulation import task_with
-from eventpound.solvers import knows_contacts, solver_named
+from eventpound.solvers import knows_scene, solver_named
 from eventpound.solvers.base import History, Recording, Task
 
 REFERENCE = "cvode"
@@ -115,7 +115,7 @@ def reference_of(case: Case, run: RunOptions, stated: StatedBounds | None) -> Re
 
 def _takes(scene: Scene) -> bool:
     """Whether the solver that checks takes a scene."""
-    return knows_contacts(solver_named(CHECK), scene)
+    return knows_scene(solver_named(CHECK), scene)
 
 
 def _checking_run(task: Task) -> Recording | None:

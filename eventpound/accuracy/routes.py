@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.base import Family
 from eventpound.scene.scene import Scene
-from eventpound.solvers import available, knows_contacts
+from eventpound.solvers import available, knows_scene
 from eventpound.solvers.base import Recording, Task
 
 TIGHTEST = 1e-13
@@ -187,7 +187,7 @@ def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
         for label, solver, formulation, decades, settings in (
             _WAYS + _UNDER_RECORDS if sampled else _WAYS
         )
-        if solver in known and knows_contacts(known[solver], scene)
+        if solver in known and knows_scene(known[solver], scene)
     )
     if any(route.solver != "cvode" for route in found):
         return found
@@ -199,7 +199,7 @@ def left_out(scene: Scene) -> list[str]:
     """Solvers that could be another route, but do not take every contact of a scene."""
     known = available()
     solvers = dict.fromkeys(solver for _, solver, *_ in _WAYS)
-    return [s for s in solvers if s in known and not knows_contacts(known[s], scene)]
+    return [s for s in solvers if s in known and not knows_scene(known[s], scene)]
 
 
 def shared_code(routes: tuple[Route, ...], scene: Scene) -> dict[str, str]:

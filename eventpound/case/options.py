@@ -128,10 +128,14 @@ def default_solver(scenes: Iterable[Scene], many: bool) -> str:
     scenes : iterable of Scene
         What is run.
     many : bool
-        Whether they are run many times, as in a suite or a study. Contacts that are not plain,
-        which the fast solver does not take, are left to the reference then, too.
+        Whether they are run many times, as in a suite or a study. Contacts that are not plain and
+        memories with branches, which the fast solver does not take, are left to the reference
+        then, too.
     """
-    plain = all(contact.plain for scene in scenes for contact in scene.contacts)
+    plain = all(
+        not scene.branched_springs and all(contact.plain for contact in scene.contacts)
+        for scene in scenes
+    )
     return FAST if many and plain else REFERENCE
 
 

@@ -16,6 +16,8 @@ from eventpound.contact.kinks import still_rate, turn_at_kinks
 from eventpound.contact.modes import ACCELERATION, duty
 from eventpound.contact.rest import Touching, rest_contacts
 from eventpound.contact.state import Instant
+from eventpound.mechanics.elements import memory_on_branches
+from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import copy_numbers
@@ -126,7 +128,7 @@ def touching_of(z: Floats, forcing: Forcing, at: Instant) -> Touching:
         at.opening,
         at.mass,
         at.ends,
-        at.law,
+        LinkLaw(at.law.damping, memory_on_branches(at.law.memory, at.branch)),
         at.hysteretic,
         stiffness,
         -stiffness * at.offset,

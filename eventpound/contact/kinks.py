@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from eventpound.contact.cascade import STALE
 from eventpound.contact.state import Instant
+from eventpound.mechanics.elements import has_branches, next_branch
+from eventpound.mechanics.link_law import CLOSED, YIELDING
 from eventpound.mechanics.observables import difference
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.tolerances import LENGTH, SPEED, TOGETHER
 
@@ -33,12 +35,27 @@ def passes_kink(distance: float, approach: float, length: float, time: float) ->
 
 
 @scalar_kernel
+def _has_kink(a: int, at: Instant) -> bool:
+    """Whether a link has a kink, at which its elastic part or its memory has another formula."""
+    return at.compression[a] != at.extension[a] or has_branches(a, at.law.memory)
+
+
+@scalar_kernel
 def lacks_branch(at: Instant) -> bool:
     """Whether a kinked link has no branch yet: at the start of a run."""
+    lacks = False
     for a in range(at.branch.size):
-        if at.branch[a] == 0 and at.compression[a] != at.extension[a]:
-            return True
-    return False
+        lacks = lacks or (at.branch[a] == 0 and _has_kink(a, at))
+    return lacks
+
+
+@scalar_kernel
+def _first_branch(a: int, side: float, at: Instant) -> int:
+    """Branch of a link on this side of its kink; what yields has not been unloaded yet."""
+    if side > 0.0:
+        return 1
+    rate = difference(at.v, at.ends[a, 0], at.ends[a, 1])
+    return CLOSED if rate > 0.0 or not has_branches(a, at.law.memory) else YIELDING
 
 
 @scalar_kernel
@@ -60,7 +77,7 @@ def choose_branches(acceleration: Floats, ground: float, onset: float, at: Insta
         The start of a run.
     """
     for a in range(at.branch.size):
-        if at.branch[a] != 0 or at.compression[a] == at.extension[a]:
+        if at.branch[a] != 0 or not _has_kink(a, at):
             continue
         first, second = at.ends[a, 0], at.ends[a, 1]
         side = _beyond(a, at)
@@ -71,7 +88,7 @@ def choose_branches(acceleration: Floats, ground: float, onset: float, at: Insta
             side -= acceleration[first] if first >= 0 else ground
         if side == 0.0:
             side = (0.0 if second >= 0 else onset) - (0.0 if first >= 0 else onset)
-        at.branch[a] = -1 if side < 0.0 else 1
+        at.branch[a] = _first_branch(a, -1.0 if side < 0.0 else 1.0, at)
         at.count[STALE] = 1
 
 
@@ -79,20 +96,42 @@ def choose_branches(acceleration: Floats, ground: float, onset: float, at: Insta
 def choose_clear_branches(at: Instant) -> None:
     """The same of links beyond their kinks only, without which there are no accelerations."""
     for a in range(at.branch.size):
-        if at.branch[a] == 0 and at.compression[a] != at.extension[a]:
+        if at.branch[a] == 0 and _has_kink(a, at):
             side = _beyond(a, at)
-            at.branch[a] = 0 if side == 0.0 else (-1 if side < 0.0 else 1)
+            at.branch[a] = 0 if side == 0.0 else _first_branch(a, side, at)
 
 
 @scalar_kernel
 def turn_at_kinks(at: Instant) -> None:
-    """Put every link that is on its kink on the side to which it moves after an impact."""
+    """Put every link that is on its kink on the side to which it moves after an impact.
+
+    One that yields no longer does where it moves back. The ends of other branches of a memory are
+    looked for as the motion goes on.
+    """
     still = still_rate(at.length, at.time)
     for a in range(at.branch.size):
-        if at.branch[a] == 0 or _beyond(a, at) != 0.0:
+        of_memory = has_branches(a, at.law.memory)
+        if at.branch[a] == 0 or (_beyond(a, at) != 0.0 and not of_memory):
             continue
         rate = difference(at.v, at.ends[a, 0], at.ends[a, 1])
         if abs(rate) > still:
             side = -1 if rate < 0.0 else 1
+            if of_memory:
+                side = CLOSED if at.branch[a] == YIELDING and rate > 0.0 else at.branch[a]
             at.count[STALE] |= side != at.branch[a]
             at.branch[a] = side
+
+
+@scalar_kernel
+def pass_kinks(passed: Bools, z: Floats, at: Instant) -> None:
+    """Put links (L,) that have come to the end of their branch on the next; `z` (H,) is known."""
+    for a in range(passed.size):
+        if not passed[a]:
+            continue
+        x, own = difference(at.u, at.ends[a, 0], at.ends[a, 1]), 0.0
+        for h in range(z.size):
+            if at.hysteretic[h] == a:
+                own = z[h]
+        noise = LENGTH * at.length
+        at.branch[a] = next_branch(a, at.law.memory, at.branch[a], at.offset[a], x, own, noise)
+        at.count[STALE] = 1

@@ -26,9 +26,11 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
+from eventpound.mechanics.elements import memory_on_branches
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import in_python
 
 
 class Descriptor(NamedTuple):
@@ -117,7 +119,7 @@ def descriptor_form(
         model.mass,
         np.where(clusters.of_body < 0, 0.0, 1.0),
         *model.elastic.on_side(branch),
-        model.law,
+        LinkLaw(model.law.damping, in_python(memory_on_branches)(model.law.memory, branch)),
         directions(model.link_ends[:, 0], model.link_ends[:, 1], bodies),
         W,
         model.gap[members],

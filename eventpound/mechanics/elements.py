@@ -13,6 +13,9 @@ law does not know time: with x' = 1 and σ = 1 everything below is by the elonga
 
 The constants of a law with a memory are a row of `LinkLaw.memory`. What stands in it is known
 here and in `eventpound.mechanics.backbone`, which solves eq. 3 with time eliminated.
+
+A law with *branches* has other constants on each (`memory_on_branches`), and tells where a branch
+ends (`branch_ends`) and which one follows.
 """
 
 from __future__ import annotations
@@ -27,8 +30,8 @@ from eventpound.mechanics.link_law import (
     STRENGTH,
     YIELD,
 )
-from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import F, compile_with, kernel
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import F, compile_with, kernel, scalar_kernel
 from eventpound.numerics.power_series import (
     integer_power,
     power_coefficient,
@@ -114,6 +117,9 @@ def z_slopes(a: int, memory: Floats, x_rate: float, z: float) -> tuple[float, fl
 @_part
 def z_bend(a: int, memory: Floats, z: float, travel: float) -> float:
     """By how much z departs from a line over a `travel` of the elongation (m), at most."""
+    if memory[a, BETA] == memory[a, GAMMA] == 0.0:
+        # A branch has one formula.
+        return 0.0
     linear = travel / memory[a, YIELD]
     return float(linear * (abs(z) + linear) ** memory[a, EXPONENT])
 
@@ -128,6 +134,37 @@ def reversal_jump(a: int, memory: Floats, z: float) -> float:
 def bends_at_zero(a: int, memory: Floats) -> bool:
     """Whether the rate of z of link a has another formula on the other side of z = 0."""
     return bool(memory[a, GAMMA] != 0.0)
+
+
+@_part
+def has_branches(a: int, memory: Floats) -> bool:
+    """Whether the law of link a has branches of its own, beside an elastic part without a kink."""
+    return False
+
+
+@kernel
+def memory_on_branches(memory: Floats, branch: Ints) -> Floats:
+    """Constants of links (L, ·) on their present branches (L,); the same array where none has."""
+    return memory
+
+
+@scalar_kernel
+def branch_ends(
+    a: int, memory: Floats, branch: int, offset: float, x: float, z: float
+) -> tuple[float, float]:
+    """Elongations (m) between which link a stays on a branch, and is now, at x (m) and z.
+
+    Those of YIELDING are of x'.
+    """
+    return (-np.inf, offset) if branch < 0 else (offset, np.inf)
+
+
+@scalar_kernel
+def next_branch(
+    a: int, memory: Floats, branch: int, offset: float, x: float, z: float, noise: float
+) -> int:
+    """The branch of link a where one has ended, at x (m) and z; lengths below `noise` are none."""
+    return -branch
 
 
 @kernel

@@ -20,6 +20,8 @@ CONSTANTS = ("kind", "strength", "yield_displacement", "exponent", "beta", "gamm
 KIND, STRENGTH, YIELD, EXPONENT, BETA, GAMMA = range(len(CONSTANTS))
 ELASTIC, BOUC_WEN = 0.0, 1.0
 """Kinds of links; that of a contact element is its code, which is negative."""
+APART, CLOSED, YIELDING = 1, -1, -2
+"""Branches of a link: above its kink, below it, and below it on the backbone of a memory."""
 
 
 class LinkLaw(NamedTuple):
@@ -66,9 +68,18 @@ def yielding(memory: Floats) -> Yielding:
 
 
 def z_bound(memory: Floats) -> Floats:
-    """Largest |z| that loading can reach, (β + γ)^(-1/n), for constants of shape (..., L, ·)."""
-    found: Floats = (memory[..., BETA] + memory[..., GAMMA]) ** (-1.0 / memory[..., EXPONENT])
+    """Largest |z| that loading can reach, (β + γ)^(-1/n), for constants of shape (..., L, ·).
+
+    It is inf of a law whose z grows with a gap.
+    """
+    with np.errstate(divide="ignore"):
+        found: Floats = (memory[..., BETA] + memory[..., GAMMA]) ** (-1.0 / memory[..., EXPONENT])
     return found
+
+
+def memory_force(memory: Floats, z: Floats) -> Floats:
+    """What memory pulls with (N), for constants (..., H, ·) and z (..., H)."""
+    return np.asarray(memory[..., STRENGTH] * z)
 
 
 def spring_forces(
@@ -86,5 +97,5 @@ def spring_forces(
         Elongations (m) and internal variables, perhaps of many instants.
     """
     force = elastic_force(elastic, x)[0]
-    force[..., hysteretic] += yielding(law.memory[hysteretic]).force * z
+    force[..., hysteretic] += memory_force(law.memory[hysteretic], z)
     return force

@@ -49,7 +49,7 @@ class Model:
     elastic : ElasticLaws
         Elastic parts of the links.
     hysteretic : ndarray of int, shape (H,)
-        Links with a Bouc-Wen part; z is numbered in this order.
+        Links with a memory; z is numbered in this order.
     z0 : ndarray, shape (H,)
         Initial z.
     springs : int
@@ -255,13 +255,14 @@ def assemble(scene: Scene) -> Model:
     def column(values: list[float]) -> Floats:
         return np.array(values, dtype=np.float64)
 
-    mass = column([b.mass for b in scene.bodies])
+    mass, u0 = (column([getattr(b, key) for b in scene.bodies]) for key in ("mass", "displacement"))
+    start = differences(u0, *np.array(ends, np.int64).reshape(-1, 2).T)
     points = np.array([i for i, c in enumerate(scene.contacts) if c.at_point], np.int64)
     at = [(-1, -1) if c.at_point else (index[c.ends[0]], index[c.ends[1]]) for c in scene.contacts]
     left, right = np.array(at, np.int64).reshape(-1, 2).T.copy()
     return Model(
         mass=mass,
-        u0=column([b.displacement for b in scene.bodies]),
+        u0=u0,
         v0=column([b.velocity for b in scene.bodies]),
         link_ends=np.array(ends, np.int64).reshape(-1, 2),
         law=link_law(laws, damping),
@@ -269,7 +270,7 @@ def assemble(scene: Scene) -> Model:
             [*map(reduced, laws)] + [BilinearElastic(0.0, 0.0)] * (len(ends) - len(laws))
         ),
         hysteretic=np.array([*loops], np.int64),
-        z0=column([law.initial_z for law in loops.values()]),
+        z0=column([law.z_at(start[i]) for i, law in loops.items()]),
         springs=len(laws),
         left=left,
         right=right,

@@ -27,7 +27,7 @@ from eventpound.results.export import arrays_of, sampled_motion
 from eventpound.results.jsontext import canonical
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen, Spring
+from eventpound.scene.spring import BoucWen, Hysteretic, Spring
 
 DATE = (1980, 1, 1, 0, 0, 0)
 """Of every file in the archive: the first that the format knows."""
@@ -180,6 +180,8 @@ def _frequencies(scene: Scene) -> list[float]:
 def _law(spring: Spring) -> dict[str, float]:
     """A spring as a kinked line and a hysteretic part."""
     law = spring.law
+    if isinstance(law, Hysteretic) and law.has_branches:
+        raise InputError(f"spring {spring.name}: its law is {law.word.value}; accepted: any other")
     if isinstance(law, BoucWen):
         line = {"compression": law.stiffness, "extension": law.stiffness, "offset": 0.0}
         return line | {

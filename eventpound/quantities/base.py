@@ -26,7 +26,7 @@ class TakenFrom(StrEnum):
     ACCELERATIONS = "every run; of many, where accelerations are asked for"
     CONTACTS = "every run; of many, where it is named"
     FORCES = "every run; of many, where it is named, one by one"
-    LAWS = "every run with such a contact; of many, where it is named, one by one"
+    LAWS = "every run with such a spring or contact; of many, where it is named, one by one"
     ENERGY = "the ledger (energy = true)"
     BETWEEN = "further runs with rows close together, where it is named"
     FREE = "one more run, without contact, where it is named"

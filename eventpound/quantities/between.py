@@ -30,7 +30,7 @@ from eventpound.quantities.rows import (
     warn_unsettled,
 )
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Hysteretic
+from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes, Recording, Task
 from eventpound.solvers.supported import link_force_on
@@ -157,11 +157,11 @@ def signals_of(scene: Scene, run: Recording) -> dict[str, Floats]:
 
 
 def works_of(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:
-    """Energy dissipated in hysteretic springs and dashpots, and what flows through them (J)."""
+    """Energy dissipated in Bouc-Wen springs and dashpots, and what flows through them (J)."""
     found, motions, h = {}, _motions(scene, run), run.history
     for spring in scene.springs:
         law = spring.law
-        if isinstance(law, Hysteretic):
+        if isinstance(law, BoucWen):
             z = h.z[:, scene.hysteretic_springs.index(spring.name)]
             rate, second = _elongating(spring.between, motions)
             own = link_law([law], [0.0]).memory

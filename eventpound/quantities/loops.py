@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.mechanics.link_law import link_law, yielding
+from eventpound.mechanics.link_law import link_law, memory_force
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.spring import Hysteretic, Law
@@ -56,7 +56,8 @@ def loop_of(
         return ends, elastic_force(elastic, ends)[0]
     assert z is not None
     memory = link_law([law], [0.0]).memory
-    force = elastic_force(elastic, fine)[0] + yielding(memory).force * _along(memory, fine, z)
+    along = _along(memory, fine, z)[..., None]
+    force = elastic_force(elastic, fine)[0] + memory_force(memory, along)[..., 0]
     # The last of a cell is the first of the next.
     return np.append(fine[:, :-1], fine[-1, -1]), np.append(force[:, :-1], force[-1, -1])
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import asdict, replace
+from typing import Any
+
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
@@ -12,18 +16,28 @@ from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.scene.scene import Scene
 from eventpound.scene.separation import absolute_sum, correlation, cqc, srss
-from eventpound.scene.spring import GROUND, Hysteretic
+from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes
 
 
 def is_hysteretic(scene: Scene, i: int) -> bool:
-    """Whether spring i has a Bouc-Wen law."""
+    """Whether spring i has a memory."""
     return isinstance(scene.springs[i].law, Hysteretic)
 
 
+def is_bouc_wen(scene: Scene, i: int) -> bool:
+    """Whether spring i has a Bouc-Wen law."""
+    return isinstance(scene.springs[i].law, BoucWen)
+
+
+def told_by_law(name: str) -> Callable[[Scene, int], bool]:
+    """Whether the law of spring i has a number of this name for the end of a run."""
+    return lambda scene, i: hasattr(scene.springs[i].law, name)
+
+
 def is_elastic(scene: Scene, i: int) -> bool:
-    """Whether spring i has another law."""
+    """Whether spring i has none."""
     return not is_hysteretic(scene, i)
 
 
@@ -41,7 +55,7 @@ def ductility(many: Runs, i: int) -> Floats:
     """Largest elongation of a Bouc-Wen spring over its yield displacement."""
     spring = many.scene.springs[i]
     law = spring.law
-    assert isinstance(law, Hysteretic)
+    assert isinstance(law, BoucWen)
     limit = many.parameters.get(f"spring.{spring.name}.yield_displacement", law.yield_displacement)
     return _peak(many.elongation, i) / limit
 
@@ -76,6 +90,31 @@ def z_of(many: Runs, i: int) -> Floats:
     """Hysteretic variable of a spring at the end."""
     name = many.scene.springs[i].name
     return many.z[:, many.scene.hysteretic_springs.index(name)]
+
+
+def by_law(name: str) -> Value:
+    """A number that the law of a spring tells from its elongation (m) and z at the end of a run."""
+
+    def values(many: Runs, i: int) -> Floats:
+        spring, found = many.scene.springs[i], np.full(many.t.shape, np.nan)
+        law: Any = spring.law
+        names = [body.name for body in many.scene.bodies]
+        for n, run in enumerate(many.recordings):
+            changed = {
+                field: float(many.parameters[key][n])
+                for field in asdict(law)
+                if (key := f"spring.{spring.name}.{field}") in many.parameters
+            }
+            place = {GROUND: 0.0} | dict(zip(names, run.u, strict=True))
+            if run.supports is not None:
+                own = [support.name for support in many.scene.supports]
+                place |= dict(zip(own, run.supports.s[-1], strict=True))
+            first, second = (float(place[end]) for end in spring.between)
+            z = run.z[many.scene.hysteretic_springs.index(spring.name)]
+            found[n] = getattr(replace(law, **changed), name)(second - first, float(z))
+        return found
+
+    return values
 
 
 def peak_term(many: Runs, i: int) -> Floats:

@@ -13,7 +13,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.quantities.loops import z_by_x
 from eventpound.report.style import PALETTE, force_unit, length_unit, literal, say, zero_lines
 from eventpound.scene.elastic_laws import elastic_force, reduced
-from eventpound.scene.spring import Hysteretic, Law, Linear, Spring
+from eventpound.scene.spring import BoucWen, Hysteretic, Law, Linear, Spring
 
 _MOST = 4
 """Laws in one figure."""
@@ -68,9 +68,12 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
         Above it.
     """
     zero_lines(axes, upright=True)
-    if isinstance(law, Hysteretic):
+    if isinstance(law, BoucWen):
         x, force = _loop(law)
         said = _of_loop(axes, law)
+    elif isinstance(law, Hysteretic):
+        x, force = map(np.array, law.drawn())
+        said = ", ".join(f"{key} = {value:.4g}" for key, value in law.numbers.items()) + " (SI)"
     else:
         whole = reduced(law)
         x = whole.offset + np.array([-1.0, 0.0, 1.0]) * max(1.0, 2.0 * abs(whole.offset))
@@ -87,7 +90,7 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
     axes.set(box_aspect=0.85, xticks=[], yticks=[])
 
 
-def _of_loop(axes: Axes, law: Hysteretic) -> str:
+def _of_loop(axes: Axes, law: BoucWen) -> str:
     """Mark what is told of a loop; its parameters."""
     first = law.initial_stiffness
     yields = law.yield_displacement, first * law.yield_displacement
@@ -112,7 +115,7 @@ def _of_loop(axes: Axes, law: Hysteretic) -> str:
     )
 
 
-def _loop(law: Hysteretic) -> tuple[Floats, Floats]:
+def _loop(law: BoucWen) -> tuple[Floats, Floats]:
     """Elongations (m) and forces (N) from rest to one end, to the other and back."""
     step = law.yield_displacement / _STEPS
     away = round(_REACH * _STEPS)

@@ -15,6 +15,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from itertools import pairwise
+from typing import get_args
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from eventpound.results.jsontext import to_json
 from eventpound.scene.body import Body
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Series, Spring
+from eventpound.scene.spring import Law, Series, Spring
 from eventpound.ways import Way, warn_left_out
 
 _SAMPLES_A_PERIOD = 1000
@@ -42,15 +43,7 @@ CONVENTIONS = {
     "matrices": "lists of rows; B has a row a body and a column a spring, W a column a contact",
     "elongation": "x = B^T u: u of the second end minus u of the first, the ground's u is 0",
     "spring_force": "F > 0 pulls the ends together",
-    "linear": "F = stiffness x",
-    "bilinear-elastic": (
-        "F = compression (x - offset) for x < offset, extension (x - offset) above"
-    ),
-    "series": "parts carry one force, their elongations add up; 'condensed' is the whole",
-    "bouc-wen": (
-        "F = stiffness x + strength z, z' = (x' - gamma |x'| z |z|^(exponent-1)"
-        " - beta x' |z|^exponent) / yield_displacement"
-    ),
+    **{law.word.value: law.equation for law in get_args(Law)},
     "contact": "gap g = delta + W^T u >= 0, complementary to its force lambda >= 0",
     "impact": "M (v+ - v-) = W L, 0 <= W^T v+ + epsilon W^T v- complementary to L >= 0",
     "motion": (

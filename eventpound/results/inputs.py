@@ -30,7 +30,7 @@ from eventpound.scene.modes import modes_of
 from eventpound.scene.periods import period_of
 from eventpound.scene.pi_terms import number_of_terms, pi_terms
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BilinearElastic, Hysteretic, Series, Spring
+from eventpound.scene.spring import BilinearElastic, BoucWen, Hysteretic, Series, Spring
 from eventpound.scene.structures import mass_on, structures_of
 from eventpound.units import STANDARD_GRAVITY
 
@@ -138,15 +138,17 @@ def _spring(spring: Spring, mass: float | None) -> Row:
         row["height"] = spring.height
     if isinstance(law, BilinearElastic | Series):
         return row | _parts(law)
+    if isinstance(law, Hysteretic) and law.has_branches:
+        return row | law.numbers
     assert k_0 is not None
     row["K0"] = k_0
-    if isinstance(law, Hysteretic):
+    if isinstance(law, BoucWen):
         yield_force = k_0 * law.yield_displacement
         row |= {"K_s": k_s, "F_y": yield_force, "Q": law.strength, "u_y": law.yield_displacement}
         row["alpha"] = law.stiffness / k_0 if k_0 else 0.0
     if mass is not None:
         row |= {"mass": mass, "T_initial": _finite(period_of(mass, k_0))}
-        if isinstance(law, Hysteretic):
+        if isinstance(law, BoucWen):
             row["F_y/W"] = row["F_y"] / (mass * STANDARD_GRAVITY)
             row["T_post_yield"] = _finite(period_of(mass, law.stiffness))
     return row
@@ -212,7 +214,7 @@ def _structure(scene: Scene, group: list[str]) -> Row:
     if len(group) > MOST_BODIES:
         return row
     hysteretic = any(
-        isinstance(s.law, Hysteretic) and set(s.between) & set(group) for s in scene.springs
+        isinstance(s.law, BoucWen) and set(s.between) & set(group) for s in scene.springs
     )
     for key, yielded in (("initial", False), ("post_yield", True)):
         if yielded and not hysteretic:

@@ -18,7 +18,7 @@ from collections.abc import Collection, Iterable
 
 from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot
-from eventpound.scene.spring import GROUND, Hysteretic, Law, Linear, Spring
+from eventpound.scene.spring import GROUND, BoucWen, Law, Linear, Spring
 
 
 def initial_stiffness(law: Law) -> float | None:
@@ -32,14 +32,14 @@ def initial_stiffness(law: Law) -> float | None:
     """
     if isinstance(law, Linear):
         return law.stiffness
-    if isinstance(law, Hysteretic):
+    if isinstance(law, BoucWen):
         return law.initial_stiffness
     return None
 
 
 def post_yield_stiffness(law: Law) -> float | None:
     """Stiffness k of a linear or yielded Bouc-Wen law (N/m); None for a law with a kink."""
-    return law.stiffness if isinstance(law, Linear | Hysteretic) else None
+    return law.stiffness if isinstance(law, Linear | BoucWen) else None
 
 
 def ratio_coefficient(ratio: float, stiffness: float, mass: float) -> float:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.scene.spring import BilinearElastic, Hysteretic, Law, Linear
+from eventpound.scene.spring import BilinearElastic, BoucWen, Hysteretic, Law, Linear
 
 
 class ElasticLaws(NamedTuple):
@@ -58,8 +58,10 @@ def reduced(law: Law | Hysteretic) -> BilinearElastic:
     BilinearElastic
         The same force for every elongation.
     """
-    if isinstance(law, Linear | Hysteretic):
+    if isinstance(law, Linear | BoucWen):
         return BilinearElastic(law.stiffness, law.stiffness, 0.0)
+    if isinstance(law, Hysteretic):
+        return BilinearElastic(0.0, 0.0, law.offset)
     if isinstance(law, BilinearElastic):
         return law
     parts = [reduced(part) for part in law.parts]

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.special import hyp2f1
 
 from eventpound.numerics.arrays import Floats
-from eventpound.scene.spring import BoucWen
+from eventpound.scene.spring import BoucWen, Hysteretic
 
 ALL_BUT = 1e-12
 """Distance of y from 1 below which it falls exponentially, to rounding."""
@@ -88,8 +88,10 @@ class Loops(NamedTuple):
         return z, np.maximum(1.0 - kappa * y**n, 0.0) / self.yield_displacement
 
 
-def not_convex(law: BoucWen) -> tuple[str, str] | None:
-    """Why a law loaded straight has no convex potential, and what has; None where it has."""
+def not_convex(law: Hysteretic) -> tuple[str, str] | None:
+    """Why a law loaded straight has no convex potential known, and what has; None where it has."""
+    if not isinstance(law, BoucWen):
+        return f"is {law.word.value}", '"initial", or springs of another law'
     if law.gamma >= 0.0:
         return None
     return f"unloads with a negative stiffness (gamma = {law.gamma!r})", "gamma >= 0"

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, is_dataclass, replace
-from typing import Any
+from typing import Any, get_args
 
 from eventpound.given import numbers_of
 from eventpound.motion.base import GroundMotion
@@ -25,7 +25,7 @@ from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
+from eventpound.scene.spring import Law, Series
 from eventpound.scene.support import Support
 from eventpound.units import Dimension
 
@@ -34,7 +34,7 @@ OF_CONTACT_LAWS = ("stiffness", "damping")
 
 _MADE: Mapping[str, tuple[type, ...]] = {
     "body": (Body,),
-    "spring": (Linear, BilinearElastic, BoucWen),
+    "spring": get_args(Law),
     "dashpot": (Dashpot,),
     "contact": (Contact, ContactLaw),
     "support": (Support,),

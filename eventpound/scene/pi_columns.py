@@ -31,7 +31,7 @@ from eventpound.scene.pi_terms import (
     support_key,
 )
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Hysteretic, Linear, Spring
+from eventpound.scene.spring import BoucWen, Linear, Spring
 
 Numbers = float | Floats
 """One value, or one a variant."""
@@ -169,7 +169,7 @@ class _Solving:
         omega = self._frequency(body, spring)
         if omega is not None:
             self.found[f"{key}.stiffness"] = mass * omega**2
-        if isinstance(spring.law, Hysteretic) and self.scales is not None:
+        if isinstance(spring.law, BoucWen) and self.scales is not None:
             if f"Q{suffix}" in self.terms:
                 self.found[f"{key}.strength"] = self.terms[f"Q{suffix}"] * mass * self.scales.a_g
             elif mass_key in self.found:
@@ -199,7 +199,7 @@ class _Solving:
         return 0.0 if spring is None else self._old_frequency(self.first, spring)
 
     def _old_frequency(self, body: Body, spring: Spring) -> Numbers:
-        assert isinstance(spring.law, Linear | Hysteretic)
+        assert isinstance(spring.law, Linear | BoucWen)
         stiffness = self.given(f"spring.{spring.name}.stiffness")
         frequency: Numbers = np.sqrt(stiffness / self.given(f"body.{body.name}.mass"))
         return frequency

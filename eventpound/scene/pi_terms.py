@@ -39,7 +39,7 @@ from eventpound.errors import InputError
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Hysteretic, Linear, Spring
+from eventpound.scene.spring import GROUND, BoucWen, Linear, Spring
 from eventpound.scene.support import Support
 
 OTHERS = "i"
@@ -169,7 +169,7 @@ def own_spring(scene: Scene, body: str) -> Spring | None:
         for spring in scene.springs
         if body in spring.between
         and not fixed.isdisjoint(spring.between)
-        and isinstance(spring.law, Linear | Hysteretic)
+        and isinstance(spring.law, Linear | BoucWen)
     ]
     return own[0] if len(own) == 1 else None
 
@@ -177,7 +177,7 @@ def own_spring(scene: Scene, body: str) -> Spring | None:
 def _angular_frequency(scene: Scene, body: Body) -> float:
     """omega_s (rad/s) of a body on its own spring; zero where it has none."""
     spring = own_spring(scene, body.name)
-    if spring is None or not isinstance(spring.law, Linear | Hysteretic):
+    if spring is None or not isinstance(spring.law, Linear | BoucWen):
         return 0.0
     return math.sqrt(spring.law.stiffness / body.mass)
 
@@ -213,7 +213,7 @@ def _oscillator_terms(scene: Scene, body: Body, first: Body) -> dict[str, float]
             terms[f"omega_s.{body.name}"] = omega_s0 / omega_s
     elif spring is not None and scales is not None:
         terms["omega_s"] = omega_s / scales.omega_g
-    if spring is not None and isinstance(spring.law, Hysteretic) and scales is not None:
+    if spring is not None and isinstance(spring.law, BoucWen) and scales is not None:
         law = spring.law
         terms[_key("uy", body.name, first.name)] = law.yield_displacement / scales.length
         inertia = body.mass * scales.a_g  # zero where the product is too small for a double

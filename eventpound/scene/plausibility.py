@@ -13,7 +13,7 @@ from eventpound.scene.damping import ratio_coefficient
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import local_periods, longest_period, nominal_stiffness
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Hysteretic
+from eventpound.scene.spring import GROUND, BoucWen
 from eventpound.scene.structures import isolated, structures_of
 from eventpound.units import STANDARD_GRAVITY
 
@@ -110,7 +110,7 @@ def _spring_doubts(scene: Scene) -> Iterator[Doubt]:
     scales, masses = scene.motion.scales(), _masses_joined(scene)
     for spring in scene.springs:
         law = spring.law
-        if not isinstance(law, Hysteretic):
+        if not isinstance(law, BoucWen):
             continue
         mass = max(masses.get(end, 0.0) for end in spring.between)
         yield_force = law.yield_force

@@ -49,3 +49,9 @@ class Scene:
     def hysteretic_springs(self) -> list[str]:
         """Names of the Bouc-Wen springs, in the order of z."""
         return [spring.name for spring in self.springs if isinstance(spring.law, Hysteretic)]
+
+    @property
+    def branched_springs(self) -> list[str]:
+        """Names of the springs whose memory has branches."""
+        laws = [(spring.name, spring.law) for spring in self.springs]
+        return [name for name, law in laws if isinstance(law, Hysteretic) and law.has_branches]

@@ -52,6 +52,7 @@ class Linear:
     """
 
     word: ClassVar[LawName] = LawName.LINEAR
+    equation: ClassVar[str] = "F = stiffness x"
     stiffness: Annotated[Number, Dimension.STIFFNESS]
 
     def __post_init__(self) -> None:
@@ -71,6 +72,9 @@ class BilinearElastic:
     """
 
     word: ClassVar[LawName] = LawName.BILINEAR_ELASTIC
+    equation: ClassVar[str] = (
+        "F = compression (x - offset) for x < offset, extension (x - offset) above"
+    )
     compression: Annotated[Number, Dimension.STIFFNESS]
     extension: Annotated[Number, Dimension.STIFFNESS]
     offset: Annotated[Number, Dimension.LENGTH] = default(0.0)
@@ -93,6 +97,9 @@ class Series:
     """
 
     word: ClassVar[LawName] = LawName.SERIES
+    equation: ClassVar[str] = (
+        "parts carry one force, their elongations add up; 'condensed' is the whole"
+    )
     parts: Given[tuple[Linear | BilinearElastic, ...], Iterable[Linear | BilinearElastic]]
 
     def __post_init__(self) -> None:
@@ -100,31 +107,33 @@ class Series:
 
 
 class Hysteretic:
-    """A law with a memory, ``F = k x + Q z``: what everyone may ask of it beside its solver.
+    """A law with a memory, whose internal variable z adds to its force.
 
-    Its z starts with the slope 1/u_y and stays within a bound of its own.
+    `has_branches`: whether the memory has branches of its own, which not every solver knows.
     """
 
     __slots__ = ()
-    stiffness: float
-    strength: float
-    yield_displacement: float
-    initial_z: float
+    word: ClassVar[LawName]
+    equation: ClassVar[str]
+    has_branches: ClassVar[bool] = False
 
     @property
-    def initial_stiffness(self) -> float:
-        """K0 (N/m), that at z = 0."""
-        return self.stiffness + self.strength / self.yield_displacement
+    def offset(self) -> float:
+        """Elongation at which the first branches meet (m)."""
+        return 0.0
 
     @property
-    def yield_force(self) -> float:
-        """F_y (N), where the bilinear backbone has its knee."""
-        return self.strength + self.stiffness * self.yield_displacement
+    def numbers(self) -> dict[str, float]:
+        """What a table of a case shows of it (SI)."""
+        raise NotImplementedError
 
-    @property
-    def yields(self) -> bool:
-        """Whether z has a part in the force."""
-        return self.strength > 0.0
+    def z_at(self, elongation: float) -> float:
+        """The z of a start at an elongation (m)."""
+        raise NotImplementedError
+
+    def drawn(self) -> tuple[list[float], list[float]]:
+        """Elongations (m) and forces (N) of a loop that shows what it does."""
+        raise NotImplementedError
 
 
 @converting
@@ -151,6 +160,10 @@ class BoucWen(Hysteretic):
     """
 
     word: ClassVar[LawName] = LawName.BOUC_WEN
+    equation: ClassVar[str] = (
+        "F = stiffness x + strength z, z' = (x' - gamma |x'| z |z|^(exponent-1)"
+        " - beta x' |z|^exponent) / yield_displacement"
+    )
     stiffness: Annotated[Number, Dimension.STIFFNESS]
     strength: Annotated[Number, Dimension.FORCE]
     yield_displacement: Annotated[Number, Dimension.LENGTH]
@@ -161,6 +174,25 @@ class BoucWen(Hysteretic):
 
     def __post_init__(self) -> None:
         read_fields(self)
+
+    @property
+    def initial_stiffness(self) -> float:
+        """K0 (N/m), that at z = 0."""
+        return self.stiffness + self.strength / self.yield_displacement
+
+    @property
+    def yield_force(self) -> float:
+        """F_y (N), where the bilinear backbone has its knee."""
+        return self.strength + self.stiffness * self.yield_displacement
+
+    @property
+    def yields(self) -> bool:
+        """Whether z has a part in the force."""
+        return self.strength > 0.0
+
+    def z_at(self, elongation: float) -> float:
+        """The z of a start at an elongation (m)."""
+        return self.initial_z
 
     @property
     def bound(self) -> float:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 
 from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Hysteretic, Spring
+from eventpound.scene.spring import GROUND, BoucWen, Spring
 
 
 def mass_on(scene: Scene, spring: Spring) -> float | None:
@@ -127,7 +127,7 @@ def isolated(scene: Scene) -> set[str]:
     yields: dict[frozenset[str], float] = {}
     for spring in scene.springs:
         law = spring.law
-        if isinstance(law, Hysteretic) and law.yields:
+        if isinstance(law, BoucWen) and law.yields:
             ends = frozenset(spring.between)
             force = law.yield_force
             yields[ends] = yields.get(ends, 0.0) + force

@@ -51,9 +51,14 @@ def takes_points(solver: Solver, scene: Scene) -> bool:
     return not at_points or getattr(solver, "takes_points", False)
 
 
-def knows_contacts(solver: Solver, scene: Scene) -> bool:
-    """Whether a solver takes every contact of a scene."""
-    return knows_laws(solver, scene) and takes_points(solver, scene)
+def takes_branches(solver: Solver, scene: Scene) -> bool:
+    """Whether a solver takes springs whose memories have branches, if there are any."""
+    return not scene.branched_springs or getattr(solver, "takes_branches", False)
+
+
+def knows_scene(solver: Solver, scene: Scene) -> bool:
+    """Whether a solver takes every spring and contact of a scene."""
+    return all(can(solver, scene) for can in (knows_laws, takes_points, takes_branches))
 
 
 def _own_names() -> list[str]:

@@ -58,6 +58,7 @@ class Cvode:
     counts_steps = True
     takes_supports = True
     takes_points = True
+    takes_branches = True
     contact_laws = tuple(BY_WORD)
 
     def check_settings(self, settings: Settings) -> None:

@@ -36,6 +36,7 @@ class Ida:
     settings: Mapping[str, str] = {"events": finders(SUNDIALS)}
     counts_steps = True
     takes_supports = True
+    takes_branches = True
     finest_rtol = FINEST_RTOL / LOCAL_SHARE
     """Below it the steps get no finer."""
 

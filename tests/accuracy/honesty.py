@@ -33,7 +33,7 @@ from eventpound.errors import InputError
 from eventpound.response import Response
 from eventpound.score import difference
 from eventpound.simulation import simulate
-from eventpound.solvers import knows_contacts, solver_named
+from eventpound.solvers import knows_scene, solver_named
 from tests.hard.catalogue import LONG
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -45,7 +45,7 @@ truth may be off: 100 of its rtol."""
 
 def true_run(case: Case) -> Response:
     """The run that is taken for the truth."""
-    able = knows_contacts(solver_named(INDEPENDENT), case.scene)
+    able = knows_scene(solver_named(INDEPENDENT), case.scene)
     return simulate(case, INDEPENDENT if able else "cvode", TRUE_RTOL)
 
 

@@ -9,7 +9,7 @@ from eventpound.accuracy.estimate import estimate_errors
 from eventpound.accuracy.quantities import values_of
 from eventpound.case import Case
 from eventpound.simulation import simulate
-from eventpound.solvers import knows_contacts, solver_named
+from eventpound.solvers import knows_scene, solver_named
 from tests.accuracy.honesty import CASES, single_runs, true_error, true_run, word
 from tests.hard.catalogue import REFUSED
 
@@ -38,7 +38,7 @@ def _found(case: Case, solver: str) -> str:
 @pytest.mark.parametrize("name", HOLDS)
 def test_what_a_run_says_of_itself_is_true(name: str, solver: str) -> None:
     case = load_case(CASES / name)
-    if not knows_contacts(solver_named(solver), case.scene):
+    if not knows_scene(solver_named(solver), case.scene):
         pytest.skip("the solver does not take the scene")
     assert _found(case, solver) == "holds"
 

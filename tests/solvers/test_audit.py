@@ -28,7 +28,8 @@ LENGTH_NOISE, FORCE_NOISE = 1e-15, 1e-12
 def _watched(*, rests: bool) -> Watched:
     none = np.array([np.inf])
     marks = np.array([not rests]), np.array([rests])
-    return Watched(*marks, False, -none, none, FORCE_NOISE, places_in(assemble(SCENE)))
+    turns = np.zeros(1, np.bool_)
+    return Watched(*marks, False, -none, none, turns, FORCE_NOISE, places_in(assemble(SCENE)))
 
 
 def _check(t: float, seen: Observed, watched: Watched) -> None:

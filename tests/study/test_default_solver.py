@@ -13,7 +13,7 @@ from eventpound import Case, Study, load_case, simulate, simulate_many, simulate
 from eventpound.case.options import FAST, default_solver
 from eventpound.cli import main
 from eventpound.errors import InputError
-from eventpound.solvers import knows_contacts, solver_named
+from eventpound.solvers import knows_scene, solver_named
 from eventpound.study.reading import load_study
 from tests.study.test_suite import time_series
 
@@ -57,7 +57,7 @@ def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
 ) -> None:
     case = load_case(written(tmp_path, text))
     assert case.solver.name == "cvode"
-    assert (many == FAST) == knows_contacts(solver_named(FAST), case.scene)
+    assert (many == FAST) == knows_scene(solver_named(FAST), case.scene)
     assert default_solver([case.scene], many=True) == many
     assert Study(case, GAPS).plan.solver == many
     assert load_case(tmp_path, suite=str(tmp_path / "a.txt")).solver.name == many

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.monitored import (
     Places,
     Running,
@@ -23,9 +24,9 @@ from eventpound.mechanics.monitored import (
 )
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein, quintic_bernstein
-from eventpound.tolerances import FLAT_TURN
+from eventpound.tolerances import FLAT_TURN, LENGTH
 
 DOUBT = 0.03
 """Part of a quantity's spread over the step by which its Hermite bound is widened."""
@@ -37,8 +38,8 @@ class Watched(NamedTuple):
     open_contacts (K,): gaps that may close. unlocked (K,): resting contacts
     that may detach. follows: whether a contact element is closed: then every step is looked at
     again, for what it does in it. kink_low, kink_high (L,): elongations at which a link
-    changes branch. force_noise: contact forces below which the sign
-    means nothing (N). at: columns of the extremes.
+    changes branch, of those that `turns` (L,) marks rates of elongation. force_noise: contact
+    forces below which the sign means nothing (N). at: columns of the extremes.
     """
 
     open_contacts: Bools
@@ -46,6 +47,7 @@ class Watched(NamedTuple):
     follows: bool
     kink_low: Floats
     kink_high: Floats
+    turns: Bools
     force_noise: float
     at: Places
 
@@ -120,12 +122,38 @@ def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: 
             continue
         # Of contact elements, which are links too, no extremes are kept.
         x0, x1 = a.elongation[:, link], b.elongation[:, link]
-        low, high = _bounds((x0[0], x0[1], x0[2]), (x1[0], x1[1], x1[2]), h, True)
+        if watched.turns[link]:
+            low, high = _bounds((x0[1], x0[2], 0.0), (x1[1], x1[2], 0.0), h, False)
+        else:
+            low, high = _bounds((x0[0], x0[1], x0[2]), (x1[0], x1[1], x1[2]), h, True)
         doubt = DOUBT * (high - low)
         found.kink[link] = low - doubt < watched.kink_low[link]
         found.kink[link] = found.kink[link] or high + doubt > watched.kink_high[link]
         any_found = any_found or found.kink[link]
     return any_found
+
+
+@scalar_kernel
+def room_on_branch(link: int, watched: Watched, elongation: Floats) -> tuple[float, float]:
+    """How far a link is from the end of its branch, positive inside (m, or m/s), and the rate.
+
+    Between two ends it is the product of both distances over that of the ends.
+    """
+    order = 1 if watched.turns[link] else 0
+    x, x_rate = elongation[order, link], elongation[order + 1, link]
+    below, above = x - watched.kink_low[link], watched.kink_high[link] - x
+    if above == np.inf:
+        return below, x_rate
+    if below == np.inf:
+        return above, -x_rate
+    width = below + above
+    return below * above / width, x_rate * (above - below) / width
+
+
+@scalar_kernel
+def noise_on_branch(link: int, watched: Watched, length: float, time: float) -> float:
+    """Size of `room_on_branch` that means nothing, of a scene's own scales (m, s)."""
+    return still_rate(length, time) if watched.turns[link] else LENGTH * length
 
 
 @kernel

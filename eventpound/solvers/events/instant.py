@@ -21,7 +21,7 @@ from eventpound.contact.impacts import (
     FULL,
 )
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
-from eventpound.contact.kinks import lacks_branch
+from eventpound.contact.kinks import lacks_branch, pass_kinks
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import CurrentPiece, next_corner
@@ -38,7 +38,6 @@ from eventpound.solvers.events.present import (
     forget_held,
     hold,
     make_ready,
-    pass_kinks,
     put_instant,
     put_present,
     take,
@@ -100,7 +99,6 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         for j in range(series.closing.size):
             happened.closing[j] = series.closing[j]
     any_event = anything(happened)
-    pass_kinks(happened, state)
     fleeting = any_event and is_fleeting(tau, clock, rules.time)
     # Where a mode is none no time passes either.
     end = t if fleeting else t + tau
@@ -121,6 +119,7 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         return BROKEN
     since = clock[SINCE_IMPACT]
     take(evaluate_series(series.dense.Y, tau)[0], end, mode, forcing, state)
+    pass_kinks(happened.kinked, state.z, run.instant)
     # The differences of times are none where intervals are short.
     clock[SINCE_IMPACT] = since + tau
     for j in range(state.gap.size):

@@ -101,7 +101,7 @@ class Integrator(Protocol):
        examination said. Raises `StandstillError` where it cannot.
     3. `dense(start, end)`: the motion over the last step as a polynomial, in the frame.
     4. `rhs_calls`, `jacobian_calls`, `starts`: what was spent so far.
-    5. `find_events(model, length)`: find events itself, for the whole run, in a scene of the
+    5. `find_events(model, length, time)`: find events itself, for the whole run, in a scene of the
        own `length` (m); an InputError where it cannot. `finds_events`:
        whether it does. Then the examination of a step looks for extremes only, and where an
        event happens `advance` ends with the verdict HAPPENED and the step at it. `happened`:
@@ -110,7 +110,7 @@ class Integrator(Protocol):
 
     starts: int
 
-    def find_events(self, model: Model, length: float) -> None:
+    def find_events(self, model: Model, length: float, time: float) -> None:
         """Part of duty 5."""
         ...
 

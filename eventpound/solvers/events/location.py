@@ -25,9 +25,14 @@ from eventpound.numerics.arrays import Bools
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein
 from eventpound.solvers.events.dense import DenseStep, look
-from eventpound.solvers.events.event_bounds import Found, Watched
+from eventpound.solvers.events.event_bounds import (
+    Found,
+    Watched,
+    noise_on_branch,
+    room_on_branch,
+)
 from eventpound.solvers.events.run import Happened, Rules
-from eventpound.tolerances import EPS, LENGTH
+from eventpound.tolerances import EPS
 
 DEPTH = 12
 """Halvings after which a stretch without a change of sign counts as clear."""
@@ -45,16 +50,13 @@ _GAP, _FORCE, _KINK, _MONITORED = 0, 1, 2, 3
 class Sought(NamedTuple):
     """What may fall below zero, or turn.
 
-    kind: a gap, the force of a resting contact, the distance of a link's elongation from
-    its `kink` (m), positive on its present branch: the side of `sign`; or a quantity of
-    which extremes are recorded. index: of the contact or link, or its column of the extremes.
+    kind: a gap, the force of a resting contact, the room of a link on its branch; or a quantity
+    of which extremes are recorded. index: of the contact or link, or its column of the extremes.
     noise: depth below zero that means nothing.
     """
 
     kind: int
     index: int  # type: ignore[assignment]  # hides the method of tuples
-    kink: float
-    sign: float
     noise: float
 
 
@@ -78,8 +80,8 @@ def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
     if sought.kind == _MONITORED:
         value, rate, _ = motion_of(i, step.dynamics.watched.at, seen)
         return Sample(tau, value, rate)
-    distance = sought.sign * (seen.elongation[0, i] - sought.kink)
-    return Sample(tau, distance, sought.sign * seen.elongation[1, i])
+    room, rate = room_on_branch(i, step.dynamics.watched, seen.elongation)
+    return Sample(tau, room, rate)
 
 
 @kernel
@@ -231,7 +233,7 @@ def first_event(
         When (s, local); inf where nothing happens.
     """
     forget(happened)
-    first, kink_noise = step.dense.end, LENGTH * rules.length
+    first = step.dense.end
     any_event = False
     for kind in range(3):
         marks = found.closing if kind == _GAP else found.detaching
@@ -241,12 +243,9 @@ def first_event(
             if not marks[i]:
                 continue
             noise = watched.force_noise if kind == _FORCE else rules.length_noise
-            sought = Sought(kind, i, 0.0, 1.0, noise)
             if kind == _KINK:
-                below = watched.kink_low[i] > -np.inf
-                kink = watched.kink_low[i] if below else watched.kink_high[i]
-                sought = Sought(kind, i, kink, 1.0 if below else -1.0, kink_noise)
-            tau = first_below(sought, first, step)
+                noise = noise_on_branch(i, watched, rules.length, rules.time)
+            tau = first_below(Sought(kind, i, noise), first, step)
             if tau == np.inf:
                 continue
             if tau < first:
@@ -302,10 +301,10 @@ def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happe
         if watched.unlocked[j] and force_vanishes(force, rate, watched.force_noise, rules.time):
             happened.released[j] = True
     for a in range(happened.kinked.size):
-        x, x_rate = seen.elongation[0, a], seen.elongation[1, a]
-        length, time = rules.length, rules.time
-        falls = passes_kink(x - watched.kink_low[a], -x_rate, length, time)
-        if falls or passes_kink(watched.kink_high[a] - x, x_rate, length, time):
+        room, rate = room_on_branch(a, watched, seen.elongation)
+        # A speed that vanishes is a length in the scene's own time.
+        unit = rules.time if watched.turns[a] else 1.0
+        if passes_kink(unit * room, -unit * rate, rules.length, rules.time):
             happened.kinked[a] = True
 
 
@@ -341,7 +340,7 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
     for k in range(running.at.displacement, running.at.end):
         if not peak[k]:
             continue
-        sought = Sought(_MONITORED, k, 0.0, 1.0, running.rounding[k])
+        sought = Sought(_MONITORED, k, running.rounding[k])
         a = Sample(times[0], seen[0, 0, k], seen[1, 0, k])
         for i in range(1, PARTS + 1):
             b = Sample(times[i], seen[0, i, k], seen[1, i, k])

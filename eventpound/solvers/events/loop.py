@@ -234,7 +234,7 @@ class EventLoop:
         self.now = Underway(task)
         self._integrated = 0.0
         if finds_events:
-            integrator.find_events(self.now.model, self.now.rules.length)
+            integrator.find_events(self.now.model, self.now.rules.length, self.now.rules.time)
         scales = self.now.scales
         self.moving = moving and scales.own_length.min() >= FRAMED * scales.length
 

@@ -5,18 +5,20 @@ Which transitions there are `eventpound.contact.modes` tabulates.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters_of_few
+from eventpound.mechanics.elements import branch_ends, has_branches, memory_on_branches
+from eventpound.mechanics.link_law import YIELDING
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_in
 from eventpound.mechanics.observables import Bodies, view
 from eventpound.mechanics.points import with_points
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
-from eventpound.numerics.arrays import Bools, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.event_bounds import Watched
@@ -72,6 +74,11 @@ class ModeTable:
         self.force_noise = force_noise
         self.places = places_in(model)
         self._modes: dict[tuple[bytes, ...], Mode] = {}
+        self._branched = [
+            (h, a)
+            for h, a in enumerate(model.hysteretic.tolist())
+            if in_python(has_branches)(a, model.law.memory)
+        ]
 
     def mode(self, resting: Bools, branch: Ints, pressed: Bools | None = None) -> Mode:
         """The mode with these contacts at rest and these branches.
@@ -88,8 +95,27 @@ class ModeTable:
             known = self._modes[key] = self._build(resting, branch, pressed)
         return known
 
-    def _build(self, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
+    def _on_branches(self, branch: Ints) -> Model:
+        """The model with the laws of links on these branches."""
         model = self.model
+        memory = in_python(memory_on_branches)(model.law.memory, branch)
+        if memory is model.law.memory:
+            return model
+        return replace(model, law=model.law._replace(memory=memory))
+
+    def place_ends(self, mode: Mode, u: Floats, z: Floats) -> None:
+        """Say where branches of memories end, from displacements (N,) and z (H,) on them."""
+        model, watched = self.model, mode.watched
+        for h, a in self._branched:
+            branch, offset = int(mode.branch[a]), float(model.elastic.offset[a])
+            if branch != 0:
+                x = float(model.elongations(u)[a])
+                watched.kink_low[a], watched.kink_high[a] = in_python(branch_ends)(
+                    a, model.law.memory, branch, offset, x, float(z[h])
+                )
+
+    def _build(self, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
+        model = self._on_branches(branch)
         at_points = np.zeros(model.contacts, np.bool_)
         at_points[model.points] = True
         ordinary, projection = resting & ~at_points, None
@@ -124,6 +150,7 @@ class ModeTable:
             bool((branch[model.plain :] < 0).any()),
             np.where(branch > 0, kink, -np.inf),
             np.where(branch < 0, kink, np.inf),
+            branch == YIELDING,
             self.force_noise,
             self.places,
         )

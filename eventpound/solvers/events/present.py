@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import SINCE_IMPACT, STALE, T
+from eventpound.contact.cascade import SINCE_IMPACT, T
+from eventpound.contact.kinks import pass_kinks
 from eventpound.mechanics.monitored import copy_extremes, update_extremes, update_settled
 from eventpound.mechanics.observables import (
     Bodies,
@@ -24,7 +25,6 @@ from eventpound.numerics.lending import lend
 from eventpound.solvers.events.recorder import WRITTEN, write_row
 from eventpound.solvers.events.run import (
     Dynamics,
-    Happened,
     Rules,
     Run,
     RunRecord,
@@ -100,21 +100,13 @@ def take_points(bodies: Bodies, state: State) -> None:
 
 
 @scalar_kernel
-def close_marked(happened: Happened, state: State) -> None:
-    """Put what happened exactly on its constraint."""
+def close_marked(run: Run) -> None:
+    """Put what happened exactly on its constraint, and links on the branch that follows."""
+    happened, state = run.happened, run.state
     for j in range(state.gap.size):
         if happened.closing[j]:
             state.gap[j] = 0.0
-    pass_kinks(happened, state)
-
-
-@scalar_kernel
-def pass_kinks(happened: Happened, state: State) -> None:
-    """Put links that pass their kink on its other side."""
-    for a in range(state.branch.size):
-        if happened.kinked[a]:
-            state.branch[a] = -state.branch[a]
-            state.count[STALE] = 1
+    pass_kinks(happened.kinked, state.z, run.instant)
 
 
 @kernel

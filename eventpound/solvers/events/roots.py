@@ -18,10 +18,10 @@ import numpy as np
 
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.compiled import scalar_kernel
-from eventpound.solvers.events.event_bounds import Watched
+from eventpound.numerics.compiled import in_python, scalar_kernel
+from eventpound.solvers.events.event_bounds import Watched, noise_on_branch, room_on_branch
 from eventpound.solvers.settings import Settings, word
-from eventpound.tolerances import GAP, LENGTH, NO_ZERO
+from eventpound.tolerances import GAP, NO_ZERO
 
 OWN, SUNDIALS = EVENTS = ("own", "sundials")
 """Who finds events, in `[solver]`: the event loop, or the root finder of the integrator."""
@@ -59,13 +59,8 @@ def values_and_rates(seen: Observed, watched: Watched, pairs: Floats) -> None:
             pairs[place, 1] = seen.contact_force[1, j]
             place += 1
     for i in range(seen.elongation.shape[1]):
-        low, high = watched.kink_low[i], watched.kink_high[i]
-        x, x_rate = seen.elongation[0, i], seen.elongation[1, i]
-        if low > -np.inf:
-            pairs[place, 0], pairs[place, 1] = x - low, x_rate
-            place += 1
-        elif high < np.inf:
-            pairs[place, 0], pairs[place, 1] = high - x, -x_rate
+        if watched.kink_low[i] > -np.inf or watched.kink_high[i] < np.inf:
+            pairs[place, 0], pairs[place, 1] = room_on_branch(i, watched, seen.elongation)
             place += 1
 
 
@@ -128,11 +123,13 @@ def owners(watched: Watched) -> tuple[Bools, Bools, Bools]:
     return watched.open_contacts, watched.unlocked & ~watched.open_contacts, kinked
 
 
-def noise_of(watched: Watched, length: float) -> Floats:
-    """Noise of every value of a mode, (n,); `length` is the scene's own (m)."""
+def noise_of(watched: Watched, length: float, time: float) -> Floats:
+    """Noise of every value of a mode, (n,); `length` (m) and `time` (s) are the scene's own."""
     gaps, forces, kinked = owners(watched)
     of_contacts = np.where(gaps, GAP * length, watched.force_noise)[gaps | forces]
-    return np.concatenate((of_contacts, np.full(int(kinked.sum()), LENGTH * length)))
+    of_link = in_python(noise_on_branch)
+    of_links = [of_link(i, watched, length, time) for i in np.flatnonzero(kinked).tolist()]
+    return np.concatenate((of_contacts, of_links))
 
 
 def marks_of(watched: Watched, fallen: Bools) -> tuple[Bools, Bools, Bools]:

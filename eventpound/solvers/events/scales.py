@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.link_law import LinkLaw, yielding, z_bound
+from eventpound.mechanics.link_law import LinkLaw, memory_force, yielding, z_bound
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.supported import peak_of
 from eventpound.motion.base import GroundMotion
@@ -178,8 +178,8 @@ def _energy(links: Attached, mass: Floats, start: InitialState) -> Floats:
         total = total + 0.5 * k * x * x
     memory = yielding(links.law.memory)
     for h, i in enumerate(start.hysteretic.tolist()):
-        stored = memory.force[..., i] * memory.displacement[..., i]
-        total = total + stored * np.abs(start.z[..., h])
+        pull = memory_force(links.law.memory[..., i, :], start.z[..., h])
+        total = total + memory.displacement[..., i] * np.abs(pull)
     return np.asarray(total)
 
 
@@ -196,6 +196,11 @@ class SceneScales:
     z_bound: Floats
     own_length: Floats
     own_speed: Floats
+
+    @property
+    def z_size(self) -> Floats:
+        """Bounds of z, 1 of those that have none."""
+        return np.where(np.isinf(self.z_bound), 1.0, self.z_bound)
 
     @property
     def speed(self) -> float:
@@ -313,7 +318,7 @@ def tolerances(task: Task, scales: SceneScales) -> dict[str, Floats | float]:
         "displacement": body_tolerance(task, "displacement", scales.own_length),
         "velocity": body_tolerance(task, "velocity", scales.own_speed),
         "z": (
-            np.full(scales.z_bound.size, atol["z"]) if "z" in atol else task.rtol * scales.z_bound
+            np.full(scales.z_bound.size, atol["z"]) if "z" in atol else task.rtol * scales.z_size
         ),
         "energy": task.rtol * scales.energy,
     }

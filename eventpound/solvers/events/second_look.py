@@ -123,7 +123,7 @@ def look_again(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> i
             look(tau, step)
             put_instant(origin + tau, step.seen, record)
             take(state_at(tau, step), origin + tau, mode, forcing, state)
-            close_marked(run.happened, state)
+            close_marked(run)
             return EVENT
         after = looks[1]
         if broken_contact(after, watched, rules.length_noise) >= 0:

@@ -180,6 +180,7 @@ class Underway:
         state, model = self.state, self.model
         mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed)
         state.count[STALE] = 0
+        self.table.place_ends(mode, state.u, state.z)
         self.take_closing_speeds(mode)
         if not mode.clusters.tree:
             if model.points.size > 0:

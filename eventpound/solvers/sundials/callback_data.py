@@ -39,9 +39,9 @@ asked for the first time."""
 class Roots(NamedTuple):
     """Root functions of a mode, n of them; on loan.
 
-    counts (2,): above. forces: whether contact forces are among them. watched: of the `Mode`.
-    noise, lifted (n,), pairs (n, 2): as `eventpound.solvers.events.roots` has them. seen:
-    scratch, on loan.
+    counts (2,): above. forces: whether contact forces or rates of x' are among them. watched: of
+    the `Mode`. noise, lifted (n,), pairs (n, 2): as `eventpound.solvers.events.roots` has them.
+    seen: scratch, on loan.
     """
 
     counts: Ints
@@ -81,12 +81,12 @@ def address_of(
 def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int = 0) -> Roots:
     """`Roots` without functions of a scene with so many of each, on loan."""
     gaps, forces = np.zeros((2, contacts), np.bool_)
-    low, high = np.zeros((2, links))
+    (low, high), turns = np.zeros((2, links)), np.zeros(links, np.bool_)
     return on_loan(
         Roots(
             np.zeros(2, np.int64),
             False,
-            Watched(gaps, forces, False, low, high, 0.0, in_python(places_of)(0, 0, 0)),
+            Watched(gaps, forces, False, low, high, turns, 0.0, in_python(places_of)(0, 0, 0)),
             np.zeros(0),
             np.zeros(0),
             np.zeros((0, 2)),
@@ -108,6 +108,8 @@ class RootFunctions:
         The scene.
     length : float
         The scene's own, L (m).
+    time : float
+        The scene's own, T (s).
 
     Attributes
     ----------
@@ -115,8 +117,8 @@ class RootFunctions:
         On loan, the same for all modes.
     """
 
-    def __init__(self, model: Model, length: float) -> None:
-        self._length = length
+    def __init__(self, model: Model, length: float, time: float) -> None:
+        self._length, self._time = length, time
         self._mode: Mode
         self.loan = no_roots(*model.counts)
 
@@ -137,10 +139,10 @@ class RootFunctions:
 
     def point_to(self, mode: Mode) -> None:
         """Be the functions of a mode, from a start on."""
-        watched, noise = mode.watched, noise_of(mode.watched, self._length)
+        watched, noise = mode.watched, noise_of(mode.watched, self._length, self._time)
         self._mode, counts, seen = mode, self.loan.counts, self.loan.seen
         counts[FRESH] = 1
-        forces = bool(watched.unlocked.any())
+        forces = bool(watched.unlocked.any() or watched.turns.any())
         lifted, pairs = np.zeros(noise.size), np.zeros((noise.size, 2))
         roots = Roots(counts, forces, watched, noise, lifted, pairs, seen)
         change_loan(self.loan, roots)

@@ -64,9 +64,9 @@ class _Duties:
         """What its root finder has found at the end of the last step."""
         return self._roots.marks() if self._roots is not None else None
 
-    def find_events(self, model: Model, length: float) -> None:
+    def find_events(self, model: Model, length: float, time: float) -> None:
         """Let its own root finder find events, for the whole run."""
-        self._roots = RootFunctions(model, length)
+        self._roots = RootFunctions(model, length, time)
 
     def start(self, start: Start) -> None:
         """Begin at the local time `tau` (s) with state `y`."""
