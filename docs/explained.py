@@ -1,4 +1,7 @@
-"""Pictures of docs/contact.md: `python docs/explained.py` draws them from three short runs."""
+"""Pictures of docs/contact.md and of backfill in docs/case-format.md, from a few short runs.
+
+`python docs/explained.py` draws them.
+"""
 
 from __future__ import annotations
 
@@ -75,6 +78,22 @@ def contact_spring() -> None:
     _save(figure, "contact-spring.png")
 
 
+def backfill() -> None:
+    """Force on the soil at the right of a deck: gap, backbone, unloading, and what gap stays."""
+    case = eventpound.load_case(HERE.parent / "cases" / "deck-on-backfill")
+    response = eventpound.simulate(replace(case, run=replace(case.run, output_step=1e-3)))
+    history, law = response.history, case.scene.springs[2].law
+    left = response.quantity("springs.right.residual_gap")
+    figure, axis = plt.subplots(figsize=SIZE, dpi=DPI, layout="constrained")
+    axis.plot(100 * history["u.deck"], -FORCE_IN_MN * history["force.right"], color="#0072b2")
+    for place, text in ((law.gap, "gap"), (left, "residual gap")):
+        axis.plot(100 * place, 0.0, "o", color="#d55e00", fillstyle="none")
+        axis.annotate(text, (100 * place, 0.0), (0, 6), textcoords="offset points", ha="right")
+    axis.set(xlabel="displacement of the deck (cm)", ylabel="force on the soil (MN)")
+    axis.grid(alpha=0.3)
+    _save(figure, "backfill.png")
+
+
 def _save(figure: plt.Figure, name: str) -> None:
     FOLDER.mkdir(exist_ok=True)
     figure.savefig(FOLDER / name)
@@ -84,3 +103,4 @@ def _save(figure: plt.Figure, name: str) -> None:
 if __name__ == "__main__":
     rest()
     contact_spring()
+    backfill()

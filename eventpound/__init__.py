@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from eventpound.response import Response
     from eventpound.results import write
     from eventpound.scene import (
+        Backfill,
         BilinearElastic,
         Body,
         BoucWen,
@@ -61,6 +62,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AccuracyWarning",
     "AntisymmetricRicker",
+    "Backfill",
     "BatchResponse",
     "BilinearElastic",
     "Body",

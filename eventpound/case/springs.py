@@ -14,7 +14,16 @@ from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
 from eventpound.scene.grounded import ends_on_ground
-from eventpound.scene.spring import BilinearElastic, BoucWen, Law, LawName, Linear, Series, Spring
+from eventpound.scene.spring import (
+    Backfill,
+    BilinearElastic,
+    BoucWen,
+    Law,
+    LawName,
+    Linear,
+    Series,
+    Spring,
+)
 from eventpound.units import Dimension
 
 _DIMENSIONS = {
@@ -75,6 +84,8 @@ def _read_law(table: Table, between: tuple[str, str], masses: Mapping[str, float
             law = _read_bilinear(table)
         case "bouc-wen":
             law = _read_bouc_wen(table, between, masses)
+        case "backfill":
+            law = _read_backfill(table)
         case "series":
             law = _read_series(table)
         case _:
@@ -98,6 +109,15 @@ def _read_bilinear(table: Table) -> BilinearElastic:
         table.quantity("compression", Dimension.STIFFNESS),
         table.quantity("extension", Dimension.STIFFNESS),
         table.quantity("offset", Dimension.LENGTH, 0.0),
+    )
+
+
+def _read_backfill(table: Table) -> Backfill:
+    return Backfill(
+        table.quantity("initial_stiffness", Dimension.STIFFNESS),
+        table.quantity("ultimate_force", Dimension.FORCE),
+        table.quantity("failure_ratio", Dimension.NUMBER),
+        table.quantity("gap", Dimension.LENGTH, 0.0),
     )
 
 

@@ -15,7 +15,12 @@ The constants of a law with a memory are a row of `LinkLaw.memory`. What stands 
 here and in `eventpound.mechanics.backbone`, which solves eq. 3 with time eliminated.
 
 A law with *branches* has other constants on each (`memory_on_branches`), and tells where a branch
-ends (`branch_ends`) and which one follows.
+ends (`branch_ends`) and which one follows. Soil behind an abutment (Shamsabadi, Rollins and
+Kapuskar 2007) has the backbone ``F = -y / (1/K_0 + R_f y/F_ult)`` in the depth y beyond the gap.
+With ``Q = F_ult/R_f``, ``u_y = Q/K_0`` and ``η = y/u_y``
+
+    z' = x'/u_y              apart, Q z no force, and inside the backbone,
+    z' = (x'/u_y) (1 + z)^2  yielding: z = -η/(1 + η), until x' turns.
 """
 
 from __future__ import annotations
@@ -23,12 +28,17 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.link_law import (
+    APART,
+    BACKFILL,
     BETA,
+    CLOSED,
     EXPONENT,
     GAMMA,
     KIND,
     STRENGTH,
     YIELD,
+    YIELDING,
+    YIELDING_SOIL,
 )
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import F, compile_with, kernel, scalar_kernel
@@ -98,13 +108,19 @@ def z_rate(a: int, memory: Floats, x_rate: float, direction: float, z: float) ->
     """
     same_sign = (direction > 0.0) == (z > 0.0)
     kappa = memory[a, BETA] + memory[a, GAMMA] * (2.0 * same_sign - 1.0)
-    rate: float = x_rate / memory[a, YIELD] * (1.0 - kappa * abs(z) ** memory[a, EXPONENT])
+    slope = 1.0 - kappa * abs(z) ** memory[a, EXPONENT]
+    if memory[a, KIND] == YIELDING_SOIL:
+        slope = (1.0 + z) * (1.0 + z)
+    rate: float = x_rate / memory[a, YIELD] * slope
     return rate
 
 
 @_part
 def z_slopes(a: int, memory: Floats, x_rate: float, z: float) -> tuple[float, float]:
     """Derivatives of `z_rate` by the elongation rate (1/m) and by z (1/s)."""
+    if memory[a, KIND] == YIELDING_SOIL:
+        left = 1.0 + z
+        return left * left / memory[a, YIELD], 2.0 * left * x_rate / memory[a, YIELD]
     n, kappa = memory[a, EXPONENT], memory[a, BETA] - memory[a, GAMMA]
     if (x_rate > 0.0) == (z > 0.0):
         kappa = memory[a, BETA] + memory[a, GAMMA]
@@ -139,13 +155,34 @@ def bends_at_zero(a: int, memory: Floats) -> bool:
 @_part
 def has_branches(a: int, memory: Floats) -> bool:
     """Whether the law of link a has branches of its own, beside an elastic part without a kink."""
-    return False
+    return bool(memory[a, KIND] == BACKFILL)
 
 
 @kernel
 def memory_on_branches(memory: Floats, branch: Ints) -> Floats:
     """Constants of links (L, ·) on their present branches (L,); the same array where none has."""
-    return memory
+    found, any_changed = memory, False
+    for a in range(branch.size):
+        if has_branches(a, memory) and branch[a] != CLOSED:
+            if not any_changed:
+                found, any_changed = memory.copy(), True
+            if branch[a] == YIELDING:
+                found[a, KIND] = YIELDING_SOIL
+            else:
+                found[a, STRENGTH] = 0.0
+    return found
+
+
+@_part
+def _knee(a: int, memory: Floats, offset: float, x: float, z: float) -> float:
+    """How far inside link a is from where it left the backbone to where it comes apart (m).
+
+    With ``ζ = p/u_y`` of the plastic depth p it left at ``η² = ζ (1 + η)``, and pressed with
+    ``Q η/(1 + η)``.
+    """
+    zeta = max((offset - x) / memory[a, YIELD] + z, 0.0)
+    eta = 0.5 * (zeta + np.sqrt(zeta * (zeta + 4.0)))
+    return float(memory[a, YIELD] * eta / (1.0 + eta))
 
 
 @scalar_kernel
@@ -154,9 +191,14 @@ def branch_ends(
 ) -> tuple[float, float]:
     """Elongations (m) between which link a stays on a branch, and is now, at x (m) and z.
 
-    Those of YIELDING are of x'.
+    That of YIELDING ends where x' rises above zero: then they are of x'.
     """
-    return (-np.inf, offset) if branch < 0 else (offset, np.inf)
+    apart = x - memory[a, YIELD] * z
+    if branch == YIELDING:
+        return -np.inf, 0.0
+    if branch == APART:
+        return min(apart, x), np.inf
+    return min(apart - _knee(a, memory, offset, x, z), x), max(apart, x)
 
 
 @scalar_kernel
@@ -164,7 +206,14 @@ def next_branch(
     a: int, memory: Floats, branch: int, offset: float, x: float, z: float, noise: float
 ) -> int:
     """The branch of link a where one has ended, at x (m) and z; lengths below `noise` are none."""
-    return -branch
+    if not has_branches(a, memory):
+        return -branch
+    knee = _knee(a, memory, offset, x, z)
+    if branch == APART:
+        return CLOSED if knee > noise else YIELDING
+    if branch == YIELDING:
+        return CLOSED if knee > noise else APART
+    return APART if -z * memory[a, YIELD] < 0.5 * knee else YIELDING
 
 
 @kernel
@@ -173,13 +222,19 @@ def z_coefficient(
 ) -> float:
     """Taylor coefficient k of z', from those of x' and z up to k; `power` is brought up to k.
 
-    `sigma` is the sign of x' just after the start, `power` holds the coefficients of |z|^n.
+    `sigma` is the sign of x' just after the start, `power` holds the coefficients of |z|^n, or of
+    -z (2 + z) of soil that yields.
     """
     sign_z = sign_after(z, k + 1, NO_Z)
     if sign_z == 0.0:
         sign_z = sigma
     kappa = memory[a, BETA] + memory[a, GAMMA] * sigma * sign_z
-    power[k] = power_coefficient(z, power, memory[a, EXPONENT], k)
+    if memory[a, KIND] == YIELDING_SOIL:
+        kappa, power[k] = 1.0, -2.0 * z[k]
+        for j in range(k + 1):
+            power[k] -= z[j] * z[k - j]
+    else:
+        power[k] = power_coefficient(z, power, memory[a, EXPONENT], k)
     product = 0.0
     for j in range(k + 1):
         product += x_rate[j] * power[k - j]

@@ -13,12 +13,12 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.elastic_laws import ElasticLaws, elastic_force
-from eventpound.scene.spring import BoucWen, Hysteretic, Law
+from eventpound.scene.spring import Backfill, BoucWen, Hysteretic, Law
 
 CONSTANTS = ("kind", "strength", "yield_displacement", "exponent", "beta", "gamma")
 """Columns of `LinkLaw.memory`; but for the first, fields of `BoucWen`."""
 KIND, STRENGTH, YIELD, EXPONENT, BETA, GAMMA = range(len(CONSTANTS))
-ELASTIC, BOUC_WEN = 0.0, 1.0
+ELASTIC, BOUC_WEN, BACKFILL, YIELDING_SOIL = 0.0, 1.0, 2.0, 3.0
 """Kinds of links; that of a contact element is its code, which is negative."""
 APART, CLOSED, YIELDING = 1, -1, -2
 """Branches of a link: above its kink, below it, and below it on the backbone of a memory."""
@@ -51,6 +51,9 @@ def link_law(laws: Sequence[Law | Hysteretic], damping: Any) -> LinkLaw:
     for row, law in zip(rows, laws, strict=False):
         if isinstance(law, BoucWen):
             row[:] = (BOUC_WEN, *(getattr(law, name) for name in CONSTANTS[1:]))
+        elif isinstance(law, Backfill):
+            # Off its backbone dz/dx is constant: eq. 3 with β and γ zero.
+            row[:] = (BACKFILL, law.strength, law.yield_displacement, 1.0, 0.0, 0.0)
     return LinkLaw(np.array(damping, np.float64), rows)
 
 
@@ -78,8 +81,9 @@ def z_bound(memory: Floats) -> Floats:
 
 
 def memory_force(memory: Floats, z: Floats) -> Floats:
-    """What memory pulls with (N), for constants (..., H, ·) and z (..., H)."""
-    return np.asarray(memory[..., STRENGTH] * z)
+    """What memory pulls with (N), for constants (..., H, ·) and z (..., H); soil only pushes."""
+    acting = np.where(memory[..., KIND] == BACKFILL, np.minimum(z, 0.0), z)
+    return np.asarray(memory[..., STRENGTH] * acting)
 
 
 def spring_forces(

@@ -39,6 +39,12 @@ LISTED: tuple[Quantity, ...] = (
              "Work done on the Q z part of a Bouc-Wen spring, less Q u_y z^2/2, which it can "
              "give back.", v.close_work(_SPRING + "dissipated_energy"), TakenFrom.BETWEEN,
              v.is_bouc_wen),
+    Quantity(_SPRING + "dissipated_energy", "energy dissipated", D.ENERGY,
+             "Work that the soil of a backfill does not give back.", v.by_law("dissipated"),
+             TakenFrom.LAWS, v.told_by_law("dissipated")),
+    Quantity(_SPRING + "residual_gap", "residual gap", D.LENGTH,
+             "Compression at which the soil of a backfill would be touched again after the run.",
+             v.by_law("residual_gap"), TakenFrom.LAWS, v.told_by_law("residual_gap")),
     Quantity("dashpots.<dashpot>.dissipated_energy", "energy dissipated", D.ENERGY,
              "Work done in a dashpot.", v.close_work("dashpots.<dashpot>.dissipated_energy"),
              TakenFrom.BETWEEN),

@@ -9,6 +9,7 @@ from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import (
     GROUND,
+    Backfill,
     BilinearElastic,
     BoucWen,
     Linear,
@@ -20,6 +21,7 @@ from eventpound.scene.support import Support
 __all__ = [
     "BARRIER",
     "GROUND",
+    "Backfill",
     "BilinearElastic",
     "Body",
     "BoucWen",

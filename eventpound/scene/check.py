@@ -17,7 +17,7 @@ from eventpound.scene.contact import BARRIER, Contact, opening
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Law, Linear
+from eventpound.scene.spring import GROUND, Backfill, BilinearElastic, BoucWen, Law, Linear
 
 _TINY = sys.float_info.min
 _Condition = Callable[[float], bool]
@@ -195,6 +195,8 @@ def _spring_problems(scene: Scene) -> Iterator[Problem]:
 def _law_problems(element: _Element, law: Law, prefix: str = "") -> Iterator[Problem]:
     if isinstance(law, BoucWen):
         yield from _bouc_wen_problems(element, law)
+    elif isinstance(law, Backfill):
+        yield from _backfill_problems(element, law)
     elif isinstance(law, Linear):
         yield from element.number(
             f"{prefix}stiffness", law.stiffness, "a stiffness >= 0 (N/m)", _not_negative
@@ -234,6 +236,16 @@ def _bouc_wen_problems(element: _Element, law: BoucWen) -> Iterator[Problem]:
             f"a number of at most (beta + gamma)^(-1/exponent) = {bound:.6g} in size",
             lambda z: abs(z) <= bound * (1.0 + 4.0 * math.ulp(1.0)),
         )
+
+
+def _backfill_problems(element: _Element, law: Backfill) -> Iterator[Problem]:
+    number = element.number
+    stiffness, force = law.initial_stiffness, law.ultimate_force
+    yield from number("initial_stiffness", stiffness, "a positive stiffness (N/m)", _positive)
+    yield from number("ultimate_force", force, "a positive force (N)", _positive)
+    accepted = "a number above 0, at most 1"
+    yield from number("failure_ratio", law.failure_ratio, accepted, lambda r: 0.0 < r <= 1.0)
+    yield from number("gap", law.gap, "a length >= 0 (m)", _not_negative)
 
 
 def _dashpot_problems(scene: Scene) -> Iterator[Problem]:

@@ -7,6 +7,7 @@ Every number may be given as a string with a unit, ``"1051 kN/m"``.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from enum import StrEnum
@@ -25,6 +26,8 @@ from eventpound.given import (
 from eventpound.units import Dimension
 
 GROUND = "ground"
+DRAWN = 40
+"""Parts of a curve that stands for a law."""
 
 
 class LawName(StrEnum):
@@ -33,12 +36,13 @@ class LawName(StrEnum):
     LINEAR = "linear"
     BILINEAR_ELASTIC = "bilinear-elastic"
     BOUC_WEN = "bouc-wen"
+    BACKFILL = "backfill"
     SERIES = "series"
 
     @property
     def hysteretic(self) -> bool:
         """Whether it has a memory."""
-        return self is LawName.BOUC_WEN
+        return self in (LawName.BOUC_WEN, LawName.BACKFILL)
 
 
 @converting
@@ -251,7 +255,94 @@ class BoucWen(Hysteretic):
         )
 
 
-Law = Linear | BilinearElastic | Series | BoucWen
+@converting
+class Backfill(Hysteretic):
+    """Soil behind an abutment, which resists compression beyond a gap.
+
+    ``F = -y / (1/K0 + R_f y / F_ult)`` at the depth ``y = -(x + gap)`` where it is pushed in for
+    the first time (Shamsabadi, Rollins and Kapuskar 2007). It is unloaded and reloaded with K0,
+    and does not come back: where the force has gone a wider gap stays.
+
+    Parameters
+    ----------
+    initial_stiffness : float
+        K0 (N/m), positive.
+    ultimate_force : float
+        F_ult (N), positive.
+    failure_ratio : float
+        R_f, above 0 and at most 1; far in, the force tends to ``F_ult/R_f``.
+    gap : float
+        Compression before the soil is touched (m), not negative.
+    """
+
+    word: ClassVar[LawName] = LawName.BACKFILL
+    equation: ClassVar[str] = (
+        "Q = ultimate_force / failure_ratio, u_y = Q / initial_stiffness, F = Q min(z, 0);"
+        " z' = (1 + z)^2 x' / u_y where x' < 0 and z = -eta / (1 + eta), eta = -(x + gap) / u_y,"
+        " else z' = x' / u_y"
+    )
+    has_branches: ClassVar[bool] = True
+    initial_stiffness: Annotated[Number, Dimension.STIFFNESS]
+    ultimate_force: Annotated[Number, Dimension.FORCE]
+    failure_ratio: Annotated[Number, Dimension.NUMBER]
+    gap: Annotated[Number, Dimension.LENGTH] = default(0.0)
+
+    def __post_init__(self) -> None:
+        read_fields(self)
+
+    @property
+    def strength(self) -> float:
+        """Q (N), to which the force tends."""
+        return self.ultimate_force / self.failure_ratio
+
+    @property
+    def yield_displacement(self) -> float:
+        """u_y (m), at which K0 would reach it."""
+        return self.strength / self.initial_stiffness
+
+    @property
+    def offset(self) -> float:
+        """Elongation at which the soil is touched (m)."""
+        return -self.gap
+
+    def z_at(self, elongation: float) -> float:
+        """The z of a start at an elongation (m), for soil that is pushed in for the first time."""
+        depth = self.offset - elongation
+        if depth > 0.0:
+            return -self.push(depth) / self.strength
+        return -depth / self.yield_displacement
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """What a table of a case shows of it (SI)."""
+        names = {"K0": self.initial_stiffness, "Q": self.strength, "u_y": self.yield_displacement}
+        return names | {"offset": self.offset}
+
+    def drawn(self) -> tuple[list[float], list[float]]:
+        """Elongations (m) and forces (N) from rest by u_y into the soil and back."""
+        depths = [self.yield_displacement * k / DRAWN for k in range(DRAWN + 1)]
+        force = [-self.push(y) for y in depths]
+        freed = self.offset - depths[-1] - force[-1] / self.initial_stiffness
+        x = [0.0, *(self.offset - y for y in depths), freed, 0.0]
+        return x, [0.0, *force, 0.0, 0.0]
+
+    def push(self, depth: float) -> float:
+        """Force at a depth (m) to which it is pushed for the first time (N)."""
+        return depth / (1.0 / self.initial_stiffness + depth / self.strength)
+
+    def residual_gap(self, elongation: float, z: float) -> float:
+        """Compression before the soil is touched again (m)."""
+        return self.yield_displacement * z - elongation
+
+    def dissipated(self, elongation: float, z: float) -> float:
+        """Work that was lost up to here (J), ``∫ F dp`` along the backbone in its plastic depth."""
+        zeta = max((self.residual_gap(elongation, z) - self.gap) / self.yield_displacement, 0.0)
+        t = 1.0 + 0.5 * (zeta + math.sqrt(zeta * (zeta + 4.0)))
+        lost = t - math.log(t) + 1.0 / t - 0.5 / t**2 - 1.5
+        return self.strength * self.yield_displacement * lost
+
+
+Law = Linear | BilinearElastic | Series | BoucWen | Backfill
 """What a spring may have."""
 
 

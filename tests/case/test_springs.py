@@ -11,7 +11,7 @@ import pytest
 from eventpound.case import Case, read_case
 from eventpound.case.template import template
 from eventpound.errors import InputError
-from eventpound.scene import BilinearElastic, BoucWen, Dashpot, Linear, Series
+from eventpound.scene import Backfill, BilinearElastic, BoucWen, Dashpot, Linear, Series
 from eventpound.scene.modes import modes_of
 
 Table = dict[str, object]
@@ -145,6 +145,15 @@ def test_kinked_laws() -> None:
     first, second = case_with(spring=tables).scene.springs
     assert first.law == BilinearElastic(2000.0, 0.0, 0.0)
     assert second.law == Series((Linear(4.0), BilinearElastic(2000.0, 0.0, 0.01)))
+
+
+def test_backfill() -> None:
+    soil: Table = {"law": "backfill", "initial_stiffness": "200 MN/m", "ultimate_force": "3 MN"}
+    (read,) = case_with(spring=[spring(**soil, failure_ratio=0.7, gap="5 cm")]).scene.springs
+    assert read.law == Backfill(2e8, 3e6, 0.7, 0.05)
+    said = problems(spring=[spring(**soil, failure_ratio=1.2, gap=-1.0)])
+    assert "[[spring]] 1: failure_ratio: found 1.2; accepted: a number above 0, at most 1" in said
+    assert "[[spring]] 1: gap: found -1.0; accepted: a length >= 0 (m)" in said
 
 
 def test_names_by_default_are_those_of_the_ends() -> None:

@@ -10,13 +10,16 @@ from scipy.special import hyp2f1
 from eventpound.mechanics.elements import (
     CURVE_PLACES,
     begin_curve,
+    branch_ends,
+    memory_on_branches,
+    next_branch,
     next_z,
     z_coefficient,
     z_rate,
     z_slopes,
 )
-from eventpound.mechanics.link_law import z_bound
-from eventpound.scene import BoucWen
+from eventpound.mechanics.link_law import APART, CLOSED, YIELDING, link_law, z_bound
+from eventpound.scene import Backfill, BoucWen
 from eventpound.solvers.fast.single.body import BODY
 from eventpound.solvers.fast.single.series import curved_series
 from tests.mechanics.dense import literal_z_rate, memory_of
@@ -82,6 +85,40 @@ def test_slopes_are_those_of_the_rate(n: float, z: float, x_rate: float) -> None
     assert by_rate == pytest.approx(z_rate(0, law, x_rate, x_rate, z) / x_rate, rel=1e-13)
     ends = [z_rate(0, law, x_rate, x_rate, z + s) for s in (-small, small)]
     assert by_z == pytest.approx((ends[1] - ends[0]) / (2.0 * small), rel=1e-6, abs=1e-6)
+
+
+def test_soil_yields_along_its_backbone() -> None:
+    """``z = -y/(1 + y)`` at the depth y in parts of u_y: its rate, slopes and series."""
+    law = link_law([Backfill(4.0, 0.5, 0.5)], [0.0]).memory
+    law = memory_on_branches(law, np.array([YIELDING]))
+    u_y, depth, x_rate, small = 0.25, 0.6, -0.3, 1e-6
+    z = -depth / (1.0 + depth)
+    assert z_rate(0, law, x_rate, x_rate, z) == pytest.approx(x_rate / u_y / (1.0 + depth) ** 2)
+    by_rate, by_z = z_slopes(0, law, x_rate, z)
+    assert by_rate == pytest.approx(z_rate(0, law, 1.0, -1.0, z))
+    ends = [z_rate(0, law, x_rate, x_rate, z + s) for s in (-small, small)]
+    assert by_z == pytest.approx((ends[1] - ends[0]) / (2.0 * small), rel=1e-6)
+    x = np.array([-u_y * depth, x_rate, 0.1, -0.05, 0.02] + [0.0] * 12)
+    series = _series_of_z(law, x, z, -1.0)
+    t = 0.05
+    y = -sum(c * t**k for k, c in enumerate(x.tolist())) / u_y
+    assert sum(c * t**k for k, c in enumerate(series.tolist())) == pytest.approx(
+        -y / (1.0 + y), rel=1e-13
+    )
+
+
+def test_branches_of_soil_end_where_it_was_left_and_where_it_comes_apart() -> None:
+    # K0 = F_ult = R_f = 1, pushed in by 1 and unloaded by 1/4: apart at -1/2, as by hand.
+    law = link_law([Backfill(1.0, 1.0, 1.0)], [0.0]).memory
+    for branch, ends in ((CLOSED, (-1.0, -0.5)), (YIELDING, (-np.inf, 0.0))):
+        assert branch_ends(0, law, branch, 0.0, -0.75, -0.25) == pytest.approx(ends)
+    assert branch_ends(0, law, APART, 0.0, 0.1, 0.6) == pytest.approx((-0.5, np.inf))
+    following = [(CLOSED, -0.5, 0.0, APART), (CLOSED, -1.0, -0.5, YIELDING),
+                 (YIELDING, -1.0, -0.5, CLOSED), (APART, -0.5, 0.0, CLOSED)]  # fmt: skip
+    for branch, x, z, expected in following:
+        assert next_branch(0, law, branch, 0.0, x, z, 1e-13) == expected
+    # Soil that was never pushed in has nothing to be inside of.
+    assert next_branch(0, law, APART, 0.0, 0.0, 0.0, 1e-13) == YIELDING
 
 
 def _series_of_z(law: np.ndarray, x: np.ndarray, z_0: float, sigma: float) -> np.ndarray:

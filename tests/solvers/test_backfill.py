@@ -1,0 +1,121 @@
+"""Soil behind abutments beside a program in SciPy that keeps its deepest point, and by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from eventpound import simulate
+from eventpound.errors import InputError
+from eventpound.motion import MavroeidisPapageorgiou, NoMotion
+from eventpound.response import Response
+from eventpound.scene import GROUND, Backfill, Body, BoucWen, Contact, Linear, Scene, Spring
+from tests.solvers.backfill_oracle import Answer, Soil, solved
+
+SOIL = Backfill("100 MN/m", "5 MN", 0.7, "2 cm")
+GROWING = MavroeidisPapageorgiou(6.0, 0.9, gamma=5.0)
+DECK = Body("deck", 1.0e6)
+HELD = Spring("bearing", (GROUND, "deck"), Linear(2.0e7))
+LEFT = Spring("left", (GROUND, "deck"), SOIL)
+RIGHT = Spring("right", ("deck", GROUND), replace(SOIL, gap=0.05))
+BETWEEN_TWO = Scene((DECK,), (HELD, LEFT, RIGHT), motion=GROWING)
+POUNDING = Scene(
+    (DECK, Body("span", 6.0e5)),
+    (HELD, LEFT, Spring("pier", (GROUND, "span"), Linear(4.0e7)),
+     Spring("far", ("span", GROUND), SOIL)),
+    contacts=(Contact("joint", "deck", "span", 0.03, 0.6),),
+    motion=GROWING,
+)  # fmt: skip
+# Pushed into soil that is touched, then thrown back by another body while it yields.
+THROWN_BACK = Scene(
+    (Body("deck", 1.0e6, velocity=-1.0), Body("other", 2.0e6, displacement=-0.05, velocity=0.8)),
+    (HELD, replace(LEFT, law=replace(SOIL, gap=0.0))),
+    contacts=(Contact("joint", "other", "deck", 0.0, 0.5),),
+    motion=NoMotion(),
+)
+PRESSED_IN = Scene((Body("deck", 1.0e6, displacement=-0.2),), (HELD, LEFT, RIGHT))
+SOLVERS = [("cvode", "own"), ("cvode", "sundials"), ("ida", "own"), ("ida", "sundials")]
+RTOL = 1e-10
+# Errors of single steps add up over thousands of them; turns between soils make them grow.
+CLOSE = 100.0 * RTOL
+
+
+def answered(scene: Scene, solver: str, events: str, end: float) -> tuple[Response, Answer]:
+    response = simulate(
+        scene, solver=solver, settings={"events": events}, duration=end, rtol=RTOL, energy=True
+    )
+    return response, solved(scene, end, tuple(piece.end for piece in scene.motion.pieces()))
+
+
+def lost_and_stored(soil: Soil, u: np.ndarray) -> tuple[float, float]:
+    """Work lost in a soil and what it can give back (J), by hand from its deepest point."""
+    law, y = soil.law, soil.deepest
+    Q = law.ultimate_force / law.failure_ratio
+    in_all = Q * (y - Q / law.initial_stiffness * math.log1p(y * law.initial_stiffness / Q))
+    given_back = [soil.backbone(y), max(law.initial_stiffness * (soil.depth(u) - soil.left), 0.0)]
+    back, now = (F**2 / (2.0 * law.initial_stiffness) for F in given_back)
+    return in_all - back, now
+
+
+@pytest.mark.parametrize(("solver", "events"), SOLVERS)
+@pytest.mark.parametrize(
+    ("scene", "end", "least"),
+    [(BETWEEN_TWO, 8.0, 30), (POUNDING, 6.0, 30), (THROWN_BACK, 2.0, 3), (PRESSED_IN, 3.0, 5)],
+    ids=["two abutments", "pounding", "thrown back", "pressed in"],
+)
+def test_motion_is_that_of_soil_which_remembers_its_deepest_point(
+    scene: Scene, end: float, least: int, solver: str, events: str
+) -> None:
+    response, answer = answered(scene, solver, events, end)
+    found, size = response.recording, np.abs(response.recording.history.u).max()
+    assert len(answer.turns) >= least
+    np.testing.assert_allclose(found.u, answer.u, rtol=0.0, atol=CLOSE * size)
+    impacts = [event.t for event in found.events]
+    np.testing.assert_allclose(impacts, answer.impacts, rtol=0.0, atol=CLOSE)
+    stored = 0.0
+    for spring, soil in zip(
+        [s for s in scene.springs if isinstance(s.law, Backfill)], answer.soils, strict=True
+    ):
+        lost, now = lost_and_stored(soil, answer.u)
+        name, stored = f"springs.{spring.name}", stored + lost + now
+        assert response.quantity(f"{name}.dissipated_energy") == pytest.approx(lost, rel=1e-7)
+        gap = response.quantity(f"{name}.residual_gap")
+        assert gap == pytest.approx(soil.law.gap + soil.left, rel=1e-8)
+    assert found.energy is not None
+    begun = sum(
+        lost_and_stored(replace(soil, deepest=depth), np.zeros(1))[0] + soil.backbone(depth) ** 2
+        / (2.0 * soil.law.initial_stiffness)
+        for soil in answer.soils
+        if (depth := soil.depth(np.array([b.displacement for b in scene.bodies]))) > 0.0
+    )  # fmt: skip
+    assert found.energy.hysteretic == pytest.approx(stored - begun, rel=1e-7)
+
+
+def test_soil_under_a_slow_push_goes_along_its_loop_by_hand() -> None:
+    # K0 = F_ult = R_f = 1: F = y/(1 + y), 1/2 at y = 1, with a residual gap of 1/2.
+    law = Backfill(1.0, 1.0, 1.0)
+    z = law.z_at(-1.0)
+    assert z == pytest.approx(-0.5)
+    assert law.residual_gap(-1.0, z) == pytest.approx(0.5)
+    assert law.dissipated(-1.0, z) == pytest.approx(1.0 - math.log(2.0) - 0.125, rel=1e-14)
+    assert law.residual_gap(-0.75, z + 0.25) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("solver", ["fast", "moreau", "penalty"])
+def test_a_solver_that_does_not_know_soil_says_so_in_one_message(solver: str) -> None:
+    with pytest.raises(InputError) as caught:
+        simulate(BETWEEN_TWO, solver=solver, duration=1.0)
+    said = f"[solver]: {solver} does not know the laws of springs 'left' (backfill), 'right'"
+    assert str(caught.value).startswith(said)
+    assert str(caught.value).endswith("; accepted: cvode, ida")
+
+
+def test_soil_beside_a_bearing_that_yields_keeps_energy() -> None:
+    bearing = replace(HELD, law=BoucWen("10 MN/m", "500 kN", "1 cm"))
+    scene = replace(BETWEEN_TWO, springs=(bearing, LEFT, RIGHT))
+    energy = simulate(scene, duration=8.0, rtol=1e-9, energy=True).energy
+    assert energy is not None
+    assert abs(energy.closure) < 1e-7
