@@ -144,7 +144,7 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
             "BITLMOC": "solver",
             NUMBER: "rtol duration output_step max_steps",
             "ITLMOC": "energy error_estimate",
-            "BITLOC": "settings",
+            "BITLOC": "settings start",
             "ITLMO": "progress",
         },
     ),

@@ -15,6 +15,7 @@ from eventpound.case.solver_words import solver_word
 from eventpound.errors import AccuracyWarning
 from eventpound.given import Count, checked, number, positive
 from eventpound.response import Response
+from eventpound.scene.continuation import FinalState, continued
 from eventpound.scene.scene import Scene
 from eventpound.simulation import Progress
 from eventpound.solvers import name_of
@@ -39,6 +40,7 @@ def simulate(
     progress: Progress | bool | None = None,
     max_steps: Count | None = None,
     error_estimate: bool | None = None,
+    start: FinalState | None = None,
 ) -> Response:
     """Compute how a scene moves, and estimate by how much that is wrong.
 
@@ -70,6 +72,9 @@ def simulate(
         they are for ``cvode``, ``ida`` and ``fast``, by what is at hand; True asks for the most
         independent run, False for none (page "accuracy" of the docs). A case may say
         so, too.
+    start : mapping, optional
+        The state that another run ended in, its ``response.final``: displacements, velocities and
+        z begin there (page "aftershocks" of the docs).
 
     Returns
     -------
@@ -88,6 +93,8 @@ def simulate(
     AccuracyWarning
         Where the tolerance does not tell a number or an event, or the error is not known.
     """
+    if start is not None:
+        case = _going_on(case, start)
     simulation.check_case(case)
     response = simulation.simulate(
         case,
@@ -109,6 +116,13 @@ def simulate(
         print(f"\r{response.recording.t:.6g} s", file=sys.stderr)
         response = replace(response, task=replace(response.task, progress=None))
     return response if estimate is None else replace(response, error_estimate=estimate)
+
+
+def _going_on(case: Case | Scene, final: FinalState) -> Case | Scene:
+    """The same from the end of another run on."""
+    if isinstance(case, Scene):
+        return continued(case, final)
+    return replace(case, scene=continued(case.scene, final, case.run.start_time))
 
 
 def _shown(t: float) -> None:

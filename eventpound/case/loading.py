@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import math
 import re
 import tomllib
@@ -37,12 +38,15 @@ from eventpound.given import checked
 from eventpound.input_files import read_bytes
 from eventpound.motion.free import NoMotion
 from eventpound.scene.check import scene_problems, scene_warnings
+from eventpound.scene.continuation import continued
 from eventpound.scene.plausibility import doubts
 from eventpound.scene.scene import Scene
 from eventpound.scene.support_drift import support_warnings
 from eventpound.units import Dimension, quantity
 
 CASE_FILE = "case.toml"
+SUMMARY = "summary.json"
+"""Of a run, as `eventpound.results` writes it; another case may go on from its final state."""
 MOST_BYTES = 2**24
 """Of it; ten thousand bodies take some 3 000 000."""
 _MOST_PARTS = 64
@@ -180,7 +184,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     suite = _suite(top, excitation, driven, file.parent)
     sound = not problems and excitation is not None
     if run_table.has("start") and sound:
-        scene = _at_start(run_table, scene, _start_time(top))
+        scene = _at_start(run_table, scene, _start_time(top), file.parent)
     run = read_run(run_table, scene if sound else None, suite is not None)
     solver = read_solver(top.table("solver"), default_solver([scene], many=suite is not None))
     top.close()
@@ -340,8 +344,10 @@ def _add_scene_problems(
             problems.append(CaseProblem(table.where, problem.key, text))
 
 
-def _at_start(run: Table, scene: Scene, start: float) -> Scene:
-    """The scene as the run is to start: as it is given, or in equilibrium under its forces."""
+def _at_start(run: Table, scene: Scene, start: float, directory: Path) -> Scene:
+    """The scene as the run is to start: as given, in equilibrium, or where another run ended."""
+    if isinstance(run.data["start"], dict):
+        return _after(run.table("start"), scene, start, directory)
     run.choice("start", ("initial", EQUILIBRIUM))
     if not to_be_placed(run.data):
         return scene
@@ -352,6 +358,28 @@ def _at_start(run: Table, scene: Scene, start: float) -> Scene:
     except InputError as error:
         run.report("start", str(error).removeprefix("start: "))
         return scene
+
+
+def _after(table: Table, scene: Scene, start: float, directory: Path) -> Scene:
+    """The scene in the state in which a run ended, whose results are in a folder."""
+    accepted = f'a folder with a {SUMMARY} of `eventpound run`, or its case: "../mainshock"'
+    name = table.text("results", accepted)
+    table.close()
+    if not name:
+        return scene
+    folder = directory / name
+    try:
+        found = folder if (folder / SUMMARY).exists() else folder / "results"
+        summary = json.loads(read_bytes(found / SUMMARY))
+        if not (isinstance(summary, dict) and summary.get("success")):
+            raise InputError(f"found {name!r}, a run that did not reach its end")
+        return continued(scene, summary["final"], start)
+    except (OSError, ValueError, KeyError):
+        table.reject("results", accepted)
+    except InputError as error:
+        for problem in error.problems:
+            table.report("results", problem.removeprefix("start: "))
+    return scene
 
 
 def _start_time(top: Table) -> float:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eventpound.case.case import Case
+from eventpound.case.loading import SUMMARY as SUMMARY
 from eventpound.errors import InputError
 from eventpound.response import Response
 from eventpound.results.events import read_events
@@ -21,7 +22,7 @@ from eventpound.results.summary import summarise
 if TYPE_CHECKING:
     import pandas as pd
 
-SUMMARY, HISTORY, EVENTS, MANIFEST = "summary.json", "history.csv", "events.csv", "manifest.json"
+HISTORY, EVENTS, MANIFEST = "history.csv", "events.csv", "manifest.json"
 
 
 @dataclass(frozen=True)
