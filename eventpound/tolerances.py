@@ -211,8 +211,9 @@ NO_POWER = 1e-16
 NO_TERM = 1e-20
 """Part of what a column begins with, dt, dt² or dt³, below which the terms of an exponential are
 left out."""
-NO_ZERO = 1e-300
-"""What a root function that is zero counts as."""
+NO_ZERO = 1e-150
+"""What a root function nearer to zero counts as: products of two are still numbers, by whose signs
+SUNDIALS tells a root."""
 
 # Other programs.
 OPENSEES_CHANGE = 1e-12

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -29,13 +30,12 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.cvode import Cvode, integrator
 from eventpound.solvers.events.instant_loop import make_ready
+from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.loop import EventLoop, Segment
-from eventpound.solvers.events.roots import (
-    on_the_root,
-)
+from eventpound.solvers.events.roots import on_the_root, root_functions
 from eventpound.solvers.events.run import FINDER
 from eventpound.solvers.events.second_look import INTEGRATOR
-from eventpound.solvers.events.step_check import BEYOND_BOUND, HAPPENED
+from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
 from eventpound.solvers.sundials import library
 from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
 from tests.hard.outcome import Outcome, verdict
@@ -43,6 +43,7 @@ from tests.reference.comparison import compare
 from tests.reference.problems import load
 from tests.reference.test_open import UNSEEN
 from tests.solvers.accuracy import allowed
+from tests.solvers.random_scenes import resting_scene
 from tests.solvers.scenes import pounding_pair
 
 if library.library() is None:
@@ -50,7 +51,7 @@ if library.library() is None:
 
 from eventpound.solvers.sundials import integrators
 from eventpound.solvers.sundials.compiled_cvode import DirectCvode
-from eventpound.solvers.sundials.loop import steps_to_roots
+from eventpound.solvers.sundials.loop import ROOT_RETURN, SAME_ROOT, steps_to_roots
 
 SUNDIALS_ROOTS = {"events": "sundials"}
 
@@ -223,6 +224,31 @@ def test_a_root_is_put_on_the_zero() -> None:
     # Not beyond the bracket, nor before the step.
     assert on_the_root(pairs[1:2], noise[:1], 0.5, 1.0, 1e-14) == 1.0
     assert on_the_root(pairs, noise, 1.0 - 1e-14, 1.0, 1e-13) == 1.0
+
+
+def test_a_rate_that_has_died_away_turns_no_more() -> None:
+    # A link between bodies that rest on each other: its rate decays until its digits are gone.
+    pairs = np.array([[0.4, -2e-311], [0.4, 0.0], [0.4, -1e-15]])
+    root_functions(pairs, np.zeros(3))
+    assert (pairs[:, 1] > 0.0).tolist() == [True, True, False]
+    assert pairs[0, 1] * pairs[1, 1] > 0.0
+    scene, end = resting_scene(500384)
+    by = {name: simulate(scene, name, 1e-8, duration=end).recording for name in ("ida", "fast")}
+    assert np.abs(by["ida"].u - by["fast"].u).max() < 1e-6 * np.abs(by["fast"].u).max()
+
+
+def test_a_root_that_is_found_again_and_again_is_an_end() -> None:
+    def steps(*given: Any) -> Any:
+        return ROOT_RETURN, 0, 1.0, 1.5, CLEAR, 0.0, 0
+
+    def at_root(*given: Any) -> Any:
+        return CLEAR, 1.5
+
+    examination: Any = SimpleNamespace(z_bound=np.empty(0), z_allowed=0.0, y=np.zeros((2, 0)))
+    bounds = Bounds(2.0, False, np.inf, 10)
+    flag, _, start, end, *_ = steps_to_roots(steps, at_root, 1.0, 0, 0.0, bounds, examination)
+    assert flag == SAME_ROOT
+    assert start == end == 1.0
 
 
 def test_it_is_what_ida_takes_unless_told_otherwise(nothing_else_looks) -> None:

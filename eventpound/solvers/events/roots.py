@@ -8,7 +8,8 @@ latter, and searching for it meets the former.
 
 No function is ever zero where a search begins. A value is lifted by its noise, below which
 a sign means nothing, or by what it lacks at the start of a segment, so that one that is zero there
-and falls is found at once; and what is zero to the last bit counts as positive. So no root
+and falls is found at once; and what is zero, or has died away to numbers without digits, counts as
+positive. So no root
 is inactive at a start, and none is found again where the motion goes on from it.
 """
 
@@ -77,7 +78,7 @@ def root_functions(pairs: Floats, lifted: Floats) -> None:
     for i in range(lifted.size):
         pairs[i, 0] += lifted[i]
         for k in range(2):
-            if pairs[i, k] == 0.0:
+            if abs(pairs[i, k]) < NO_ZERO:
                 pairs[i, k] = NO_ZERO
 
 

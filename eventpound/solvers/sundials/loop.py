@@ -31,6 +31,8 @@ from eventpound.tolerances import EPS
 
 ROOT_RETURN = 2
 """Flag of CVODE and IDA where one of their root functions, if they have any, has a root."""
+SAME_ROOT = -22
+"""Flag of theirs (ILL_INPUT) where roots are too near each other to be told apart."""
 BRACKET = 100.0
 """Width of the bracket that SUNDIALS leaves of a root, in roundings of ``|t| + |h|``."""
 
@@ -233,7 +235,7 @@ def steps_to_roots(
     tau, first, excess, bounds, e
         Of `Integrator.advance`.
     """
-    taken = 0
+    taken, last = 0, -np.inf
     while True:
         rest = bounds._replace(most=bounds.most - taken)
         flag, row, start, end, verdict, excess, done = steps(tau, first, excess, rest, e)
@@ -243,5 +245,7 @@ def steps_to_roots(
         verdict, end = at_root(start, end, e.z_bound, max(e.z_allowed, excess), e.y[1 - row])
         if verdict != CLEAR:
             return flag, row, start, end, verdict, excess, taken + int(verdict == HAPPENED)
+        if end == last:
+            return SAME_ROOT, row, start, start, CLEAR, excess, taken
         # The bottom of a dip that stays above zero: the step goes on.
-        tau, first = start, row
+        tau, first, last = start, row, end
