@@ -8,7 +8,8 @@ step with an index. It begins with a checksum, since a flipped bit in machine co
 the process.
 
 Kernels lie in `__pycache__` beside the sources. Where that cannot be written, new ones
-go to the user's cache folder, and both are read; `NUMBA_CACHE_DIR` replaces both.
+go to the user's cache folder, and both are read; `NUMBA_CACHE_DIR` replaces both. After them
+comes what the installation came with (`eventpound.numerics.compiled.shipped`).
 """
 
 from __future__ import annotations
@@ -27,17 +28,16 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
-import llvmlite
 import llvmlite.binding as llvm
 import numba
 
+from eventpound.numerics.compiled import shipped
+from eventpound.numerics.compiled.shipped import SUFFIX
 from eventpound.numerics.compiled.sources import source_stamp
 from eventpound.numerics.compiling import compilation_begins
 
-SUFFIX = ".kernel"
 _DIGEST = 16
 _LONGEST_NAME = 80
-_VERSIONS = f"{sys.implementation.cache_tag} numba {numba.__version__} llvm {llvmlite.__version__}"
 
 
 class KernelStore:
@@ -88,6 +88,7 @@ class KernelStore:
                 return CompileResult._rebuild(context, *kept)
             except Exception as error:
                 _drop(path, error)
+        self._say_why_none()
         compilation_begins()
         return None
 
@@ -109,7 +110,7 @@ class KernelStore:
             return
         trouble: Exception | None = None
         try:
-            name = self._name_of(signature, result.codegen)
+            name = self._name_of(signature, result.codegen.magic_tuple())
             content = _with_checksum(result, name)
         except Exception as error:
             trouble, content = error, b""
@@ -125,14 +126,30 @@ class KernelStore:
 
     def _places(self, signature: Any, codegen: Any) -> Iterator[Path]:
         """The files in which a kernel may be kept, the first choice first."""
-        name = self._name_of(signature, codegen)
+        machine = codegen.magic_tuple()
+        name = self._name_of(signature, machine)
         yield from (folder / name for folder in _folders(self._file))
+        made = shipped.made()
+        if made is not None and not shipped.misfit():
+            yield shipped.FOLDER / self._name_of(signature, (machine[0], made.processor, ""))
 
-    def _name_of(self, signature: Any, codegen: Any) -> str:
+    def _say_why_none(self) -> None:
+        """Say why a kernel that the installation came with does not serve, if that is so."""
+        if shipped.made() is None:
+            return
+        why = shipped.misfit()
+        others = shipped.FOLDER.glob(f"{glob.escape(self._name)}-*{SUFFIX}")
+        stamps = {path.name.rsplit("-", 2)[1] for path in others}
+        if not why and stamps and source_stamp(self._file) not in stamps:
+            why = "sources were changed"
+        if why:
+            say_once(f"kernels that eventpound came with are not used, but compiled here: {why}")
+
+    def _name_of(self, signature: Any, machine: tuple[str, ...]) -> str:
         from numba.core.sigutils import normalize_signature
 
         arguments, _ = normalize_signature(signature)
-        whole = repr((_VERSIONS, codegen.magic_tuple(), self._plain, self._way, arguments))
+        whole = repr((shipped.VERSIONS, machine, self._plain, self._way, arguments))
         digest = hashlib.blake2b(whole.encode(), digest_size=_DIGEST).hexdigest()
         return f"{self._name}-{source_stamp(self._file)}-{digest}{SUFFIX}"
 
@@ -221,6 +238,8 @@ def _write_whole(path: Path, content: bytes) -> None:
 
 def _drop(path: Path, error: Exception) -> None:
     say_once(f"a kept kernel is damaged and is compiled again: {path.name} ({error})")
+    if path.parent == shipped.FOLDER:
+        return
     with contextlib.suppress(OSError):
         path.unlink()
 
