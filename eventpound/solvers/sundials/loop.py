@@ -33,6 +33,8 @@ ROOT_RETURN = 2
 """Flag of CVODE and IDA where one of their root functions, if they have any, has a root."""
 SAME_ROOT = -22
 """Flag of theirs (ILL_INPUT) where roots are too near each other to be told apart."""
+MOST_AGAIN = 1000
+"""Roots at one time after which they are; several functions may well have theirs together."""
 BRACKET = 100.0
 """Width of the bracket that SUNDIALS leaves of a root, in roundings of ``|t| + |h|``."""
 
@@ -235,7 +237,7 @@ def steps_to_roots(
     tau, first, excess, bounds, e
         Of `Integrator.advance`.
     """
-    taken, last = 0, -np.inf
+    taken, last, again = 0, -np.inf, 0
     while True:
         rest = bounds._replace(most=bounds.most - taken)
         flag, row, start, end, verdict, excess, done = steps(tau, first, excess, rest, e)
@@ -245,7 +247,8 @@ def steps_to_roots(
         verdict, end = at_root(start, end, e.z_bound, max(e.z_allowed, excess), e.y[1 - row])
         if verdict != CLEAR:
             return flag, row, start, end, verdict, excess, taken + int(verdict == HAPPENED)
-        if end == last:
+        again = again + 1 if end == last else 0
+        if again > MOST_AGAIN:
             return SAME_ROOT, row, start, start, CLEAR, excess, taken
         # The bottom of a dip that stays above zero: the step goes on.
         tau, first, last = start, row, end
