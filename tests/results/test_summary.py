@@ -54,6 +54,8 @@ def test_contacts(summary):
         "unique_force": True,
         "smallest_gap": 1e-4,
         "largest_gap": 0.05,
+        # The opening of a joint of 12.7 mm.
+        "seat_used": pytest.approx(0.0373, rel=1e-15),
         "t_max_impulse": 0.1,
         "t_first_impact": 0.1,
         "sum_impulse": 1000.0 / 3.0 + 0.25,
