@@ -72,6 +72,8 @@ USUAL = {
 }
 """SI values of the units that most cases are written in, as pint has them. To start pint takes
 longer than to run such a case; whatever is not here, it reads."""
+TOLD = (Dimension.FORCE, Dimension.LENGTH, Dimension.ACCELERATION)
+"""What a case may choose a unit of, for design numbers: one of the usual."""
 
 
 def quantity(value: object, dimension: Dimension) -> float:

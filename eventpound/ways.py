@@ -41,6 +41,7 @@ HOLDS: Mapping[str, frozenset[Way]] = {
     "contact_stiffness": _RUNS,
     "threshold_speed": _RUNS,
     "avoiding_gap": _RUNS,
+    "units": frozenset({Way.RUN, Way.SUITE}),
     "error_estimate": frozenset({Way.RUN, Way.SUITE}),
 }
 """Ways in which each option of ``[run]`` does what it says."""
@@ -63,6 +64,7 @@ _GIVEN: Mapping[str, Callable[[RunOptions], bool]] = {
     "contact_stiffness": lambda run: run.stated.contact_stiffness is not None,
     "threshold_speed": lambda run: run.stated.threshold_speed != DEFAULTS.threshold_speed,
     "avoiding_gap": lambda run: run.stated.avoiding_gap,
+    "units": lambda run: bool(run.stated.units),
     "error_estimate": lambda run: bool(run.error_estimate),
 }
 """Whether an option is given; times always have a value."""
@@ -109,6 +111,12 @@ def warn_left_out(case: Case | Scene, way: Way) -> None:
     left = [name for name, given in _GIVEN.items() if way not in HOLDS[name] and given(case.run)]
     if left:
         warn_caller(without_part(left, way), OptionWarning)
+
+
+def without_effect(way: Way) -> list[str]:
+    """Options that a way to run neither follows nor refuses."""
+    refused = {option for option, (ways, _) in REFUSED.items() if way in ways}
+    return [option for option, ways in HOLDS.items() if way not in ways and option not in refused]
 
 
 def without_part(options: Iterable[str], way: Way) -> str:

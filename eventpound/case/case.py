@@ -29,6 +29,8 @@ class Stated:
         Whether to run the scene without contact, too, for `amplification` and its peaks.
     avoiding_gap : bool
         Whether to find the smallest gap that would have avoided each contact.
+    units : tuple of str
+        In which design numbers are told (`eventpound.units.TOLD`); of others the usual.
     """
 
     threshold_speed: float = 0.01
@@ -36,6 +38,7 @@ class Stated:
     quantities: tuple[str, ...] = ()
     without_contact: bool = False
     avoiding_gap: bool = False
+    units: tuple[str, ...] = ()
 
     def named(self) -> Iterator[tuple[str, str]]:
         """Names and paths of all quantities that are wanted, each after the option that says so."""

@@ -20,7 +20,7 @@ from eventpound.given import number
 from eventpound.motion.base import LARGEST, SMALLEST
 from eventpound.scene.contact_law import Element
 from eventpound.scene.scene import Scene
-from eventpound.units import Dimension
+from eventpound.units import TOLD, USUAL, Dimension
 
 REFERENCE, FAST = "cvode", "fast"
 """The solver of one run, and that of many, where none is named."""
@@ -117,7 +117,19 @@ def _read_stated(table: Table) -> Stated:
     stiffness = table.optional_quantity("contact_stiffness", Dimension.STIFFNESS, positive)
     given = table.texts("quantities", "a list of texts") if table.has("quantities") else ()
     free, gaps = table.flag("without_contact"), table.flag("avoiding_gap")
-    return Stated(speed, stiffness, tuple(dict.fromkeys(given)), free, gaps)
+    return Stated(speed, stiffness, tuple(dict.fromkeys(given)), free, gaps, _read_units(table))
+
+
+def _read_units(table: Table) -> tuple[str, ...]:
+    """Units that are chosen, of each dimension one at most."""
+    if not table.has("units"):
+        return ()
+    each = (f"{dimension.value[0]} ({', '.join(USUAL[dimension])})" for dimension in TOLD)
+    accepted = f"a list of texts, at most one unit each of {', '.join(each)}"
+    given = table.texts("units", accepted)
+    of = [dimension for unit in given for dimension in TOLD if unit in USUAL[dimension]]
+    table.require("units", len(set(of)) == len(of) == len(given), accepted)
+    return given
 
 
 def default_solver(scenes: Iterable[Scene], many: bool) -> str:

@@ -154,8 +154,10 @@ def _lines(case: Case, table: pd.DataFrame) -> Iterator[str]:
     """What an engineer asks, to be read: a table a part, in units of the trade."""
     from eventpound.report.design_tables import design_cells
     from eventpound.results.cells import lines_of
+    from eventpound.results.trade import trade_of
 
     if case.suite is not None and case.suite.options.scaling:
         yield f"scaling   {case.suite.options.scaling}"
-    for heading, cells in design_cells(case.scene, table):
+    trade = trade_of(case.scene, case.run.stated)
+    for heading, cells in design_cells(case.scene, table, trade):
         yield from ("", heading, *lines_of(cells))

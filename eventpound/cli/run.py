@@ -211,7 +211,7 @@ def _demands(response: Response) -> Iterator[str]:
     """What contacts and yielding springs need, a line each, in units of the trade."""
     from eventpound.results.trade import trade_of
 
-    trade, numbers = trade_of(response.scene), response.numbers()
+    trade, numbers = trade_of(response.scene, response.stated), response.numbers()
     parts: dict[str, list[str]] = {}
     for path, (word, unit) in _DEMANDS.items():
         kind, _, quantity = path.partition(".<>.")

@@ -20,6 +20,7 @@ from eventpound.scene.contact import Contact, weights_of
 from eventpound.scene.scene import Scene
 from eventpound.study.design import FRACTILES
 from eventpound.study.records import FAILED
+from eventpound.units import Dimension
 
 _WIDE, _HIGH = 7.4, 2.3
 """Inches."""
@@ -69,7 +70,7 @@ def demand_figure(
 
 
 @style.styled()
-def governing_figure(view: View, contact: Contact | None, body: str) -> Figure:
+def governing_figure(view: View, contact: Contact | None, body: str, trade: Trade) -> Figure:
     """Draw the ground, what moves at a contact, and its gap.
 
     Parameters
@@ -80,6 +81,8 @@ def governing_figure(view: View, contact: Contact | None, body: str) -> Figure:
         Which; without one only the body is drawn.
     body : str
         What is drawn without a contact.
+    trade : Trade
+        Units.
     """
     ends = [body] if contact is None else _bodies(view, contact)
     view = view.within(_strong(view, ends))
@@ -88,31 +91,33 @@ def governing_figure(view: View, contact: Contact | None, body: str) -> Figure:
     ground, motion, *gaps = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
     for axes in (ground, motion, *gaps):
         style.zero_lines(axes)
-    unit = view.acceleration_unit
-    ground.plot(view.t, view.column("a_g") / unit.size, color="#444444", linewidth=0.7)
-    ground.set_ylabel(f"ground ({unit.name})")
+    unit, size = trade.unit(Dimension.ACCELERATION.unit)
+    ground.plot(view.t, view.column("a_g") / size, color="#444444", linewidth=0.7)
+    ground.set_ylabel(f"ground ({unit})")
+    unit, size = trade.unit(Dimension.LENGTH.unit)
     for name, color in zip(ends, style.colors(len(ends)), strict=True):
-        line = view.displacement(name) * 1e3
+        line = view.displacement(name) / size
         motion.plot(view.t, line, color=color, label=style.literal(name))
         if contact is not None:
             draw_circles(motion, view, contact.name, (view.t, line), color)
-    motion.set_ylabel("displacement (mm)")
+    motion.set_ylabel(f"displacement ({unit})")
     motion.legend(loc="upper right", **_NAMES)
     for axes in gaps:
         assert contact is not None
-        _draw_gap(axes, view, contact)
+        _draw_gap(axes, view, contact, trade)
     (gaps or [motion])[-1].set_xlabel("time (s)")
     motion.set_xlim(view.t[0], view.t[-1])
     figure.align_ylabels()
     return figure
 
 
-def _draw_gap(axes: Axes, view: View, contact: Contact) -> None:
-    gap, name = view.column(f"gap.{contact.name}") * 1e3, style.literal(contact.name)
+def _draw_gap(axes: Axes, view: View, contact: Contact, trade: Trade) -> None:
+    unit, size = trade.unit(Dimension.LENGTH.unit)
+    gap, name = view.column(f"gap.{contact.name}") / size, style.literal(contact.name)
     axes.plot(view.t, gap, color=style.PALETTE[2], label=name)
-    axes.axhline(contact.gap * 1e3, color=style.PALETTE[2], **style.DASHED)
+    axes.axhline(contact.gap / size, color=style.PALETTE[2], **style.DASHED)
     draw_circles(axes, view, contact.name, (view.t[:1], np.zeros(1)), style.PALETTE[2])
-    axes.set_ylabel("gap (mm)")
+    axes.set_ylabel(f"gap ({unit})")
     axes.legend(loc="upper right", **_NAMES)
 
 

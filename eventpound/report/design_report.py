@@ -33,12 +33,12 @@ from eventpound.results.cells import Cells
 from eventpound.results.input_tables import input_tables
 from eventpound.results.inputs import inputs_of
 from eventpound.results.manifest import sha256, told_of, versions
-from eventpound.results.trade import three_digits, trade_of
+from eventpound.results.trade import Trade, three_digits, trade_of
 from eventpound.scene.scene import Scene
 from eventpound.simulation import simulate
 from eventpound.study.design import FRACTILES, demands_of
 from eventpound.study.records import FAILED
-from eventpound.units import STANDARD_GRAVITY
+from eventpound.units import Dimension
 
 _PANELS = (
     *(NEEDED, "contacts.<contact>.seat_used", "springs.<spring>.ductility"),
@@ -98,6 +98,11 @@ class Told:
         return self.case.scene
 
     @property
+    def trade(self) -> Trade:
+        """Units in which it is told."""
+        return trade_of(self.scene, self.case.run.stated)
+
+    @property
     def names(self) -> Mapping[str, str]:
         """What the records are called."""
         return {} if self.runs is None else record_names(self.runs)
@@ -130,7 +135,7 @@ def _first(told: Told) -> Iterator[Block]:
     yield Head(told.case.title, title=True)
     yield Words(tuple(_asked(told)))
     yield Head("Design numbers")
-    numbers = report_cells(told.scene, told.design, told.names)
+    numbers = report_cells(told.scene, told.design, told.names, told.trade)
     # Of a run they are narrow.
     beside = Columns(tuple((table,) for table in numbers))
     yield from (beside,) if told.runs is None else numbers
@@ -140,8 +145,9 @@ def _first(told: Told) -> Iterator[Block]:
 
 def _model(told: Told) -> Iterator[Block]:
     """The sketch and the tables of the parts; a tall sketch stands beside tables."""
-    sketch = Picture(model_figure(told.scene), _SKETCH)
-    tables = [_short(table) for table in input_tables(_inputs(told.case))]
+    sketch = Picture(model_figure(told.scene, trade=told.trade), _SKETCH)
+    parts = input_tables(_inputs(told.case), told.trade.chosen)
+    tables = [_short(table) for table in parts]
     narrow = [table for table in tables if len(table.headings) <= _WIDE]
     wide, high = sketch.figure.get_size_inches()
     if high > _TALL * wide:
@@ -167,16 +173,17 @@ def _second(told: Told) -> Iterator[Block]:
     under = f" under record {told.names[told.record]}, which governs" if told.record else ""
     view = View(gather(told.response, told.case), told.response.scene)
     yield Head(f"Motion{under}")
-    yield Picture(governing_figure(view, worst, str(peaks.idxmax())), _MOTION)
+    motion = governing_figure(view, worst, str(peaks.idxmax()), told.trade)
+    yield Picture(motion, _MOTION)
     if told.runs is not None:
         yield Head("Demand over the records")
-        panels = demand_figure(scene, told.runs, _panels(told), trade_of(scene))
+        panels = demand_figure(scene, told.runs, _panels(told), told.trade)
         yield Picture(panels, _DEMAND)
         low, high = FRACTILES
         said = f"Numbers of records as below. Dotted lines: {low:g} %, dashed: {high:g} % of them."
         yield Words((said,))
         yield Head("Records")
-        yield Columns(tuple((table,) for table in record_cells(told.runs)))
+        yield Columns(tuple((table,) for table in record_cells(told.runs, told.trade)))
     yield Head("Limits and warnings")
     yield Words(tuple(f"• {text}" for text in _limits(told)))
     yield Head("Origin")
@@ -194,7 +201,7 @@ def _asked(told: Told) -> Iterator[str]:
     for i in lacking_contacts(told.scene, design)[:_MOST_LISTED]:
         contact = told.scene.contacts[i]
         rows = design[design["quantity"].str.startswith(f"contacts.{contact.name}.")]
-        yield f"Contact {contact_words(contact, rows, trade_of(told.scene))}."
+        yield f"Contact {contact_words(contact, rows, told.trade)}."
 
 
 def _motion(told: Told) -> str:
@@ -203,13 +210,13 @@ def _motion(told: Told) -> str:
     if isinstance(motion, Record):
         said = (record.event, record.date, record.station, record.component) if record else ()
         name = ", ".join(text for text in said if text) or "a record"
-        peak = three_digits(motion.peak / STANDARD_GRAVITY)
-        return f"{name}, times {three_digits(abs(motion.factor))}, peak {peak} g"
+        peak = told.trade.words(motion.peak, Dimension.ACCELERATION.unit)
+        return f"{name}, times {three_digits(abs(motion.factor))}, peak {peak}"
     scales = motion.scales()
     if scales is None:
         return "no ground motion" if motion.kind == "none" else f"a motion, {motion.kind}"
-    peak = three_digits(scales.a_g / STANDARD_GRAVITY)
-    return f"a pulse, {motion.kind}, {peak} g, period {three_digits(scales.period)} s"
+    peak = told.trade.words(scales.a_g, Dimension.ACCELERATION.unit)
+    return f"a pulse, {motion.kind}, {peak}, period {three_digits(scales.period)} s"
 
 
 def _short(table: Cells) -> Cells:

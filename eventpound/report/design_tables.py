@@ -9,13 +9,12 @@ import numpy as np
 
 from eventpound.quantities.lookup import Named, find
 from eventpound.results.cells import Cells, headed
-from eventpound.results.trade import Trade, three_digits, trade_of
+from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact, weights_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Hysteretic
 from eventpound.study.design import FRACTILES
 from eventpound.study.records import FAILED
-from eventpound.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,13 +46,13 @@ _LONGEST = 44
 _SAME = 5e-3
 """Part by which two separations may differ and be told as one."""
 _SIZES = (
-    *(("scale", "scale", 1.0, ""), ("PGA", "PGA", STANDARD_GRAVITY, "g")),
-    *(("T_m", "T_m", 1.0, "s"), ("Sa_T1", "Sa(T1)", STANDARD_GRAVITY, "g")),
+    *(("scale", "scale", ""), ("PGA", "PGA", "m/s^2")),
+    *(("T_m", "T_m", "s"), ("Sa_T1", "Sa(T1)", "m/s^2")),
 )
-"""Numbers of a record: columns of a suite, what they are called, sizes and units."""
+"""Numbers of a record: columns of a suite, what they are called and units (SI)."""
 
 
-def design_cells(scene: Scene, table: pd.DataFrame) -> Iterator[tuple[str, Cells]]:
+def design_cells(scene: Scene, table: pd.DataFrame, trade: Trade) -> Iterator[tuple[str, Cells]]:
     """Headings and tables of the design numbers of a run or a suite.
 
     Parameters
@@ -62,8 +61,9 @@ def design_cells(scene: Scene, table: pd.DataFrame) -> Iterator[tuple[str, Cells
         Whose they are.
     table : DataFrame
         As `eventpound.design_numbers` gives it.
+    trade : Trade
+        Units.
     """
-    trade = trade_of(scene)
     kinds = table["quantity"].map(lambda name: _found(scene, name).quantity.owner)
     for contact in scene.contacts:
         rows = table[(kinds == "contact") & (table["of"] == contact.name)]
@@ -116,7 +116,9 @@ def _word(value: object) -> str:
     return "" if value != value else str(value)
 
 
-def report_cells(scene: Scene, table: pd.DataFrame, names: Mapping[str, str]) -> list[Cells]:
+def report_cells(
+    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], trade: Trade
+) -> list[Cells]:
     """The design numbers that a report has room for: at contacts, and of all others.
 
     Parameters
@@ -127,10 +129,12 @@ def report_cells(scene: Scene, table: pd.DataFrame, names: Mapping[str, str]) ->
         As `eventpound.design_numbers` gives it.
     names : mapping of str to str
         What records are called, by their names in the table.
+    trade : Trade
+        Units.
     """
     rows = {str(row["quantity"]): row for row in table.to_dict("records")}
     parts = (_at_contacts(scene, table, rows), _of_others(scene, rows))
-    return [_reported(scene, list(part), names) for part in parts if part]
+    return [_reported(list(part), names, trade) for part in parts if part]
 
 
 def _at_contacts(
@@ -170,9 +174,8 @@ def _told(name: str, rows: Mapping[str, _Row]) -> bool:
     return bool(np.allclose([own[k] for k in keys], [other[k] for k in keys], rtol=_SAME))
 
 
-def _reported(scene: Scene, groups: list[tuple[_Row, ...]], names: Mapping[str, str]) -> Cells:
+def _reported(groups: list[tuple[_Row, ...]], names: Mapping[str, str], trade: Trade) -> Cells:
     """A table of some groups of rows; those that there is no room for are counted."""
-    trade = trade_of(scene)
     of_contacts = str(groups[0][0]["quantity"]).startswith("contacts.")
     shown = groups[:_MOST_OF_CONTACTS] if of_contacts else [g[:_MOST_OF_ONE] for g in groups]
     kept = [row for group in shown for row in group]
@@ -213,14 +216,14 @@ def record_names(runs: pd.DataFrame) -> dict[str, str]:
     return names
 
 
-def record_cells(runs: pd.DataFrame) -> list[Cells]:
+def record_cells(runs: pd.DataFrame, trade: Trade) -> list[Cells]:
     """Name and size of each record, as one table, or two where they are many."""
     there = [size for size in _SIZES if size[0] in runs]
-    heads = ("record", *(headed(called, unit) for _, called, _, unit in there))
+    heads = ("record", *(headed(called, trade.unit(unit)[0]) for _, called, unit in there))
     names, rows = record_names(runs), []
     for row in runs.to_dict("records"):
-        values = (float(row[key]) / size for key, _, size, _ in there)
-        cells = ("" if value != value else three_digits(value) for value in values)
+        values = ((float(row[key]), unit) for key, _, unit in there)
+        cells = ("" if value != value else trade.number(value, unit) for value, unit in values)
         note = " (failed)" if row[FAILED] else ""
         rows.append((names[str(row["record"])] + note, *cells))
     words, shown = (True, *(False for _ in there)), rows[:_MOST_RECORDS]

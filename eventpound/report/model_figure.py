@@ -21,12 +21,14 @@ from eventpound.report.law_panel import draw_law, laws_of
 from eventpound.report.model_layout import HIGH, Box, Layout, kinked, layout_of
 from eventpound.report.model_links import WALL, LinkPath, routes_of
 from eventpound.report.style import PALETTE, arrow, literal, new_figure, say, styled
+from eventpound.results.trade import Trade
 from eventpound.scene.contact import BARRIER, Contact, End, weights_of
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
 from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Hysteretic, Spring
+from eventpound.units import Dimension
 
 _MARGIN = WALL + 0.85
 """Beside the bodies."""
@@ -45,14 +47,16 @@ _LAW = 2.1
 _LETTERS, _LETTER_WIDTH = 6.5, 0.6
 """Points, of names of springs and contacts; a letter is so much of it wide."""
 _SMALLEST = 4.5
+_USUAL = Trade()
 
 
 @dataclass(frozen=True)
 class _Names:
-    """How many points one unit of the picture has, and whether parts are named."""
+    """How many points one unit of the picture has, whether parts are named, and units of gaps."""
 
     points: float
     shown: bool
+    trade: Trade
 
     def fitted(self, text: str, room: float) -> float:
         """Size of letters (points) with which a text has at most this length, if it can."""
@@ -66,7 +70,9 @@ class _Names:
 
 
 @styled()
-def model_figure(scene: Scene, title: str = "", *, with_laws: bool = False) -> Figure:
+def model_figure(
+    scene: Scene, title: str = "", *, with_laws: bool = False, trade: Trade = _USUAL
+) -> Figure:
     """Draw a scene.
 
     Parameters
@@ -77,6 +83,8 @@ def model_figure(scene: Scene, title: str = "", *, with_laws: bool = False) -> F
         Above it.
     with_laws : bool
         Whether the laws of its springs are drawn below it.
+    trade : Trade
+        Units of the gaps.
     """
     standing = grounded(scene)
     layout = layout_of(standing)
@@ -85,7 +93,8 @@ def model_figure(scene: Scene, title: str = "", *, with_laws: bool = False) -> F
     left = min(box.left for box in boxes) - _MARGIN
     right = max(box.right for box in boxes) + _MARGIN
     scale = min(0.75, 14.0 / (right - left))
-    names = _Names(72.0 * scale, len(scene.springs) + len(scene.contacts) <= _MOST_NAMES)
+    few = len(scene.springs) + len(scene.contacts) <= _MOST_NAMES
+    names = _Names(72.0 * scale, few, trade)
     low = -0.8 if scene.supports else -0.5
     tops = [box.top + 0.3 for box in boxes]
     tops += [_label_of(layout, c, names)[1] + _UP + names.high for c in standing.contacts]
@@ -246,7 +255,8 @@ def _contact(axes: Axes, layout: Layout, contact: Contact, up: float, names: _Na
 def _label_of(layout: Layout, contact: Contact, names: _Names) -> tuple[str, float]:
     """What is said of a contact, and how high: between its bodies where there is room for it."""
     law = f"$\\epsilon$ = {contact.restitution:g}" if contact.law is None else contact.law.kind
-    said = f"{1e3 * contact.gap:.4g} mm\n{law}"
+    unit, size = names.trade.unit(Dimension.LENGTH.unit)
+    said = f"{contact.gap / size:.4g} {unit}\n{law}"
     text = f"{literal(contact.name)}\n{said}" if names.shown else said
     (x_1, y_1), (x_2, y_2) = _faces(layout, contact)
     if names.fitted(contact.name, abs(x_2 - x_1)) == _LETTERS:

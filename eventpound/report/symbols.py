@@ -14,7 +14,7 @@ from eventpound.quantities.base import parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.report.style import Unit, force_unit, length_unit, literal
 from eventpound.results.files import plain_name
-from eventpound.results.input_tables import HEAVY
+from eventpound.results.trade import HEAVY
 from eventpound.scene.parameters import dimension_of_number
 from eventpound.units import STANDARD_GRAVITY, Dimension
 

@@ -6,32 +6,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from eventpound.results.cells import Cells, headed
+from eventpound.results.trade import HEAVY, Trade, Unit
 from eventpound.scene.point import Point
+from eventpound.units import Dimension
 
 _MOST_ROWS = 40
 """Rows of a table that are shown."""
 _MOST_MODES = 5
 """Modes of a structure that are shown."""
-HEAVY = 1e4
-"""Mass (kg) from which on tables and axes are in t, tables in kN and mm."""
 _Column = tuple[str, str, str]
 """Key, heading and kind of unit of a column."""
-_SIZES: dict[bool, dict[str, tuple[str, float]]] = {
-    True: {
-        "mass": ("t", 1e3),
-        "force": ("kN", 1e3),
-        "stiffness": ("kN/m", 1e3),
-        "damping": ("kN s/m", 1e3),
-        "length": ("mm", 1e-3),
-    },
-    False: {
-        "mass": ("kg", 1.0),
-        "force": ("N", 1.0),
-        "stiffness": ("N/m", 1.0),
-        "damping": ("N s/m", 1.0),
-        "length": ("m", 1.0),
-    },
-}
 
 
 def _columns(text: str) -> tuple[_Column, ...]:
@@ -75,31 +59,53 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
 }
 
 
-def input_tables(inputs: Mapping[str, Any]) -> Iterator[Cells]:
+def input_tables(inputs: Mapping[str, Any], chosen: tuple[str, ...] = ()) -> Iterator[Cells]:
     """Tables of the parts of a case and of its modes; those that it does not have are left out.
 
     Parameters
     ----------
     inputs : mapping
         As `eventpound.results.inputs.inputs_of` gives them.
+    chosen : tuple of str
+        Units of a `Trade`.
     """
     heavy = max((row["mass"] for row in inputs["bodies"]), default=0.0) >= HEAVY
+    units = _units(Trade(heavy, chosen))
     for kind, columns in _TABLES.items():
         # Springs with a kink have a table of their own: they share no number with others.
         given = inputs.get(kind, [])
         kinked = [row for row in given if "compression" in row]
         for rows in ([row for row in given if row not in kinked], kinked):
             if rows:
-                yield _cells(rows, columns, heavy)
+                yield _cells(rows, columns, units)
     for structure in inputs["structures"]:
         if "initial" in structure:
             yield _modes(structure)
 
 
-def _cells(rows: Sequence[Mapping[str, Any]], columns: Sequence[_Column], heavy: bool) -> Cells:
+def _units(trade: Trade) -> dict[str, Unit]:
+    """Units by their kinds; where none is chosen, lengths of what is light are in m."""
+    force, size = trade.unit(Dimension.FORCE.unit)
+    units = {
+        "mass": trade.unit(Dimension.MASS.unit),
+        "force": (force, size),
+        "stiffness": (f"{force}/m", size),
+        "damping": (f"{force} s/m", size),
+        "length": ("m", 1.0),
+    }
+    if trade.heavy or trade.chosen:
+        units["length"] = trade.unit(Dimension.LENGTH.unit)
+    if trade.chosen:
+        units["m/s^2"] = trade.unit(Dimension.ACCELERATION.unit)
+    return units
+
+
+def _cells(
+    rows: Sequence[Mapping[str, Any]], columns: Sequence[_Column], units: Mapping[str, Unit]
+) -> Cells:
     """A table without the columns that no row has."""
     there = [column for column in columns if any(row.get(column[0]) is not None for row in rows)]
-    sizes = _SIZES[heavy] | {"%": ("%", 0.01)}
+    sizes = {**units, "%": ("%", 0.01)}
     names = [sizes.get(unit, (unit, 1.0))[0] for _, _, unit in there]
     heads = [headed(head, name) for (_, head, _), name in zip(there, names, strict=True)]
     cells = tuple(
@@ -138,7 +144,7 @@ def _modes(structure: Mapping[str, Any]) -> Cells:
         ("share.later", "mass", "%"),
         ("damping.later", "damping", "%"),
     ]
-    cells = _cells(rows, columns, heavy=True)
+    cells = _cells(rows, columns, {})
     return Cells(cells.headings, cells.rows, cells.words, max(0, len(initial) - _MOST_MODES))
 
 

@@ -5,44 +5,66 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from eventpound.case.case import Stated
 from eventpound.quantities.lookup import is_whole
-from eventpound.results.input_tables import HEAVY
 from eventpound.scene.scene import Scene
-from eventpound.units import STANDARD_GRAVITY, Dimension
+from eventpound.units import TOLD, USUAL, Dimension
 
+HEAVY = 1e4
+"""Mass (kg) from which on tables and axes are in t, tables in kN and mm."""
 _DIGITS = 3
 _NOTHING = 1e-6
 """What rounding leaves of nothing, in a unit of the trade."""
 Unit = tuple[str, float]
 """Its name and its size (SI)."""
-_LIGHT: dict[str, Unit] = {
-    Dimension.LENGTH.unit: ("mm", 1e-3),
-    Dimension.ACCELERATION.unit: ("g", STANDARD_GRAVITY),
-}
-_HEAVY = _LIGHT | {
-    Dimension.FORCE.unit: ("kN", 1e3),
-    Dimension.IMPULSE.unit: ("kN s", 1e3),
-    Dimension.ENERGY.unit: ("kJ", 1e3),
-    Dimension.MASS.unit: ("t", 1e3),
-}
 
 
 @dataclass(frozen=True, slots=True)
 class Trade:
-    """Units in which numbers of a scene are told; kN of one that is heavy, else N."""
+    """Units in which numbers of a scene are told.
+
+    Parameters
+    ----------
+    heavy : bool
+        Whether the scene is: in kN and t, else in N and kg; mm and g.
+    chosen : tuple of str
+        Units of `eventpound.units.TOLD` instead. Impulse and energy follow the force.
+    """
 
     heavy: bool = True
+    chosen: tuple[str, ...] = ()
 
     def unit(self, unit: str, name: str = "") -> Unit:
         """What stands for a unit of SI, for a quantity of a name: a drift ratio is in per cent."""
         if name.endswith("drift_ratio"):
             return "%", 0.01
-        return (_HEAVY if self.heavy else _LIGHT).get(unit, (unit, 1.0))
+        usual = ("kN" if self.heavy else "N", "mm", "g")
+        force, length, acceleration = (
+            next((word for word in self.chosen if word in USUAL[dimension]), word)
+            for dimension, word in zip(TOLD, usual, strict=True)
+        )
+        size = USUAL[Dimension.FORCE][force]
+        told = {
+            Dimension.FORCE: (force, size),
+            Dimension.IMPULSE: (f"{force} s", size),
+            Dimension.ENERGY: (force.replace("N", "J"), size),
+            Dimension.LENGTH: (length, USUAL[Dimension.LENGTH][length]),
+            Dimension.ACCELERATION: (
+                acceleration.replace("^2", "²"),
+                USUAL[Dimension.ACCELERATION][acceleration],
+            ),
+            Dimension.MASS: ("t", 1e3) if self.heavy else ("kg", 1.0),
+        }
+        return {of.unit: each for of, each in told.items()}.get(unit, (unit, 1.0))
 
     def number(self, value: float, unit: str, name: str = "") -> str:
         """A value (SI) in the unit of the trade, without its name."""
-        shown = value / self.unit(unit, name)[1]
-        return f"{shown:.{_DIGITS}g}" if _is_count(name, shown) else three_digits(shown)
+        size = self.unit(unit, name)[1]
+        if _is_count(name, value / size):
+            return f"{value / size:.{_DIGITS}g}"
+        # What is nothing does not depend on the unit that is chosen.
+        usual = Trade(self.heavy).unit(unit, name)[1]
+        return three_digits(value / size, _NOTHING * usual / size)
 
     def words(self, value: float, unit: str, name: str = "") -> str:
         """A value (SI) with its unit of the trade."""
@@ -54,16 +76,20 @@ def _is_count(name: str, value: float) -> bool:
     return is_whole(name) and 0.0 <= value < 10**_DIGITS - 1
 
 
-def trade_of(scene: Scene) -> Trade:
-    """Units in which numbers of a scene are told."""
-    return Trade(max((body.mass for body in scene.bodies), default=0.0) >= HEAVY)
+def trade_of(scene: Scene, stated: Stated) -> Trade:
+    """Units in which numbers of a scene are told, as its case chooses."""
+    heaviest = max((body.mass for body in scene.bodies), default=0.0)
+    return Trade(heaviest >= HEAVY, stated.units)
 
 
-def three_digits(value: float) -> str:
-    """A number with three digits and no exponent; a dash where there is none."""
+def three_digits(value: float, nothing: float = _NOTHING) -> str:
+    """A number with three digits and no exponent; a dash where there is none.
+
+    What is smaller than `nothing` is zero.
+    """
     if not math.isfinite(value):
         return "–"
-    if abs(value) < _NOTHING:
+    if abs(value) < nothing:
         return "0"
     places = _DIGITS - 1 - math.floor(math.log10(abs(value)))
     # What rounds up to the next power of ten has one place less.

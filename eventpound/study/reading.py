@@ -31,7 +31,7 @@ from eventpound.study.intensity import IntensityPlan, read_intensities
 from eventpound.study.plan import PART, RECORD, Base, Plan
 from eventpound.study.quantities import planned
 from eventpound.study.table import read_manifest
-from eventpound.ways import Way, without_part
+from eventpound.ways import Way, without_effect, without_part
 
 _Document = Mapping[str, object]
 _OF_STUDY = ("study", "figure", "intensity")
@@ -116,8 +116,9 @@ def load_study(path: str | Path) -> StudyCase:
     found += [problem for plan in plans for problem in plan.problems(study)]
     _raise(list(dict.fromkeys(found)), file)
     warnings = dict.fromkeys(w for base in bases for w in base.case.warnings)
-    if any("output_step" in _table(tables, "run") for tables in (rest, *(p.tables for p in parts))):
-        warnings[f"{file}: {without_part(['output_step'], Way.STUDY)}"] = None
+    given = {key for tables in (rest, *(p.tables for p in parts)) for key in _table(tables, "run")}
+    if left := [option for option in without_effect(Way.STUDY) if option in given]:
+        warnings[f"{file}: {without_part(left, Way.STUDY)}"] = None
     return StudyCase(study, figures, intensities, file.parent, tuple(warnings))
 
 

@@ -175,6 +175,7 @@ def test_an_option_is_the_same_in_every_way_to_run(tmp_path: Path, way: Ran, opt
     assert column not in plain.summary or plain.summary[column] != found[0]
 
 
+UNITS = 'units = ["MN", "cm"]'
 PUSHED = '\n[[force]]\nbody = "deck"\nvalue = "500 kN"'
 OF_A_RUN = {
     "start": (f'start = "equilibrium"{PUSHED}', f'start = "initial"{PUSHED}'),
@@ -274,18 +275,19 @@ def test_an_equilibrium_that_no_number_moves_holds_in_a_study(tmp_path: Path) ->
     assert Study(case, {"excitation.scale": [1.0, 2.0]}).plan.size == 2
 
 
-def test_a_study_says_that_it_keeps_no_rows(tmp_path: Path) -> None:
-    folder = written(tmp_path, 'output_step = "0.1 s"', tables=study())
-    assert any("output_step: no part of a study" in text for text in load_study(folder).warnings)
+def test_a_study_says_that_it_keeps_no_rows_and_tells_nothing_in_units(tmp_path: Path) -> None:
+    folder = written(tmp_path, f'output_step = "0.1 s"\n{UNITS}', tables=study())
+    said = "output_step, units: no part of a study"
+    assert any(said in text for text in load_study(folder).warnings)
 
 
 @pytest.mark.parametrize(
-    "option", [name for name in OPTIONS if name not in ("start_time", "duration")]
+    "option", [*(name for name in OPTIONS if name not in ("start_time", "duration")), "units"]
 )
 @pytest.mark.parametrize("way", [Way.VERIFY, Way.COMPARE, Way.EXPORT, Way.FLOOR])
 def test_what_other_commands_leave_out_is_said(tmp_path: Path, way: Way, option: str) -> None:
     """Here a warning is an error, so that nothing is computed."""
-    case = load_case(written(tmp_path, OPTIONS[option][0]))
+    case = load_case(written(tmp_path, UNITS if option == "units" else OPTIONS[option][0]))
     calls: dict[Way, Callable[[], object]] = {
         Way.VERIFY: lambda: verify(case),
         Way.COMPARE: lambda: compare(case, ["fast"]),

@@ -1,0 +1,105 @@
+"""Units that a case chooses for its design numbers."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from eventpound import InputError, load_case
+from eventpound.case.loading import read_case
+from eventpound.cli import main
+from eventpound.results.trade import Trade
+from tests.study.test_suite import CASE, time_series
+
+GRAVITY = 9.80665
+ACCEPTED = (
+    "accepted: a list of texts, at most one unit each of force (N, kN, MN), "
+    "length (m, cm, mm), acceleration (m/s^2, g)"
+)
+
+
+def written(folder: Path, units: str) -> Path:
+    """A deck that strikes a wall, told in units."""
+    (folder / "a.txt").write_text(time_series(0.5))
+    text = CASE.format('file = "a.txt"\nunits = "g"\ntime_step = "0.02 s"')
+    (folder / "case.toml").write_text(f"{text}[run]\n{units}\n")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("chosen", "value", "unit", "words"),
+    [
+        ((), 1.5e6, "N", "1500 kN"),
+        (("MN",), 1.5e6, "N", "1.50 MN"),
+        (("MN",), 1.5e6, "N s", "1.50 MN s"),
+        (("MN",), 1.5e6, "J", "1.50 MJ"),
+        (("N",), 1.5e6, "J", "1500000 J"),
+        (("MN",), 0.0127, "m", "12.7 mm"),
+        (("cm", "MN"), 0.0127, "m", "1.27 cm"),
+        (("m/s^2",), 0.5 * GRAVITY, "m/s^2", "4.90 m/s²"),
+        (("cm",), 0.5 * GRAVITY, "m/s^2", "0.500 g"),
+        (("MN", "cm", "m/s^2"), 0.75, "m/s", "0.750 m/s"),
+    ],
+)
+def test_a_chosen_unit_stands_for_its_dimension_and_those_that_follow(
+    chosen: tuple[str, ...], value: float, unit: str, words: str
+) -> None:
+    assert Trade(heavy=True, chosen=chosen).words(value, unit) == words
+
+
+def test_what_is_nothing_is_so_in_every_unit() -> None:
+    """A millionth of N and of mm is what rounding leaves; in MN and m it is no other."""
+    for value, unit in ((2e-6, "N"), (2e-9, "m")):
+        usual, large = (Trade(False, chosen).number(value, unit) for chosen in ((), ("MN", "m")))
+        assert float(usual) == pytest.approx(2e-6)
+        assert float(large) == pytest.approx(value / {"N": 1e6, "m": 1.0}[unit])
+        assert Trade(False, ("MN", "m")).number(value / 4.0, unit) == "0"
+
+
+def test_the_report_and_the_screen_are_in_the_units_of_the_case(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = written(tmp_path, 'units = ["MN", "cm", "m/s^2"]')
+    assert main(["design", str(folder)]) == 0
+    printed = capsys.readouterr().out
+    report = (folder / "results" / "design" / "design.html").read_text(encoding="utf-8")
+    told = re.sub(r"<style.*?</style>|<[^>]*>|data:[^\"]*", " ", report, flags=re.DOTALL)
+    assert "gap 1.27 cm" in printed
+    assert "largest impulse, MN s" in printed
+    assert "acceleration, m/s²" in printed
+    assert "peak 4.90 m/s²" in told
+    for text in (printed, told):
+        assert not re.search(r"\b(mm|kN|kN s|g)\b", text.partition("Limits")[0]), text
+    assert main(["run", str(folder), "--no-figures"]) == 0
+    assert re.search(r"opening [\d.]+ cm, .*impulse [\d.]+ MN s", capsys.readouterr().out)
+
+
+def test_files_of_numbers_stay_in_si(tmp_path: Path) -> None:
+    tables = []
+    for units in ("", 'units = ["MN", "cm", "m/s^2"]'):
+        assert main(["design", str(written(tmp_path, units)), "--no-report"]) == 0
+        tables.append(pd.read_csv(tmp_path / "results" / "design" / "design.csv"))
+    pd.testing.assert_frame_equal(*tables)
+
+
+def test_a_case_that_was_understood_keeps_its_units(tmp_path: Path) -> None:
+    case = load_case(written(tmp_path, 'units = ["cm", "MN"]'))
+    again = json.loads(json.dumps(case.understood))
+    assert read_case(again, tmp_path / "case.toml").run.stated.units == ("cm", "MN")
+
+
+@pytest.mark.parametrize(
+    "units",
+    ['["kip"]', '["cm", "mm"]', '["kN", "kN"]', '["kN", "s"]', '"kN"', "[]", "[1]", '[["kN"]]'],
+)
+def test_other_words_are_refused_in_one_message(tmp_path: Path, units: str) -> None:
+    with pytest.raises(InputError) as caught:
+        load_case(written(tmp_path, f"units = {units}"))
+    found = units.replace('"', "'")
+    assert caught.value.problems == [
+        f"{tmp_path / 'case.toml'}: [run]: units: found {found}; {ACCEPTED}"
+    ]
