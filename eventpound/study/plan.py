@@ -278,12 +278,20 @@ def _records_at_once(base: Base) -> int:
     return min(max(len(base.records) // _CHUNKS_OF_RECORDS, 1), _MOST_RECORDS)
 
 
+def _deciding(understood: Mapping[str, object]) -> dict[str, object]:
+    """A case without what changes no number: its title, and units in which it is told."""
+    run = understood["run"]
+    assert isinstance(run, dict)
+    kept = {key: value for key, value in understood.items() if key != "title"}
+    return kept | {"run": {key: value for key, value in run.items() if key != "units"}}
+
+
 def _described(base: Base) -> dict[str, object]:
     pi = base.case.pi
     record = base.case.record
     return {
         "labels": base.labels,
-        "case": {key: v for key, v in base.case.understood.items() if key != "title"},
+        "case": _deciding(base.case.understood),
         "record_sha256": None if record is None else record.sha256,
         "pi": None
         if pi is None

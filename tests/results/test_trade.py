@@ -86,6 +86,18 @@ def test_files_of_numbers_stay_in_si(tmp_path: Path) -> None:
     pd.testing.assert_frame_equal(*tables)
 
 
+def test_a_suite_in_other_units_is_not_run_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    results = tmp_path / "results" / "design"
+    for units in ("cm", "mm"):
+        case = written(tmp_path, f'units = ["{units}"]') / "case.toml"
+        case.write_text(case.read_text().replace("file = ", "suite = "))
+        assert main(["design", str(tmp_path), "--no-report"]) == 0
+        assert f"opening, {units}" in capsys.readouterr().out
+    assert not list(results.glob("earlier-*"))
+
+
 def test_a_case_that_was_understood_keeps_its_units(tmp_path: Path) -> None:
     case = load_case(written(tmp_path, 'units = ["cm", "MN"]'))
     again = json.loads(json.dumps(case.understood))
