@@ -38,7 +38,7 @@ from eventpound.scene.scene import Scene
 from eventpound.simulation import simulate
 from eventpound.study.design import FRACTILES, demands_of
 from eventpound.study.records import FAILED
-from eventpound.units import Dimension
+from eventpound.units import TOLD, Dimension
 
 _PANELS = (
     *(NEEDED, "contacts.<contact>.seat_used", "springs.<spring>.ductility"),
@@ -147,7 +147,8 @@ def _model(told: Told) -> Iterator[Block]:
     """The sketch and the tables of the parts; a tall sketch stands beside tables."""
     sketch = Picture(model_figure(told.scene, trade=told.trade), _SKETCH)
     parts = input_tables(_inputs(told.case), told.trade.chosen)
-    tables = [_short(table) for table in parts]
+    nothing = min(told.trade.nothing(dimension.unit) for dimension in TOLD)
+    tables = [_short(table, nothing) for table in parts]
     narrow = [table for table in tables if len(table.headings) <= _WIDE]
     wide, high = sketch.figure.get_size_inches()
     if high > _TALL * wide:
@@ -219,11 +220,11 @@ def _motion(told: Told) -> str:
     return f"a pulse, {motion.kind}, {peak}, period {three_digits(scales.period)} s"
 
 
-def _short(table: Cells) -> Cells:
+def _short(table: Cells, nothing: float) -> Cells:
     """A table of the model with three digits, without what the report has no room for."""
     kept = [i for i, head in enumerate(table.headings) if not head.startswith(_LEFT_OUT)]
     rows = tuple(
-        tuple(row[i] if table.words[i] else _three(row[i]) for i in kept)
+        tuple(row[i] if table.words[i] else _three(row[i], nothing) for i in kept)
         for row in table.rows[:_MOST_PARTS]
     )
     more = table.more + max(0, len(table.rows) - _MOST_PARTS)
@@ -231,10 +232,10 @@ def _short(table: Cells) -> Cells:
     return Cells(tuple(heads), rows, tuple(words), more)
 
 
-def _three(cell: str) -> str:
+def _three(cell: str, nothing: float) -> str:
     """A number with three digits at most."""
     short = not cell or (f"{float(cell):.3g}" == cell and "e" not in cell)
-    return cell if short else three_digits(float(cell))
+    return cell if short else three_digits(float(cell), nothing)
 
 
 def _panels(told: Told) -> list[list[Named]]:

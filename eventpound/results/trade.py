@@ -14,7 +14,7 @@ HEAVY = 1e4
 """Mass (kg) from which on tables and axes are in t, tables in kN and mm."""
 _DIGITS = 3
 _NOTHING = 1e-6
-"""What rounding leaves of nothing, in a unit of the trade."""
+"""What rounding leaves of nothing, in a unit of the trade that nobody chose."""
 Unit = tuple[str, float]
 """Its name and its size (SI)."""
 
@@ -62,9 +62,11 @@ class Trade:
         size = self.unit(unit, name)[1]
         if _is_count(name, value / size):
             return f"{value / size:.{_DIGITS}g}"
-        # What is nothing does not depend on the unit that is chosen.
-        usual = Trade(self.heavy).unit(unit, name)[1]
-        return three_digits(value / size, _NOTHING * usual / size)
+        return three_digits(value / size, self.nothing(unit, name))
+
+    def nothing(self, unit: str, name: str = "") -> float:
+        """What rounding leaves of nothing, in the unit that is told; the same whatever that is."""
+        return _NOTHING * Trade(self.heavy).unit(unit, name)[1] / self.unit(unit, name)[1]
 
     def words(self, value: float, unit: str, name: str = "") -> str:
         """A value (SI) with its unit of the trade."""

@@ -9,12 +9,15 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from eventpound import InputError, load_case
+from eventpound import InputError, design_numbers, load_case, simulate
 from eventpound.case.loading import read_case
 from eventpound.cli import main
+from eventpound.report.design_report import Told, design_sheets
+from eventpound.report.sheets import as_html
 from eventpound.results.trade import Trade
 from tests.study.test_suite import CASE, time_series
 
+CASES = Path(__file__).parents[2] / "cases"
 GRAVITY = 9.80665
 ACCEPTED = (
     "accepted: a list of texts, at most one unit each of force (N, kN, MN), "
@@ -58,6 +61,18 @@ def test_what_is_nothing_is_so_in_every_unit() -> None:
         assert float(usual) == pytest.approx(2e-6)
         assert float(large) == pytest.approx(value / {"N": 1e6, "m": 1.0}[unit])
         assert Trade(False, ("MN", "m")).number(value / 4.0, unit) == "0"
+
+
+def test_a_yield_force_that_is_small_in_its_unit_is_told(tmp_path: Path) -> None:
+    text = (CASES / "pair" / "case.toml").read_text().replace("500 t", "0.5 kg")
+    (tmp_path / "case.toml").write_text(
+        text.replace("490.3 kN", "0.5 N") + '\n[run]\nunits = ["MN"]\n'
+    )
+    case = load_case(tmp_path)
+    response = simulate(case, error_estimate=False)
+    sheets = design_sheets(Told(case, design_numbers(case), None, response, ""))
+    # F_y = Q / (1 - alpha), of 1 / (1 - 4.93 / 54.9).
+    assert ">0.000000549<" in as_html("", sheets).decode()
 
 
 def test_the_report_and_the_screen_are_in_the_units_of_the_case(
