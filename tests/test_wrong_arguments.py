@@ -74,6 +74,10 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
         {NEEDED: "compression extension offset"},
     ),
     "Series": ({"parts": ()}, {THINGS: "parts"}),
+    "Backfill": (
+        {"initial_stiffness": 2e7, "ultimate_force": 3e5, "failure_ratio": 0.7},
+        {NEEDED: "initial_stiffness ultimate_force failure_ratio gap"},
+    ),
     "BoucWen": (
         {"stiffness": 1.0, "strength": 1.0, "yield_displacement": 1.0},
         {NEEDED: "stiffness strength yield_displacement exponent beta gamma initial_z"},

@@ -9,7 +9,7 @@ import resource
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -146,7 +146,7 @@ def test_interrupted_after_the_run_keeps_it(tmp_path, monkeypatch):
     """In the second run, which finds the gap that would have avoided the contact."""
     folder = written(tmp_path, 5.0, "true")
 
-    def interrupted(scene: Scene, run: Callable[[Scene], object]) -> None:
+    def interrupted(scene: Scene, widened: Sequence[int], run: Callable[[Scene], object]) -> None:
         signal.raise_signal(signal.SIGTERM)
         run(scene)
 
