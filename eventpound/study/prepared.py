@@ -19,7 +19,13 @@ from eventpound.simulation import ReadyScene, check_case, made_ready, options_of
 from eventpound.solvers.base import Solver, Task
 from eventpound.study.axes import given_axes
 from eventpound.study.plan import Base, base_of
-from eventpound.study.variants import complete, kinds_that_set_lengths, rows_with, unknown_axes
+from eventpound.study.variants import (
+    complete,
+    kinds_that_set_lengths,
+    kinds_that_set_periods,
+    rows_with,
+    unknown_axes,
+)
 from eventpound.units import Dimension
 from eventpound.ways import Way, refuse_options
 
@@ -95,12 +101,13 @@ class Prepared:
         self._base, self._ready, self._run = base, ready, run
         self._places = places_of(self.scene)
         self._ranges = KnownRanges(self.scene, run.start_time)
-        case, kinds = base.case, kinds_that_set_lengths(self.scene)
+        lengths = () if base.own_duration else kinds_that_set_lengths(self.scene)
+        kinds = {*lengths, *kinds_that_set_periods(self.scene)}
         # Numbers by these keys change nothing but themselves.
         self._simple = {
             key: place
             for key, place in self._places.items()
-            if case.pi is None and (base.own_duration or place.kind not in kinds)
+            if base.case.pi is None and place.kind not in kinds
         }
 
     @property

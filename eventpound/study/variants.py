@@ -149,13 +149,14 @@ def _own_periods(scene: Scene, numbers: Mapping[str, Floats], count: int) -> dic
     """Periods (s) at which a record is scaled, where they are those of each variant itself."""
     motion, places = scene.motion, places_of(scene)
     moving = {places[key]: column for key, column in numbers.items() if key in places}
-    moving = {place: v for place, v in moving.items() if place.kind in ("body", "spring")}
-    named = isinstance(motion, Record) and motion.psa_at
-    if not (named and moving) or PSA_PERIOD in numbers:
+    moving = {p: v for p, v in moving.items() if p.kind in kinds_that_set_periods(scene)}
+    if not (isinstance(motion, Record) and moving) or PSA_PERIOD in numbers:
         return {}
     first, which = distinct(list(moving.values()), count)
     found = [
-        period_called(with_values(scene, {p: float(v[i]) for p, v in moving.items()}), named)
+        period_called(
+            with_values(scene, {p: float(v[i]) for p, v in moving.items()}), motion.psa_at
+        )
         for i in first.tolist()
     ]
     return {PSA_PERIOD: np.array(found)[which]}
@@ -221,6 +222,12 @@ def kinds_that_set_lengths(scene: Scene) -> tuple[str, ...]:
     """Kinds of places whose numbers the default length of a run follows."""
     own = ("body", "spring") if isinstance(scene.motion, Record) else ()
     return ("excitation", "support", *own)
+
+
+def kinds_that_set_periods(scene: Scene) -> tuple[str, ...]:
+    """Kinds of places whose numbers the period follows at which a record is scaled."""
+    named = isinstance(scene.motion, Record) and scene.motion.psa_at
+    return ("body", "spring") if named else ()
 
 
 def scene_of_row(rows: Rows, i: int) -> Scene:

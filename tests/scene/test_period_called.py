@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eventpound import InputError, Study, load_case, simulate, simulate_suite
+from eventpound import InputError, Study, load_case, prepare, simulate, simulate_suite
 from eventpound.motion import Record
 from eventpound.motion.scaling import psa_of
 from eventpound.scene import GROUND, Body, Linear, Scene, Spring
@@ -116,6 +116,9 @@ def test_each_variant_of_a_study_has_its_own(tmp_path: Path) -> None:
         one = load_case(written(tmp_path, 'file = "b.txt"', fixed, k=k / 1e3))
         peak = simulate(one, "fast", rtol=1e-9).peaks["abs_max"]["deck"]
         assert study["peaks.deck.abs_max"][i] == pytest.approx(peak, rel=1e-7)
+        for given in (None, case.run.duration):
+            again = prepare(case, "fast", 1e-9, duration=given).run({key: k})
+            assert again.peaks["abs_max"]["deck"] == pytest.approx(peak, rel=1e-7)
 
 
 @pytest.mark.parametrize(
