@@ -180,10 +180,10 @@ def unstated(name: str, stated: Stated) -> str:
 
 def values_of(many: Runs, name: str) -> Floats | None:
     """Values of a quantity by its name, shape (n,); None where the scene has no such quantity."""
-    if name.startswith(FREE):
-        return None if many.free is None else many.free(name.removeprefix(FREE))
     if name in many.further:
         return many.further[name]
+    if name.startswith(FREE):
+        return None if many.free is None else many.free(name.removeprefix(FREE))
     found = find(many.scene, name)
     return None if found is None else found.of(many)
 

@@ -163,6 +163,8 @@ def _counting(case: Case, threshold: float) -> Case:
 
 def _with_derivatives(case: Case, of: Sequence[str]) -> list[Named]:
     """The quantities, none of which is a count."""
+    if not of:
+        raise InputError("of: found []; accepted: at least one quantity")
     names = chosen(case.scene, of, case.run.stated)
     found = [find(case.scene, name.removeprefix(FREE)) for name in names]
     named = [replace(n, name=name) for name, n in zip(names, found, strict=True) if n is not None]
@@ -183,7 +185,7 @@ def _numbers(base: Base, to: Sequence[str] | Mapping[str, float | str]) -> list[
     steps = to if isinstance(to, Mapping) else {}
     numbers: list[_Number] = []
     problems: list[str] = []
-    for key in to or there:
+    for key in dict.fromkeys(to or there):
         try:
             if key not in there:
                 meant = suggestion(key, list(there)) or f"; accepted: {', '.join(there)}"
