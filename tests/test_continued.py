@@ -189,6 +189,9 @@ def test_a_case_goes_on_from_the_results_of_another(tmp_path: Path) -> None:
     (results / "summary.json").write_text(json.dumps(summary | {"success": False}))
     with pytest.raises(InputError, match="a run that did not reach its end"):
         load_case(tmp_path / "aftershock")
+    (results / "summary.json").write_text(json.dumps(summary | {"final": 3}))
+    with pytest.raises(InputError, match=r"found .*a summary.json"):
+        load_case(tmp_path / "aftershock")
     shutil.rmtree(results)
 
 

@@ -371,10 +371,12 @@ def _after(table: Table, scene: Scene, start: float, directory: Path) -> Scene:
     try:
         found = folder if (folder / SUMMARY).exists() else folder / "results"
         summary = json.loads(read_bytes(found / SUMMARY))
-        if not (isinstance(summary, dict) and summary.get("success")):
+        if not (isinstance(summary, dict) and isinstance(summary.get("final"), dict)):
+            raise ValueError("no summary of a run")
+        if not summary.get("success"):
             raise InputError(f"found {name!r}, a run that did not reach its end")
         return continued(scene, summary["final"], start)
-    except (OSError, ValueError, KeyError):
+    except (OSError, ValueError):
         table.reject("results", accepted)
     except InputError as error:
         for problem in error.problems:
