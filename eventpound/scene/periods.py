@@ -88,8 +88,9 @@ def period_called(scene: Scene, word: str) -> float:
     """
     scene = grounded(scene)
     names = [body.name for body in scene.bodies]
-    group, name = set(names), word.removeprefix(T_1).removeprefix(" of ")
-    if name:
+    group = set(names)
+    if word != T_1:
+        name = word.removeprefix(f"{T_1} of ")
         if name not in names:
             raise InputError(f"found {word!r}; accepted: {T_1}, or {T_1} of {', '.join(names)}")
         held = {end for s in scene.springs if GROUND in s.between for end in s.between}

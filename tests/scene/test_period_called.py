@@ -125,6 +125,7 @@ def test_each_variant_of_a_study_has_its_own(tmp_path: Path) -> None:
     ("at", "said"),
     [
         ('"T1 of pier"', r"psa_period: found 'T1 of pier'; accepted: T1, or T1 of deck"),
+        ('"T1 of "', "psa_period: found 'T1 of '; accepted: T1, or T1 of deck"),
         ('"T2"', "psa_period: found 'T2'"),
     ],
 )
