@@ -29,7 +29,7 @@ PAGE = "report.html"
 """Name of the file."""
 Part = str
 """HTML."""
-_HEAD = """\
+_DOCUMENT = """\
 <!doctype html>
 <html lang="en">
 <head>
@@ -39,8 +39,8 @@ _HEAD = """\
 {css}</style>
 </head>
 <body>
-<h1>{title}</h1>
-<nav>{links}</nav>
+{body}</body>
+</html>
 """
 
 
@@ -71,9 +71,14 @@ def page(title: str, sections: Iterable[Section], before: Iterable[Part] = ()) -
             anchor = escape(anchors[0] if anchors else name.lower().replace(" ", "-"))
             links.append(f'<a href="#{anchor}">{escape(name)}</a>')
             body.append(f'<h2 id="{anchor}">{escape(name)}</h2>\n{content}')
-    css = (files("eventpound.report") / "page.css").read_text(encoding="utf-8")
-    head = _HEAD.format(title=escape(title), css=css, links="".join(links))
-    return "".join([head, *before, *body, "</body>\n</html>\n"]).encode()
+    head = f"<h1>{escape(title)}</h1>\n<nav>{''.join(links)}</nav>\n"
+    return document(title, "page.css", [head, *before, *body])
+
+
+def document(title: str, style: str, body: Iterable[Part]) -> bytes:
+    """A file of HTML, UTF-8, with one of the style sheets of this package in it."""
+    css = (files("eventpound.report") / style).read_text(encoding="utf-8")
+    return _DOCUMENT.format(title=escape(title), css=css, body="".join(body)).encode()
 
 
 def model_of(case: Case) -> Iterator[Part]:

@@ -12,7 +12,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
-from importlib.resources import files
 
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
@@ -20,7 +19,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.image import imread
 from matplotlib.textpath import TextPath
 
-from eventpound.report.html import table_of
+from eventpound.report.html import document, table_of
 from eventpound.report.style import literal, png, styled, svg
 from eventpound.results.cells import Cells
 
@@ -35,19 +34,6 @@ _LINE, _BELOW, _BETWEEN = 1.28, 4.0, 8.0
 """Of letters; below a block and between columns (points)."""
 _DOTS = 250.0
 """An inch, of the pictures of a PDF."""
-_PAGE_OF = """\
-<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<title>{title}</title>
-<style>
-{css}</style>
-</head>
-<body>
-{body}</body>
-</html>
-"""
 _LETTER, _BOLD = 0.53, 0.66
 """Width of a letter of a text and of a heading, of its size."""
 
@@ -94,13 +80,12 @@ Sheet = Sequence[Block]
 
 def as_html(title: str, sheets: Sequence[Sheet]) -> bytes:
     """The sheets as one page in itself, which a browser prints on as many of A4."""
-    css = (files("eventpound.report") / "sheets.css").read_text(encoding="utf-8")
     body = []
     for sheet in sheets:
         share = _share(sheet)
         blocks = "".join(_html(block, WIDTH, share) for block in sheet)
         body.append(f'<section class="sheet">\n{blocks}</section>\n')
-    return _PAGE_OF.format(title=escape(title), css=css, body="".join(body)).encode()
+    return document(title, "sheets.css", body)
 
 
 def _html(block: Block, width: float, share: float) -> str:
