@@ -116,6 +116,7 @@ def made_ready(
     max_steps: int | None = None,
 ) -> ReadyScene:
     """What `simulate` is asked for, checked; its arguments."""
+    check_case(case)
     number = positive("rtol", rtol, Dimension.NUMBER)
     run, options = options_of(
         case,
@@ -236,7 +237,7 @@ def refuse_suite(case: Case) -> None:
 def check_case(case: Case | Scene) -> None:
     """Refuse a case whose scene was changed, since it was read, to one that cannot be computed."""
     if isinstance(case, Case):
-        check_scene(case.scene, None)
+        check_scene(case.scene, case.run.start_time)
 
 
 def options_of(

@@ -412,9 +412,19 @@ def test_a_message_says_how_a_case_is_read() -> None:
 def test_a_scene_put_into_a_case_is_checked_as_one_by_itself() -> None:
     law = ContactLaw("kelvin-voigt", 1e9, 0.3)
     twice = replace(SCENE, contacts=[Contact("joint", "deck", "barrier", 0.01, 0.7, law)])
-    for call in (simulate, verify):
+    shut = replace(SCENE, bodies=[Body("deck", 1.3e6, displacement=0.02)])
+    calls: tuple[Callable[[eventpound.Case], object], ...] = (
+        simulate,
+        verify,
+        eventpound.prepare,
+        eventpound.design_numbers,
+        lambda case: eventpound.compare(case, ["fast"]),
+    )
+    for call in calls:
         with pytest.raises(InputError, match="one of restitution and damping"):
             call(replace(PAIR, scene=twice))
+        with pytest.raises(InputError, match="not penetrated at the start"):
+            call(replace(PAIR, scene=shut))
 
 
 def test_a_solver_may_be_named_with_its_settings() -> None:

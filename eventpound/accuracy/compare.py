@@ -14,7 +14,7 @@ from eventpound.accuracy.work_precision import Judged, SolverChoice, is_stepped,
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.score import Difference
-from eventpound.simulation import check_solver, refuse_suite
+from eventpound.simulation import check_case, check_solver, refuse_suite
 from eventpound.solvers import solver_named
 from eventpound.ways import Way, warn_left_out
 
@@ -143,6 +143,7 @@ def compare(
         After Ctrl-C, where a run was done by then.
     """
     refuse_suite(case)
+    check_case(case)
     if not asked and not against:
         raise InputError("compare: found nothing to judge; accepted: a solver, or a history")
     warn_left_out(case, Way.COMPARE)

@@ -95,7 +95,6 @@ def simulate(
     """
     if start is not None:
         case = _going_on(case, start)
-    simulation.check_case(case)
     response = simulation.simulate(
         case,
         solver,
