@@ -427,6 +427,13 @@ def test_a_scene_put_into_a_case_is_checked_as_one_by_itself() -> None:
             call(replace(PAIR, scene=shut))
 
 
+def test_a_motion_that_sets_no_duration_asks_for_one() -> None:
+    free = replace(SCENE, motion=eventpound.NoMotion())
+    for call in (simulate, verify, eventpound.prepare, eventpound.design_numbers):
+        with pytest.raises(InputError, match="duration: missing, and free motion sets none"):
+            call(free)
+
+
 def test_a_solver_may_be_named_with_its_settings() -> None:
     with pytest.raises(InputError, match="events"):
         simulate(SCENE, "cvode:events=nothing")

@@ -60,23 +60,18 @@ def default_duration(scene: Scene, start_time: float) -> float:
     end = max(end, *(force.history.end for force in scene.forces), end)
     if not math.isfinite(end):
         reason = "a motion or a force without end" if shaking else "free motion"
-        raise InputError(f"missing, and {reason} sets none; accepted: {Dimension.TIME.accepted}")
+        raise InputError(
+            f"duration: missing, and {reason} sets none; accepted: {Dimension.TIME.accepted}"
+        )
     after = max(_after(motion, scene) for motion in shaking)
     duration = end + after - start_time
     if duration <= 0.0:
         raise InputError(
-            f"missing, and the motion is over before the start of the run at {start_time:.6g} s; "
+            "duration: missing, and the motion is over before the start of the run at "
+            f"{start_time:.6g} s; "
             f"accepted: {Dimension.TIME.accepted}"
         )
     return duration
-
-
-def duration_unsaid(scene: Scene, start_time: float) -> float:
-    """The same of a run of many; what is wrong is said of the key ``duration``."""
-    try:
-        return default_duration(scene, start_time)
-    except InputError as error:
-        raise InputError([f"duration: {problem}" for problem in error.problems]) from error
 
 
 def _after(motion: GroundMotion, scene: Scene) -> float:

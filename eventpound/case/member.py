@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from eventpound.case.case import Case
-from eventpound.case.defaults import default_output_step, duration_unsaid
+from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.suite import Member
 from eventpound.case.understood import understood_case
 from eventpound.motion import RecordData
@@ -39,7 +39,7 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
     scene = replace(member.on(case.scene), motion=member.options.motion(data))
     run = case.run
     if math.isnan(run.duration):
-        run = replace(run, duration=duration_unsaid(scene, run.start_time))
+        run = replace(run, duration=default_duration(scene, run.start_time))
     if math.isnan(run.output_step):
         run = replace(run, output_step=default_output_step(scene.motion, run.duration))
     read = member.options.of_file(member.file, data)

@@ -78,7 +78,7 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
         try:
             duration = default_duration(scene, start_time)
         except InputError as error:
-            table.report("duration", str(error))
+            table.report("", str(error))
     table.close()
     if scene is None or duration is None or not duration > 0.0:
         return None

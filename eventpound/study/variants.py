@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eventpound.case.case import Case
-from eventpound.case.defaults import default_duration, duration_unsaid
+from eventpound.case.defaults import default_duration
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
@@ -204,7 +204,7 @@ def _lengths(rows: Rows, scales: ScaleColumns | None) -> Floats:
         return np.full(count, case.run.duration)
     scene, start, own = case.scene, case.run.start_time, case.run.duration
     if math.isnan(own):
-        own = duration_unsaid(scene, start)
+        own = default_duration(scene, start)
     kinds = kinds_that_set_lengths(scene)
     places = places_of(scene) if rows.numbers else {}
     deciding = {places[key]: v for key, v in rows.numbers.items() if places[key].kind in kinds}
