@@ -13,7 +13,7 @@ import numpy as np
 from eventpound.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import InputError
-from eventpound.given import checked
+from eventpound.given import checked, number
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.apart import avoiding_gaps
@@ -21,21 +21,22 @@ from eventpound.quantities.base import SIX, pi_unit
 from eventpound.quantities.between import Between
 from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_of
 from eventpound.quantities.owners import owners
-from eventpound.quantities.rows import settled, warn_unsettled
+from eventpound.quantities.rows import rows_at, settled, warn_unsettled
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.pi_terms import pi_terms
 from eventpound.scene.scene import Scene
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Energy, Event, EventKind, Recording, Task, Work
+from eventpound.units import Dimension
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Response:
-    """The motion of a scene, as tables.
+    """The motion of a scene, as tables; equal to nothing but itself.
 
     Parameters
     ----------
@@ -343,6 +344,39 @@ class Response:
             table = table.drop_duplicates("t", keep="last", ignore_index=True)
         table.attrs["units"] = {name: HISTORY_UNITS[name.partition(".")[0]] for name in table}
         return table
+
+    @checked
+    def at(
+        self, t: float | str | Floats | Sequence[float | str], side: str = "after"
+    ) -> pd.DataFrame:
+        """State at any times, columns as in ``history.csv``.
+
+        The run is made again, step by step the same, with rows there by the solver's own
+        interpolant. So nothing has to be kept of a run for it.
+
+        Parameters
+        ----------
+        t : float, sequence of float or ndarray, shape (n,)
+            Times (s) within the run, in any order.
+        side : str
+            ``"after"`` or ``"before"``: which row of an event, or of a jump of the ground.
+
+        Returns
+        -------
+        DataFrame
+            A row for each time, in their order.
+
+        Raises
+        ------
+        InputError
+            Where a time is not one of the run, or its solver has no row before an event.
+        ComputationError
+            Where the run fails.
+        """
+        times = np.array([number("t", x, Dimension.TIME) for x in np.atleast_1d(t).tolist()])
+        recording, places = rows_at(self.task, self._rerun, times, side)
+        table = replace(self, recording=recording).rows().iloc[places].reset_index(drop=True)
+        return table.assign(t=times)
 
     def history_columns(self) -> dict[str, Floats]:
         """Columns of `history`, by their names."""

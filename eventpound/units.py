@@ -11,6 +11,7 @@ import re
 from decimal import Decimal
 from enum import Enum
 from functools import cache
+from numbers import Real
 from typing import TYPE_CHECKING
 
 from eventpound.errors import InputError
@@ -82,7 +83,7 @@ def quantity(value: object, dimension: Dimension) -> float:
     Parameters
     ----------
     value : object
-        An int or float (SI), or a string of a number and a unit.
+        A number (SI), of NumPy too, or a string of a number and a unit.
     dimension : Dimension
         What is expected.
 
@@ -97,7 +98,7 @@ def quantity(value: object, dimension: Dimension) -> float:
         With what was found and what is accepted: not a number, not finite, an
         unknown or ambiguous unit, or a unit of another dimension.
     """
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
+    if isinstance(value, bool) or not isinstance(value, Real | str):
         raise InputError(f"found {value!r}; accepted: {dimension.accepted}")
     try:
         result = _with_unit(value, dimension) if isinstance(value, str) else float(value)

@@ -6,6 +6,7 @@ import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -131,8 +132,11 @@ CLOSED = {"a": {"u": 0.2, "v": 0.0}, "s": {"z": 0.0}}
     ("made", "final", "said"),
     [
         (scene(), {"a": STATE["a"]}, "start: s: found None; accepted: numbers z"),
+        (scene(), STATE | {"a": {"u": 1.0}}, "start: a: found .* numbers u, v"),
+        (scene(), STATE | {"s": {"z": 0.1, "u": 1.0}}, "start: s: found .* numbers z"),
+        (scene(), STATE | {"a": {"u": 1.0, "v": True}}, "start: a: v: found True"),
         (scene(), STATE | {"b": {}}, "start: found a state of 'b'; accepted: states of a, s"),
-        (scene(), STATE | {"a": {"u": 1.0, "v": np.nan}}, "start: a: found .* numbers u, v"),
+        (scene(), STATE | {"a": {"u": 1.0, "v": np.nan}}, "start: a: v: found nan, not finite"),
         (scene(), CLOSED, "c.: gap: found 0.1; accepted: a gap that is not penetrated"),
         (scene(law=ContactLaw("linear", 1e4)), CLOSED, "start: found c closed, whose law"),
     ],
@@ -193,6 +197,12 @@ def test_a_case_goes_on_from_the_results_of_another(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"found .*a summary.json"):
         load_case(tmp_path / "aftershock")
     shutil.rmtree(results)
+
+
+def test_a_state_may_have_numbers_of_numpy_and_units() -> None:
+    final: Any = {"a": {"u": np.float32(0.5), "v": "10 cm/s"}, "s": {"z": np.int64(0)}}
+    first = simulate(scene(gap=1.0), duration=0.1, start=final).history.iloc[0]
+    assert [first["u.a"], first["v.a"], first["z.s"]] == [0.5, 0.1, 0.0]
 
 
 def test_a_memory_that_a_scene_cannot_begin_with_is_refused() -> None:

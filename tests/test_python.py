@@ -128,6 +128,7 @@ def test_a_response_with_further_runs_can_be_pickled(response: Response) -> None
     copy = pickle.loads(pickle.dumps(response))
     assert copy.quantity(f"velocity.{body}.abs_max") == value
     assert repr(copy) == repr(response)
+    assert response == response != copy
 
 
 def test_a_solver_of_ones_own_is_an_object() -> None:

@@ -394,6 +394,8 @@ def test_what_a_response_is_asked_wrongly(response: Response, tmp_path: Path) ->
         lambda: response.quantity("nope"),
         lambda: response.quantity(5),  # type: ignore[arg-type]
         lambda: response.rows("all"),  # type: ignore[arg-type]
+        lambda: response.at([[1.0]]),  # type: ignore[list-item]
+        lambda: response.at(np.array(["soon"])),
         lambda: response.plot(5),  # type: ignore[arg-type]
         lambda: eventpound.write(response, tmp_path / "file" / "below"),
         lambda: eventpound.plot(response, tmp_path, xlim=(2.0, 1.0)),

@@ -115,10 +115,12 @@ def _scene_of(path: Path) -> Case:
 
 def _sensitivities(options: Options, case: Case) -> dict[str, bytes]:
     """Compute, print and draw them; the files."""
+    from eventpound.results import check_writable
     from eventpound.results.cells import Cells, lines_of
     from eventpound.results.tables import table_csv
     from eventpound.study.sensitivities import PEAKS, sensitivities
 
+    check_writable(options.results)
     with Counter("runs") as progress:
         table = sensitivities(case, of=options.of or PEAKS, to=options.to, progress=progress)
     for name, part in table.groupby("quantity", sort=False):

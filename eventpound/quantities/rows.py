@@ -13,9 +13,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from eventpound.errors import AccuracyWarning
+from eventpound.errors import AccuracyWarning, InputError
 from eventpound.motion.base import Family, GroundMotion
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.periods import local_periods
 from eventpound.solvers.base import Recording, Task
 from eventpound.warned import warn_caller
@@ -25,11 +25,52 @@ Rerun = Callable[[Task], Recording]
 
 AGREEMENT = 1e-7
 """Part of its own size by which a number may still change when rows are doubled."""
+SIDES = "after", "before"
+"""Of an event, or of a jump of the ground: its row, and that of the last double before it."""
 ROWS_A_PERIOD = 80.0
 """Rows in the shortest period, at first."""
 FEWEST_ROWS, MOST_ROWS = 1000, 2_000_000
 _DOUBLINGS = 4
 _MOST_PIECES = 100_000
+
+
+def rows_at(task: Task, rerun: Rerun, t: Floats, side: str) -> tuple[Recording, Ints]:
+    """A run of a task with rows at some times, and which row of its history each time has.
+
+    Output times change no step of a solver, so that it is the same run.
+
+    Parameters
+    ----------
+    task : Task
+        What was asked.
+    rerun : callable
+        Runs a task.
+    t : ndarray, shape (n,)
+        Times (s).
+    side : str
+        ``"after"`` or ``"before"``: which row of an event, or of a jump of the ground.
+
+    Raises
+    ------
+    InputError
+        Where a time is not one of the run, or its solver has no row before an event.
+    """
+    if side not in SIDES:
+        raise InputError(f"side: found {side!r}; accepted: {' or '.join(map(repr, SIDES))}")
+    outside = t[(t < task.start) | (t > task.end)]
+    if outside.size or not t.size:
+        found = f"{outside[0]:.6g} s" if outside.size else "none"
+        within = f"times of the run, {task.start:.6g} to {task.end:.6g} s"
+        raise InputError(f"t: found {found}; accepted: {within}")
+    after = side == SIDES[0]
+    seen = t if after else np.maximum(np.nextafter(t, -np.inf), task.start)
+    run = rerun(replace(task, output_times=np.unique(np.concatenate([seen, t]))))
+    first, end = (np.searchsorted(run.history.t, t, way) for way in ("left", "right"))
+    inside = (end - first == 1) & np.isin(t, [event.t for event in run.events]) & (t > task.start)
+    if not after and inside.any():
+        at = f"'before' at {t[inside][0]:.6g} s, an event inside a step of the solver"
+        raise InputError(f"side: found {at}; accepted: 'after'")
+    return run, np.searchsorted(run.history.t, seen, "right" if after else "left") - int(after)
 
 
 def settled(

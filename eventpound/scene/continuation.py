@@ -7,19 +7,22 @@ of its own is the exception: while it is closed, its law remembers how it was st
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from eventpound.errors import InputError
+from eventpound.given import number
 from eventpound.scene.check import check_scene, starts_of_supports
 from eventpound.scene.contact import BARRIER, opening
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
+from eventpound.units import Dimension
 
 FinalState = Mapping[str, Mapping[str, float]]
 """As `eventpound.Response.final`: u and v of each body (m, m/s), z of each spring that has one."""
+_DIMENSIONS = {"u": Dimension.LENGTH, "v": Dimension.VELOCITY, "z": Dimension.NUMBER}
 _BEYOND = 0.1
 """Part of its bound by which z may exceed it at the end of a run of the largest tolerance."""
 
@@ -41,14 +44,11 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
     InputError
         Where a state is missing, is of something else or has no numbers, or contacts overlap.
     """
-    names = [*(body.name for body in scene.bodies), *scene.hysteretic_springs]
-    if others := [repr(name) for name in final if name not in names]:
-        accepted = f"states of {', '.join(names)}"
-        raise InputError(f"start: found a state of {', '.join(others)}; accepted: {accepted}")
-    bodies = []
-    for body in scene.bodies:
-        u, v = _numbers(final, body.name, ("u", "v"))
-        bodies.append(replace(body, displacement=u, velocity=v))
+    state = _read(scene, final)
+    bodies = [
+        replace(body, displacement=state[body.name]["u"], velocity=state[body.name]["v"])
+        for body in scene.bodies
+    ]
     springs = []
     for spring in scene.springs:
         law = spring.law
@@ -56,7 +56,7 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
             found = f"{spring.name!r} (law {law.word}), whose memory a scene cannot begin with"
             raise InputError(f"start: found {found}; accepted: Bouc-Wen springs and elastic ones")
         if isinstance(law, BoucWen):
-            (z,) = _numbers(final, spring.name, ("z",))
+            z = state[spring.name]["z"]
             # What a tolerance leaves beyond the bound is a spring that has yielded.
             within = float(np.clip(z, -law.bound, law.bound))
             law = replace(law, initial_z=within if abs(z - within) <= _BEYOND * law.bound else z)
@@ -67,14 +67,24 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
     return later
 
 
-def _numbers(final: FinalState, name: str, keys: Sequence[str]) -> list[float]:
-    """Numbers of a state."""
-    state = final.get(name)
-    found = [state.get(key) for key in keys] if isinstance(state, Mapping) else []
-    numbers = [float(v) for v in found if isinstance(v, float | int) and np.isfinite(v)]
-    if len(numbers) != len(keys):
-        raise InputError(f"start: {name}: found {state!r}; accepted: numbers {', '.join(keys)}")
-    return numbers
+def _read(scene: Scene, final: FinalState) -> dict[str, dict[str, float]]:
+    """The numbers of a state, all of them and no others."""
+    keys = {body.name: ["u", "v"] for body in scene.bodies}
+    for name in scene.hysteretic_springs:
+        keys.setdefault(name, []).append("z")
+    if others := [repr(name) for name in final if name not in keys]:
+        accepted = f"states of {', '.join(keys)}"
+        raise InputError(f"start: found a state of {', '.join(others)}; accepted: {accepted}")
+    found: dict[str, dict[str, float]] = {}
+    for name, wanted in keys.items():
+        state = final.get(name)
+        if not isinstance(state, Mapping) or set(state) != set(wanted):
+            accepted = f"numbers {', '.join(wanted)}"
+            raise InputError(f"start: {name}: found {state!r}; accepted: {accepted}")
+        found[name] = {
+            key: number(f"start: {name}: {key}", state[key], _DIMENSIONS[key]) for key in wanted
+        }
+    return found
 
 
 def _refuse_closed(scene: Scene, start: float) -> None:

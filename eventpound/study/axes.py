@@ -116,7 +116,7 @@ def _read_axis(table: Table, directory: Path) -> NumberAxis | WordAxis | None:
     elif table.has("values"):
         given = table.data["values"]
         if not isinstance(given, list) or not given:
-            table.reject("values", "a list")
+            table.reject("values", "a list with a value at least")
             return None
         values = given
     else:

@@ -165,7 +165,11 @@ def _with_derivatives(case: Case, of: Sequence[str]) -> list[Named]:
     """The quantities, none of which is a count."""
     if not of:
         raise InputError("of: found []; accepted: at least one quantity")
-    names = chosen(case.scene, of, case.run.stated)
+    try:
+        names = chosen(case.scene, of, case.run.stated)
+    except InputError as error:
+        problems = [problem.removeprefix("quantities: ") for problem in error.problems]
+        raise InputError([f"of: {problem}" for problem in problems]) from None
     found = [find(case.scene, name.removeprefix(FREE)) for name in names]
     named = [replace(n, name=name) for name, n in zip(names, found, strict=True) if n is not None]
     if counts := [n.name for n in named if n.quantity.kind is not float]:

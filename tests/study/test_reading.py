@@ -156,7 +156,7 @@ def axis(lines: str) -> str:
         (axis('key = "Q"\nvalues = [1]'), ["key: found 'Q'"]),
         (axis('key = "spring.0.strenght"\nvalues = [1]'), ["mean 'spring.0.strength'"]),
         (axis('key = "pi.uy.1"\nvalues = [1]'), ["uy.1"]),
-        (axis('key = "pi.epsilon"\nvalues = []'), ["values: found []"]),
+        (axis('key = "pi.epsilon"\nvalues = []'), ["values: found []; accepted: a list with"]),
         (axis('key = "pi.epsilon"\nvalues = ["1 s"]'), ["values", "'1 s'"]),
         (axis('key = "pi.epsilon"\nfrom = 0\nto = 1\ncount = 1'), ["count: found 1"]),
         (axis('key = "pi.uy"\nfrom = 0\nto = 1\ncount = 0'), ["count: found 0"]),

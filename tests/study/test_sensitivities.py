@@ -210,7 +210,7 @@ def test_without_contact_the_peak_of_a_swing_follows_its_speed_and_mass() -> Non
         ({"to": {"contact.c.restitution": 0.4}}, "to: contact.c.restitution: value -0.3"),
         ({"to": {"contact.c.gap": "-1 mm"}}, "to: contact.c.gap: step: found"),
         ({"of": ["impacts"]}, "of: 'impacts' is a count, and has no derivative"),
-        ({"of": ["peaks.b.max"]}, "quantities: found 'peaks.b.max'"),
+        ({"of": ["peaks.b.max"]}, "of: found 'peaks.b.max'"),
         ({"of": []}, "of: found []; accepted: at least one quantity"),
     ],
 )
@@ -230,6 +230,11 @@ def test_the_command_writes_the_table_and_a_tornado(
     assert (tmp_path / "sensitivities.png").stat().st_size > 0
     assert main([*words, "--of", "impacts", "--out", str(tmp_path / "none")]) == 2
     assert not (tmp_path / "none").exists()
+    capsys.readouterr()
+    # Before anything is run: the quantity is not looked at.
+    beyond = tmp_path / "sensitivities.csv" / "none"
+    assert main([*words, "--of", "impacts", "--out", str(beyond)]) == 2
+    assert "cannot be written to" in capsys.readouterr().err
 
 
 def test_a_tornado_has_a_bar_for_each_number_and_a_cross_where_there_is_no_derivative() -> None:
