@@ -51,6 +51,7 @@ if TYPE_CHECKING:
         Spring,
         Support,
     )
+    from eventpound.scene.modal_damping import modal_damping
     from eventpound.scene.modes import rayleigh, stiffness_proportional
     from eventpound.study.design import design_numbers
     from eventpound.study.many import simulate_many
@@ -96,6 +97,7 @@ __all__ = [
     "compare",
     "design_numbers",
     "load_case",
+    "modal_damping",
     "plot",
     "prepare",
     "rayleigh",
@@ -123,6 +125,7 @@ _MOTIONS = (
 )
 _HOME = {
     **dict.fromkeys(_MOTIONS, "motion"),
+    "modal_damping": "scene.modal_damping",
     "rayleigh": "scene.modes",
     "stiffness_proportional": "scene.modes",
     "compare": "accuracy.judged",

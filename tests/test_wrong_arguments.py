@@ -218,6 +218,10 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
         {"bodies": SCENE.bodies, "springs": SCENE.springs, "ratio": 0.05, "modes": (1, 1)},
         {THINGS: "bodies springs", NEEDED: "ratio", "BITLMOC": "modes periods"},
     ),
+    "modal_damping": (
+        {"bodies": SCENE.bodies, "springs": SCENE.springs, "ratio": 0.05},
+        {THINGS: "bodies springs", NEEDED: "ratio", TEXT: "base"},
+    ),
     "stiffness_proportional": (
         {
             "bodies": SCENE.bodies,

@@ -2,7 +2,8 @@
 
     body            NAME1, NAME2, ... from the bottom
     spring          storey-NAME1, ... between the ground or the floor below and the floor
-    [[rayleigh]]    C = a M + b K with one ratio at two of its modes
+    [[rayleigh]]    C = a M + b K with one ratio at two of its modes, or
+    [[modal_damping]]  a ratio in each mode
 
 A value is one for all storeys or a list, the lowest first. A yield force ``"0.15 W"`` is a part
 of the weight that its storey carries.
@@ -49,7 +50,8 @@ def with_buildings(document: Mapping[str, object], file: Path) -> Mapping[str, o
     top = Table(document, "", problems)
     if not top.has("building"):
         return document
-    parts: dict[str, list[object]] = {"body": [], "spring": [], "rayleigh": []}
+    kinds = ("body", "spring", "rayleigh", "modal_damping")
+    parts: dict[str, list[object]] = {kind: [] for kind in kinds}
     for table in top.tables("building"):
         for kind, tables in _expanded(table).items():
             parts[kind] += tables
@@ -93,10 +95,16 @@ def _expanded(table: Table) -> dict[str, list[object]]:
         {"name": end, "mass": mass} for end, mass in zip(ends[1:], masses, strict=True)
     ]
     found: dict[str, list[object]] = {"body": bodies, "spring": springs}
+    modal = table.has("damping") and table.choice("damping", ("rayleigh", "modal")) == "modal"
     if table.has("ratio"):
-        modes = table.data["modes"] if table.has("modes") else [1, min(2, storeys)]
-        damping = {"bodies": ends[1:], "ratio": table.data["ratio"], "modes": modes}
-        found["rayleigh"] = [damping]
+        damping: dict[str, object] = {"bodies": ends[1:], "ratio": table.data["ratio"]}
+        if modal and table.has("modes"):
+            table.reject("modes", 'none beside damping = "modal": its ratio holds in every mode')
+        elif not modal:
+            damping["modes"] = table.data["modes"] if table.has("modes") else [1, min(2, storeys)]
+        found["modal_damping" if modal else "rayleigh"] = [damping]
+    elif table.has("damping"):
+        table.report_missing("ratio", "the ratio of its damping")
     table.close()
     return found
 

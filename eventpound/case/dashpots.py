@@ -76,10 +76,11 @@ def read_dashpot(
 
 def given_ratios(tables: Iterable[Table]) -> list[tuple[str, float]]:
     """Damping ratios of tables without problems, each with what messages call its table."""
+    found = [(table.where, table.data["ratio"]) for table in tables if "ratio" in table.data]
     return [
-        (table.where, quantity(table.data["ratio"], Dimension.NUMBER))
-        for table in tables
-        if "ratio" in table.data
+        (where, quantity(ratio, Dimension.NUMBER))
+        for where, given in found
+        for ratio in (given if isinstance(given, list) else [given])
     ]
 
 

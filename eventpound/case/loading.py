@@ -13,6 +13,7 @@ from pathlib import Path
 
 from eventpound.case.building import with_buildings
 from eventpound.case.case import Case
+from eventpound.case.damping import read_damping
 from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, bare_accelerations, for_scene, read_excitation
@@ -24,8 +25,7 @@ from eventpound.case.options import (
     read_solver,
     to_be_placed,
 )
-from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_scales
-from eventpound.case.rayleigh import read_rayleigh
+from eventpound.case.pi import OF_SCENE, read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.spring_stiffness import masses_carried
 from eventpound.case.springs import read_springs
@@ -192,7 +192,10 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         raise InputError([f"{file}: {problem}" for problem in problems])
     warnings += support_warnings(scene, run.start_time + run.duration)
     if pi is None and scene.bodies:
-        ratios = given_ratios([*top.tables("dashpot"), *top.tables("rayleigh")])
+        damped = [
+            each for kind in ("dashpot", "rayleigh", "modal_damping") for each in top.tables(kind)
+        ]
+        ratios = given_ratios(damped)
         step = run.output_step if run_table.has("output_step") else None
         warnings += doubts(scene, step, ratios, bare_accelerations(document))
     return Case(
@@ -282,8 +285,7 @@ def _read_scene(
 
     What is wrong is added to the problems.
     """
-    kinds = ("body", "spring", "dashpot", "rayleigh", "contact", "support", "force")
-    tables = {kind: top.tables(kind) for kind in kinds}
+    tables = {kind: top.tables(kind) for kind in OF_SCENE}
     bodies = [read_body(table) for table in tables["body"]]
     masses = {body.name: body.mass for body in bodies}
     in_suite = excitation is not None and excitation.suite is not None
@@ -292,11 +294,12 @@ def _read_scene(
     held = [support.name for support in driven.supports]
     springs = read_springs(tables["spring"], masses, held)
     dashpots = [read_dashpot(table, masses, springs, held) for table in tables["dashpot"]]
-    rayleigh, warnings = read_rayleigh(tables["rayleigh"], bodies, springs, held)
+    groups = tables["rayleigh"], tables["modal_damping"]
+    of_groups, warnings = read_damping(*groups, bodies, springs, held)
     scene = Scene(
         tuple(bodies),
         springs,
-        (*dashpots, *rayleigh),
+        (*dashpots, *of_groups),
         read_contacts(tables["contact"]),
         NoMotion() if excitation is None else excitation.motion,
         driven.supports,
@@ -333,9 +336,10 @@ def _add_scene_problems(
             problems.append(CaseProblem("[excitation]", "", text))
             continue
         if problem.position > len(tables[problem.kind]):
-            # A dashpot of Rayleigh damping; wrong masses and coefficients were noted as such.
+            # A dashpot of a group; wrong masses and coefficients were noted as such.
             if not problems:
-                problems.append(CaseProblem("[[rayleigh]]", "", f"adds {problem}"))
+                where = "[[rayleigh]]" if tables["rayleigh"] else "[[modal_damping]]"
+                problems.append(CaseProblem(where, "", f"adds {problem}"))
             continue
         table = tables[problem.kind][problem.position - 1]
         if (table.where, problem.key) not in noted:

@@ -23,7 +23,10 @@ from eventpound.scene.scene import Scene
 from eventpound.units import Dimension
 
 _UNIT_SCALES = {"amplitude": 1.0, "period": 2.0 * math.pi}
-_NOT_BESIDE = ("body", "spring", "dashpot", "rayleigh", "contact", "support", "force")
+OF_SCENE = (
+    "body", "spring", "dashpot", "rayleigh", "modal_damping", "contact", "support", "force",
+)  # fmt: skip
+"""Tables of a scene in a case."""
 _OF_NEIGHBOURS = ("m", "omega_s", "uy", "Q")
 _PLACEHOLDER = Scene((Body("0", math.nan),))
 
@@ -61,7 +64,7 @@ def read_pi(top: Table) -> PiTable | None:
         None where there are problems; they are noted.
     """
     table = top.table("pi")
-    for kind in _NOT_BESIDE:
+    for kind in OF_SCENE:
         if top.has(kind):
             top.report(f"[[{kind}]]", "found beside [pi], which says the whole case; drop either")
     words = [kind.word for kind in Kind]

@@ -135,7 +135,7 @@ def _draw(
         ends = (box.x - 0.4, y), (box.x + 0.4, y)
         arrow(axes, *ends, arrowstyle="->", color=PALETTE[3], linewidth=1.2)
     if len(routes) < len(scene.springs) + len(scene.dashpots):
-        said = "dashpots from upper floors to the ground are not drawn"
+        said = "dashpots past a floor are not drawn"
         axes.text(0.5, 0.0, said, transform=axes.transAxes, ha="center", va="bottom", fontsize=6.5)
 
 

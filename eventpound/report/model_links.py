@@ -14,6 +14,7 @@ from eventpound.report.model_layout import HIGH, LEVEL, Box, Layout, kinked
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Spring
+from eventpound.scene.structures import joined_groups
 
 WALL = 1.25
 """From the side of a body to a wall."""
@@ -59,7 +60,8 @@ class LinkPath:
 def routes_of(scene: Scene, layout: Layout) -> list[LinkPath]:
     """Springs and dashpots of a scene on one ground, but for dashpots without a place.
 
-    Those are from a body above others to the ground, where no spring of it goes.
+    Those are from a body above others to the ground, where no spring of it goes, and between two
+    bodies of many that are all joined so (modal damping).
     """
     found = []
     for members in _bundles(scene, layout):
@@ -73,10 +75,13 @@ def routes_of(scene: Scene, layout: Layout) -> list[LinkPath]:
 def _bundles(scene: Scene, layout: Layout) -> Iterator[Sequence[Link]]:
     """Links beside each other, springs first."""
     found: dict[object, list[Link]] = {}
+    all_joined = _all_joined(scene)
     links: list[Link] = [*scene.springs, *scene.dashpots]
     for link in links:
         ends = frozenset(link.between)
         low = GROUND in ends and ends - {GROUND} <= layout.lowest
+        if isinstance(link, Dashpot) and ends in all_joined and ends not in found:
+            continue
         if GROUND not in ends or (low and not kinked(link)):
             key: object = ends
         elif isinstance(link, Spring):
@@ -88,6 +93,18 @@ def _bundles(scene: Scene, layout: Layout) -> Iterator[Sequence[Link]]:
             key = sides[0]
         found.setdefault(key, []).append(link)
     yield from found.values()
+
+
+def _all_joined(scene: Scene) -> set[frozenset[str]]:
+    """Pairs of bodies in structures of three or more of which dashpots join every two."""
+    names = [body.name for body in scene.bodies]
+    ends = [dashpot.between for dashpot in scene.dashpots if GROUND not in dashpot.between]
+    pairs, found = set(map(frozenset, ends)), set[frozenset[str]]()
+    for group in joined_groups(names, ends):
+        own = {pair for pair in pairs if pair <= set(group)}
+        if len(group) >= 3 and 2 * len(own) == len(group) * (len(group) - 1):
+            found |= own
+    return found
 
 
 def _corners(layout: Layout, link: Link, shift: float) -> tuple[Corner, ...]:

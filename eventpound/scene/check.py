@@ -15,9 +15,12 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.scene.contact import BARRIER, Contact, opening
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
+from eventpound.scene.grounded import grounded
+from eventpound.scene.periods import joined
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Backfill, BilinearElastic, BoucWen, Law, Linear
+from eventpound.tolerances import EPS
 
 _TINY = sys.float_info.min
 _Condition = Callable[[float], bool]
@@ -249,12 +252,28 @@ def _backfill_problems(element: _Element, law: Backfill) -> Iterator[Problem]:
 
 
 def _dashpot_problems(scene: Scene) -> Iterator[Problem]:
+    found = list[Problem]()
     for position, dashpot in enumerate(scene.dashpots, 1):
         element = _Element("dashpot", position)
-        yield from _end_problems(element, dashpot.between, scene, GROUND)
-        yield from element.number(
-            "coefficient", dashpot.coefficient, "a coefficient >= 0 (N s/m)", _not_negative
+        found += _end_problems(element, dashpot.between, scene, GROUND)
+        found += element.number("coefficient", dashpot.coefficient, "a coefficient (N s/m)")
+    yield from found
+    negative = [i for i, d in enumerate(scene.dashpots) if d.coefficient < 0.0]
+    if negative and not found and not _dissipates(scene):
+        accepted = (
+            "a coefficient >= 0 (N s/m); a negative one only where all dashpots together never "
+            "drive a motion"
         )
+        first = scene.dashpots[negative[0]].coefficient
+        yield _Element("dashpot", negative[0] + 1).problem("coefficient", first, accepted)
+
+
+def _dissipates(scene: Scene) -> bool:
+    """Whether the damping matrix is positive semidefinite, but for rounding."""
+    links = [(d.between, d.coefficient) for d in grounded(scene).dashpots]
+    matrix = joined([body.name for body in scene.bodies], links)
+    values = np.linalg.eigvalsh(matrix)
+    return bool(values[0] >= -values.size * EPS * values[-1])
 
 
 def starts_of_supports(scene: Scene, start: float) -> dict[str, float]:

@@ -20,7 +20,8 @@ class Dashpot:
     between : tuple of str
         Names of the first and the second end; one may be ``"ground"``.
     coefficient : float
-        c (N s/m), not negative; or a string with a unit, ``"1743 kN s/m"``.
+        c (N s/m), or a string with a unit, ``"1743 kN s/m"``. Negative only where all dashpots of
+        the scene together never drive a motion, as those of `eventpound.modal_damping`.
     """
 
     between: Given[tuple[str, str], Sequence[str]]

@@ -177,7 +177,7 @@ def _isolation_doubts(scene: Scene) -> Iterator[Doubt]:
             "isolation",
             f"body '{name}': a dashpot joins it to the ground past the springs that yield below "
             "it: it damps the isolated mode, which no storey does; usual are dashpots beside "
-            "the storeys ([[rayleigh]] springs)",
+            "the storeys ([[rayleigh]] springs, or [[modal_damping]] on a base)",
         )
 
 

@@ -43,8 +43,15 @@ def worst_variants(scene: Scene, values: Mapping[Place, Floats], count: int) -> 
     for place, column in values.items():
         if place.kind == "spring" and place.field in WITHIN_BOUND:
             shapes.setdefault(place.index, []).append(column)
+        elif place.kind == "dashpot" and (column.min() < 0.0 or _any_negative(scene)):
+            shapes.setdefault(-1, []).append(column)
     rows += [distinct(columns, count)[0] for columns in shapes.values()]
     return np.unique(np.concatenate(rows))
+
+
+def _any_negative(scene: Scene) -> bool:
+    """Whether its dashpots are accepted only together."""
+    return any(dashpot.coefficient < 0.0 for dashpot in scene.dashpots)
 
 
 def _penetrated(scene: Scene, values: Mapping[Place, Floats], count: int) -> np.ndarray:
@@ -109,4 +116,6 @@ class KnownRanges:
             return False
         if place.field == "gap":
             return value + self._openings[place.index] >= 0.0
+        if place.kind == "dashpot":
+            return min(value, low) >= 0.0 and not _any_negative(self._scene)
         return place.kind != "spring" or place.field not in WITHIN_BOUND

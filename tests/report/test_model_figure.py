@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
+from eventpound import modal_damping
 from eventpound.case import load_case
 from eventpound.cli import main
 from eventpound.report.law_panel import laws_of
@@ -290,3 +291,15 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         assert main(["plot", "--model", str(CASES / name), "--out", str(tmp_path / name)]) == 0
         assert capsys.readouterr().out.strip() == str(tmp_path / name / "model.png")
         assert (tmp_path / name / "model.png").stat().st_size > 5000
+
+
+def test_dashpots_of_modal_damping_are_drawn_beside_springs_alone() -> None:
+    springs = storeys("A", 4)
+    bodies = tuple(Body(spring.between[1], 1.0) for spring in springs)
+    scene = Scene(bodies, tuple(springs), modal_damping(bodies, springs, 0.05))
+    drawn = [r.link.between for r in routes_of(scene, layout_of(scene)) if r.link not in springs]
+    assert sorted(drawn) == sorted(spring.between for spring in springs)
+    # A damper across two storeys is no modal damping.
+    damper = Dashpot(("A1", "A3"), 1.0)
+    routes = routes_of(Scene(bodies, tuple(springs), (damper,)), layout_of(scene))
+    assert damper in [route.link for route in routes]

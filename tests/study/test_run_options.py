@@ -136,8 +136,13 @@ def cells() -> dict[tuple[str, str], str]:
     """What the page says of each option in each way to run."""
     page = (ROOT / "docs" / "case-format.md").read_text()
     table = page.partition("| option | `run` |")[2].partition("\n\n")[0].splitlines()
-    rows = [[cell.strip(" `") for cell in line.strip("|").split("|")] for line in table[2:]]
-    return {(r[0], w): word for r in rows for w, word in zip(WAYS, r[1:], strict=True)}
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table[2:]]
+    return {
+        (option, way): word
+        for options, *words in rows
+        for option in re.findall(r"\w+", options)
+        for way, word in zip(WAYS, words, strict=True)
+    }
 
 
 CELLS = cells()

@@ -57,6 +57,11 @@ def elements_of(scene: Scene, model: Model, choice: ContactChoice, step: float) 
     """
     problems = [problem for spring in scene.springs for problem in _problems(spring, scene)]
     problems += _law_problems(scene, model)
+    problems += [
+        f"dashpot {' - '.join(d.between)}: its Viscous material is not negative"
+        for d in scene.dashpots
+        if d.coefficient < 0.0
+    ]
     if problems:
         raise InputError([f"solver = 'opensees': {problem}" for problem in problems])
     ends = [(int(first) + 2, int(second) + 2) for first, second in model.link_ends]
@@ -67,7 +72,7 @@ def elements_of(scene: Scene, model: Model, choice: ContactChoice, step: float) 
     found += [
         ZeroLength(*ends[i], ("Viscous", float(c), 1.0))
         for i, c in enumerate(model.law.damping)
-        if c > 0.0
+        if c != 0.0
     ]
     for j, contact in enumerate(scene.contacts):
         sides = [int(side[j]) for side in (model.left, model.right)]

@@ -150,3 +150,9 @@ def test_scenes_that_are_refused(law, bodies, message):
     )  # fmt: skip
     with pytest.raises(InputError, match=f"solver = 'opensees': spring s: .*{message}"):
         _elements(scene)
+
+
+def test_a_negative_dashpot_is_refused():
+    scene = _scene(dashpots=(Dashpot((GROUND, "a"), 0.5), Dashpot(("a", "b"), -0.1)))
+    with pytest.raises(InputError, match="dashpot a - b: its Viscous material is not negative"):
+        _elements(scene)

@@ -1,7 +1,8 @@
-"""``[[rayleigh]]``: damping of a group of bodies, or of springs by their names.
+"""``[[rayleigh]]`` and ``[[modal_damping]]``: damping of groups of bodies, or of named springs.
 
 A group of ``bodies`` has C = a M + b K, K of the springs between them and to the ground;
 ``springs`` that are named have C = b K of these alone, such as the storeys on isolators.
+Modal damping of a group is `eventpound.scene.modal_damping`.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from eventpound.scene.damping import (
 )
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import ends_on_ground
+from eventpound.scene.modal_damping import modal_dashpots, springs_on
 from eventpound.scene.modes import coefficient_at_mode, modes_of
 from eventpound.scene.periods import nominal_stiffness
 from eventpound.scene.scene import Scene
@@ -30,17 +32,18 @@ from eventpound.scene.spring import GROUND, Spring
 from eventpound.units import Dimension, quantity
 
 
-def read_rayleigh(
-    tables: Sequence[Table],
+def read_damping(
+    rayleigh: Sequence[Table],
+    modal: Sequence[Table],
     bodies: Sequence[Body],
     springs: Sequence[Spring],
     supports: Sequence[str] = (),
 ) -> tuple[tuple[Dashpot, ...], list[str]]:
-    """Dashpots from the ``[[rayleigh]]`` tables.
+    """Dashpots from the ``[[rayleigh]]`` and ``[[modal_damping]]`` tables.
 
     Parameters
     ----------
-    tables : sequence of Table
+    rayleigh, modal : sequence of Table
         One a group.
     bodies, springs : sequence
         Those of the scene.
@@ -61,23 +64,28 @@ def read_rayleigh(
     ]
     dashpots: list[Dashpot] = []
     warnings: list[str] = []
-    for table in tables:
-        if table.has("springs"):
+    for table in [*rayleigh, *modal]:
+        key = "bodies"
+        if table in modal:
+            group = _read_group(table, bodies, taken)
+            beside, made = _read_modal(table, group, bodies, springs, supports)
+            dashpots += made
+        elif table.has("springs"):
             key, beside = "springs", _read_springs(table, springs)
             b = _read_stiffness_coefficient(table, beside, bodies, standing)
             dashpots += () if math.isnan(b) else dashpots_beside(beside, b)
         else:
-            key, group = "bodies", _read_group(table, bodies, taken)
+            group = _read_group(table, bodies, taken)
             a, b = _read_coefficients(table, group, standing)
             ground = _ground_of(table, supports)
             beside = springs_of_group([body.name for body in group], standing) if b > 0.0 else []
             if not math.isnan(a + b):
                 dashpots += rayleigh_dashpots(group, springs, a, b, supports, ground)
-            warnings += [
-                f"{table.where}: spring '{spring.name}' has a kink and is given no damping"
-                for spring in beside
-                if initial_stiffness(spring.law) is None
-            ]
+        warnings += [
+            f"{table.where}: spring '{spring.name}' has a kink and is given no damping"
+            for spring in beside
+            if initial_stiffness(spring.law) is None
+        ]
         table.close()
         names = dict.fromkeys(spring.name for spring in beside)
         for name in names.keys() & damped:
@@ -138,6 +146,55 @@ def _read_stiffness_coefficient(
     except InputError as error:
         table.report("mode", str(error))
         return math.nan
+
+
+def _read_modal(
+    table: Table,
+    group: Sequence[Body],
+    bodies: Sequence[Body],
+    springs: Sequence[Spring],
+    supports: Sequence[str],
+) -> tuple[list[Spring], tuple[Dashpot, ...]]:
+    """Springs of a group with modal damping, and its dashpots; none where something is wrong."""
+    names = [body.name for body in group]
+    others = [body.name for body in bodies if body.name not in names]
+    base, ratios = GROUND, _read_ratios(table, len(group))
+    if table.has("base"):
+        base = table.text("base", "what the bodies stand on")
+        if base not in (GROUND, *supports, *others):
+            table.reject("base", f"one of {', '.join([GROUND, *supports, *others])}")
+            return [], ()
+    beside = springs_on(names, springs, {GROUND, base, *supports})
+    usable = all(body.mass > 0.0 for body in group) and all(
+        nominal_stiffness(spring) >= 0.0 for spring in beside
+    )
+    if not (ratios and usable):
+        # What is wrong is said where it stands.
+        return beside, ()
+    try:
+        return beside, modal_dashpots(group, springs, ratios, base, supports)
+    except InputError as error:
+        table.report("bodies", str(error).removeprefix("bodies: "))
+        return beside, ()
+
+
+def _read_ratios(table: Table, modes: int) -> list[float]:
+    """Ratios of the lowest modes of a group; empty where they are wrong."""
+    if not table.has("ratio"):
+        table.report_missing("ratio", "a ratio, or a list of one for each mode")
+        return []
+    given = table.data["ratio"]
+    try:
+        found = [
+            quantity(r, Dimension.NUMBER) for r in (given if isinstance(given, list) else [given])
+        ]
+    except InputError as error:
+        table.report("ratio", str(error))
+        return []
+    if not (0 < len(found) <= max(modes, 1) and min(found) >= 0.0):
+        table.reject("ratio", f"a ratio that is not negative, or a list of at most {modes}")
+        return []
+    return found
 
 
 def _ground_of(table: Table, supports: Sequence[str]) -> str:
