@@ -157,6 +157,10 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
     if len(given) > 1:
         table.reject(given[-1] if given[-1] != "pga" else "scale", f"one of {', '.join(_WAYS)}")
         return None
+    if not table.has("psa"):
+        for key in ("psa_period", "psa_damping"):
+            if table.has(key):
+                table.reject(key, "a psa beside it")
     if psa is not None and period is None:
         table.report_missing("psa_period", 'the period of psa (s), or "T1" for that of the scene')
         return None

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from eventpound.case import Case
-    from eventpound.response import Response
+    from eventpound.study.design import Made
 
 _FOLDER, REPORT, PRINTED = "design", "design.html", "design.pdf"
 
@@ -60,84 +60,72 @@ def _design(options: Options) -> int:
         table = _of_study(options, out)
         print(f"design    {len(table)} rows: each demand at each combination of the axes")
     else:
-        case, runs = arguments.load(options.case, options.suite), None
+        case = arguments.load(options.case, options.suite)
         arguments.check_solver_of(case)
-        if case.suite is None:
-            table, response = _of_run(case, out)
-        else:
-            case, table, runs = _of_suite(case, out)
-            response = None
-        print("\n".join(_lines(case, table)))
+        made = _of_run(case, out) if case.suite is None else _of_suite(case, out)
+        assert made.case is not None
+        table = made.table
+        print("\n".join(_lines(made.case, table)))
         if not options.no_report:
-            report = _report(case, table, runs, response)
+            report = _report(made)
     arguments.write(out, {DESIGN_TABLE: table_csv(table)} | report)
     return 0
 
 
-def _report(
-    case: Case, table: pd.DataFrame, runs: pd.DataFrame | None, response: Response | None
-) -> dict[str, bytes]:
+def _report(made: Made) -> dict[str, bytes]:
     """The two sheets, as HTML and PDF; of a suite with the motion under the governing record."""
     from eventpound.report.design_report import Told, design_sheets, governing_record, motion_under
     from eventpound.report.sheets import as_html, as_pdf
 
     say("draw the report")
-    record = ""
+    case, response, record = made.case, made.response, ""
+    assert case is not None
     if response is None:
-        record = governing_record(case.scene, table)
+        record = governing_record(case.scene, made.table)
         response = motion_under(case, record)
-    sheets = design_sheets(Told(case, table, runs, response, record))
+    sheets = design_sheets(Told(case, made.table, made.runs, response, record))
     return {REPORT: as_html(case.title, sheets), PRINTED: as_pdf(case.title, sheets)}
 
 
-def _of_run(case: Case, out: Path) -> tuple[pd.DataFrame, Response]:
+def _of_run(case: Case, out: Path) -> Made:
     """Run a case, and what its design numbers need."""
     from eventpound import results
-    from eventpound.simulation import simulate
-    from eventpound.study.design import asking, design_of_run
+    from eventpound.study.design import made_of_run
 
     results.check_writable(out)
     forecast = Forecast(case.run.start_time, case.run.start_time + case.run.duration)
     with Progress(case, forecast) as progress, Watch(None, progress) as watch:
-        response = simulate(asking(case), progress=watch)
-        progress.begins("again, without contacts")
-        table = design_of_run(response)
-    results.write(response, out, case=case)
-    return table, response
+        made = made_of_run(case, watch, lambda: progress.begins("again, without contacts"))
+    assert made.response is not None
+    results.write(made.response, out, case=case)
+    return made
 
 
-def _of_suite(case: Case, out: Path) -> tuple[Case, pd.DataFrame, pd.DataFrame]:
-    """Run a case under every record, and what its design numbers need; it as run, all runs."""
-    from eventpound.study import suite
-    from eventpound.study.design import asking, design_of_suite
-    from eventpound.study.table import SUITE_TABLE, read_table
+def _of_suite(case: Case, out: Path) -> Made:
+    """Run a case under every record; those that failed are named."""
+    from eventpound.study.design import made_of_suite
 
-    plan, case = suite.plan_of(asking(case), None, None, None, intensities=True)
     with _going_on(), Counter("records") as progress:
-        suite.run_suite(plan, case, out, progress)
-    table = read_table(out, SUITE_TABLE)
-    for record, why in zip(table["record"], table["failed"], strict=True):
+        made = made_of_suite(case, out, progress)
+    assert made.runs is not None
+    for record, why in zip(made.runs["record"], made.runs["failed"], strict=True):
         if why:
             print(f"eventpound: {record} failed, and is left out: {why}", file=sys.stderr)
-    return case, design_of_suite(table, case), table
+    return made
 
 
 def _of_study(options: Options, out: Path) -> pd.DataFrame:
-    """Make the runs of a study, and what its design numbers need."""
-    from eventpound.study.design import design_of_study, plan_asking
-    from eventpound.study.engines.local import engine_of
-    from eventpound.study.running import run_study
-    from eventpound.study.table import read_table
+    """Make the runs of a study; how many failed is said."""
+    from eventpound.study.design import made_of_study
 
-    plan = plan_asking(arguments.load_study(options.case).study)
+    plan = arguments.load_study(options.case).study
     with _going_on(), StudyProgress(plan.size) as progress:
-        run_study(plan, out, engine_of(plan.solver, None), progress)
-    table = read_table(out)
-    if failed := int((~table["success"]).sum()):
-        print(
-            f"eventpound: {failed} of {len(table)} runs failed, and are left out", file=sys.stderr
-        )
-    return design_of_study(table, plan)
+        made = made_of_study(plan, out, progress)
+    assert made.runs is not None
+    if failed := int((~made.runs["success"]).sum()):
+        said = f"{failed} of {len(made.runs)} runs failed, and are left out"
+        print(f"eventpound: {said}", file=sys.stderr)
+    return made.table
 
 
 @contextmanager

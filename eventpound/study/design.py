@@ -9,7 +9,7 @@ stands for each combination of its axes.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -28,7 +28,7 @@ from eventpound.simulation import simulate
 from eventpound.study.engines.local import engine_of
 from eventpound.study.plan import RECORD, Plan
 from eventpound.study.records import FAILED
-from eventpound.study.running import run_study
+from eventpound.study.running import Progress, run_study
 from eventpound.study.study import Study
 from eventpound.study.suite import plan_of, run_suite
 from eventpound.study.table import SUCCESS, SUITE_TABLE, read_table
@@ -132,25 +132,76 @@ def design_numbers(
     ComputationError
         Where a single run fails, or all records of a suite; one that failed is left out.
     """
-    if isinstance(case, Scene):
-        response = simulate(case)
-        return design_of_run(response)
-    if isinstance(case, Case) and case.suite is None:
-        return design_of_run(simulate(asking(case)))
+    if isinstance(case, Scene) or (isinstance(case, Case) and case.suite is None):
+        return made_of_run(case).table
     with TemporaryDirectory() as scratch:
         out = Path(scratch if folder is None else folder)
         if isinstance(case, Case):
-            plan, own = plan_of(asking(case), None, None, None, intensities=True)
-            run_suite(plan, own, out, progress, workers=workers)
-            return design_of_suite(read_table(out, SUITE_TABLE), own)
-        plan = plan_asking(case.plan)
+            return made_of_suite(case, out, progress, workers).table
+        size = case.plan.size
 
         def told(done: int, before: int) -> None:
             if progress is not None:
-                progress(before + done, plan.size)
+                progress(before + done, size)
 
-        run_study(plan, out, engine_of(plan.solver, None), told)
-        return design_of_study(read_table(out), plan)
+        return made_of_study(case.plan, out, told).table
+
+
+@dataclass(frozen=True)
+class Made:
+    """Design numbers, with what they come from.
+
+    Parameters
+    ----------
+    table : DataFrame
+        A row a demand.
+    case : Case or None
+        As it was run; None of a scene and of a study.
+    response : Response or None
+        Of a run.
+    runs : DataFrame or None
+        The table of all runs, of a suite or a study.
+    """
+
+    table: pd.DataFrame
+    case: Case | None = None
+    response: Response | None = None
+    runs: pd.DataFrame | None = None
+
+
+def made_of_run(
+    case: Case | Scene,
+    progress: Callable[[float], None] | None = None,
+    again: Callable[[], None] | None = None,
+) -> Made:
+    """Run a case once, then what its design numbers need; `again` is called in between."""
+    asked = case if isinstance(case, Scene) else asking(case)
+    response = simulate(asked, progress=progress)
+    if again is not None:
+        again()
+    table = design_of_run(response)
+    return Made(table, None if isinstance(case, Scene) else case, response)
+
+
+def made_of_suite(
+    case: Case,
+    out: Path,
+    progress: Callable[[int, int], None] | None = None,
+    workers: int | None = None,
+) -> Made:
+    """Run a case under every record, with what its design numbers need."""
+    plan, own = plan_of(asking(case), None, None, None, intensities=True)
+    run_suite(plan, own, out, progress, workers=workers)
+    runs = read_table(out, SUITE_TABLE)
+    return Made(design_of_suite(runs, own), own, runs=runs)
+
+
+def made_of_study(plan: Plan, out: Path, progress: Progress | None = None) -> Made:
+    """Make the runs of a study, with what its design numbers need."""
+    plan = plan_asking(plan)
+    run_study(plan, out, engine_of(plan.solver, None), progress)
+    runs = read_table(out)
+    return Made(design_of_study(runs, plan), runs=runs)
 
 
 def design_of_run(response: Response) -> pd.DataFrame:

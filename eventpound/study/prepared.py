@@ -46,7 +46,8 @@ def prepare(
     Parameters
     ----------
     case : Case or Scene
-        What moves, with the numbers that a run does not change.
+        What moves, with the numbers that a run does not change. A record with
+        ``psa_period = "T1"`` is scaled at the period that the numbers of each run make.
     solver : str or Solver, optional
         As of `simulate`.
     rtol : float, optional

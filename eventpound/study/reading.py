@@ -36,6 +36,7 @@ from eventpound.ways import Way, without_effect, without_part
 _Document = Mapping[str, object]
 _OF_STUDY = ("study", "figure", "intensity")
 _OVERRIDES = ("excitation", "pi", "run", "solver", "body", "spring", "dashpot", "contact")
+_PSA = "excitation.psa"
 
 
 @dataclass(frozen=True)
@@ -209,7 +210,7 @@ def _bases(
     whole = {**document, **whole}
     for values in product(*(axis.values for axis in words)):
         labels = dict(zip((axis.key for axis in words), values, strict=True))
-        worded = _with_first_terms(_with_words(whole, labels), numbers)
+        worded = _with_first_values(_with_words(whole, labels), numbers)
         run = worded.get("run")
         own = isinstance(run, dict) and "duration" in run
         case = read_case(worded, file, source_hash)
@@ -231,12 +232,13 @@ def _with_words(document: _Document, words: Mapping[str, object]) -> dict[str, o
     return changed
 
 
-def _with_first_terms(document: _Document, axes: Sequence[NumberAxis]) -> _Document:
-    """A case in Π-terms with the first values of its axes in it."""
-    pi = document.get("pi")
-    if not isinstance(pi, dict):
-        return document
-    first = {
-        axis.key.removeprefix(PI): float(axis.values[0]) for axis in axes if axis.key.startswith(PI)
-    }
-    return {**document, "pi": {**pi, **first}}
+def _with_first_values(document: _Document, axes: Sequence[NumberAxis]) -> _Document:
+    """A case with the first values of axes in it that it cannot be read without."""
+    firsts = {axis.key: float(axis.values[0]) for axis in axes}
+    pi, motion = document.get("pi"), document.get("excitation")
+    if isinstance(pi, dict):
+        terms = {key.removeprefix(PI): v for key, v in firsts.items() if key.startswith(PI)}
+        document = {**document, "pi": {**pi, **terms}}
+    if isinstance(motion, dict) and _PSA in firsts:
+        document = {**document, "excitation": {"psa": firsts[_PSA], **motion}}
+    return document

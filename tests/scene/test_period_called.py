@@ -134,6 +134,17 @@ def test_what_a_case_may_not_call_it(tmp_path: Path, at: str, said: str) -> None
         load_case(written(tmp_path, 'file = "a.txt"', at))
 
 
+@pytest.mark.parametrize("key", ["psa_period", "psa_damping"])
+def test_what_belongs_to_a_psa_is_refused_without_one(tmp_path: Path, key: str) -> None:
+    folder = written(tmp_path, 'file = "a.txt"')
+    text = (folder / "case.toml").read_text()
+    kept = [line for line in text.splitlines() if not line.startswith("psa")]
+    at = kept.index('file = "a.txt"') + 1
+    (folder / "case.toml").write_text("\n".join([*kept[:at], f"{key} = 0.1", *kept[at:]]))
+    with pytest.raises(InputError, match=rf"{key}: found 0\.1; accepted: a psa beside it"):
+        load_case(folder)
+
+
 def test_a_support_has_no_period_of_its_own(tmp_path: Path) -> None:
     own = '{ kind = "record", file = "b.txt", units = "g", psa = 1, psa_period = "T1" }'
     more = f'[[support]]\nname = "far"\nexcitation = {own}\n'
