@@ -12,7 +12,7 @@ import numpy as np
 
 from eventpound.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.case.case import DEFAULTS, Stated
-from eventpound.errors import InputError
+from eventpound.errors import EventpoundError, InputError
 from eventpound.given import checked, number
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
@@ -22,6 +22,8 @@ from eventpound.quantities.between import Between
 from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_of
 from eventpound.quantities.owners import owners
 from eventpound.quantities.rows import rows_at, settled, warn_unsettled
+from eventpound.quantities.shocks import shocks_of
+from eventpound.scene.continuation import FinalState, continued, state_of
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.pi_terms import pi_terms
 from eventpound.scene.scene import Scene
@@ -149,6 +151,27 @@ class Response:
         return {name: self.quantity(name) for name in dict.fromkeys(names)}
 
     @cached_property
+    def shocks(self) -> pd.DataFrame:
+        """Each record of a sequence by itself, one row a shock; of one record none.
+
+        Every shock is run from the state in which this run has it begin up to the beginning of
+        the next. Columns shock (from 1), start and end (s), failed (why it could not be run), then
+        what `summary` holds.
+        """
+        import pandas as pd
+
+        rows: list[dict[str, object]] = []
+        for task, state in shocks_of(self.task, self._rerun):
+            row: dict[str, object] = {"shock": len(rows) + 1, "start": task.start, "end": task.end}
+            try:
+                scene = self.scene if state is None else continued(self.scene, state, task.start)
+                row |= {"failed": "", **self._of_task(replace(task, scene=scene)).numbers()}
+            except EventpoundError as error:
+                row["failed"] = str(error)
+            rows.append(row)
+        return pd.DataFrame(rows)
+
+    @cached_property
     def without_contact(self) -> Response:
         """The same run of the scene with nothing that can touch.
 
@@ -168,9 +191,10 @@ class Response:
 
     def _of_scene(self, scene: Scene) -> Response:
         """The same run of another scene."""
-        task = replace(self.task, scene=scene)
-        recording = self._rerun(task)
-        return replace(self, task=task, recording=recording, error_estimate=None, stated=DEFAULTS)
+        return replace(self._of_task(replace(self.task, scene=scene)), stated=DEFAULTS)
+
+    def _of_task(self, task: Task) -> Response:
+        return replace(self, task=task, recording=self._rerun(task), error_estimate=None)
 
     @cached_property
     def _motion_between(self) -> Between:
@@ -445,16 +469,10 @@ class Response:
         return f"<p>{escape(repr(self))}</p>" + "".join(t.to_html() for t in tables)
 
     @property
-    def final(self) -> Mapping[str, Mapping[str, float]]:
+    def final(self) -> FinalState:
         """Final state: {body: {u, v}, spring: {z}} (m, m/s, -)."""
         r = self.recording
-        state: dict[str, dict[str, float]] = {
-            body.name: {"u": float(r.u[i]), "v": float(r.v[i])}
-            for i, body in enumerate(self.scene.bodies)
-        }
-        for i, name in enumerate(self.scene.hysteretic_springs):
-            state.setdefault(name, {})["z"] = float(r.z[i])
-        return state
+        return state_of(self.scene, r.u, r.v, r.z)
 
     @property
     def impacts(self) -> int:

@@ -24,6 +24,7 @@ from eventpound.motion import (
     Ricker,
 )
 from eventpound.motion.pulse_fit import PULSES
+from eventpound.motion.sequence import in_sequence
 from eventpound.scene.periods import period_called
 from eventpound.scene.scene import Scene
 from eventpound.units import Dimension
@@ -168,10 +169,26 @@ def _read_record(table: Table, directory: Path) -> Excitation | None:
         # What matches nothing is wrong with the case, and found before anything runs.
         suite.members(directory)
         return Excitation(NoMotion(), understood_suite(suite), suite=suite)
+    if isinstance(table.data.get("file"), list):
+        return _read_sequence(table, directory, options)
     file = table.text("file", "the file of a record")
     if not file or options is None:
         return None
     return record_excitation(file, find_record(file, directory), options)
+
+
+def _read_sequence(
+    table: Table, directory: Path, options: RecordOptions | None
+) -> Excitation | None:
+    """Records one after the other, ``file`` a list of them."""
+    files = table.texts("file", "the file of a record, or a list of files")
+    rest = table.quantity("rest", Dimension.TIME)
+    table.require("rest", not rest <= 0.0, "a positive time between the records of a list (s)")
+    if not files or options is None or not rest > 0.0:
+        return None
+    data = in_sequence([options.read(find_record(file, directory)) for file in files], rest)
+    said = {"file": list(files), "rest": rest, **options.said(), **options.understood()}
+    return Excitation(options.motion(data), {"kind": "record", **said}, data)
 
 
 def record_excitation(file: str, path: Path, options: RecordOptions) -> Excitation:

@@ -248,7 +248,8 @@ def read_suite(table: Table, options: RecordOptions | None) -> Suite | None:
 
 def with_suite(excitation: Mapping[str, object], pattern: str) -> dict[str, object]:
     """``[excitation]`` with the records of a pattern in the place of its own."""
-    kept = {k: v for k, v in excitation.items() if k not in ("file", "suite", "synthetic")}
+    own = ("file", "rest", "suite", "synthetic")
+    kept = {k: v for k, v in excitation.items() if k not in own}
     return {**kept, "suite": pattern}
 
 

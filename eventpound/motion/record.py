@@ -143,6 +143,12 @@ class Record:
         return self.start + self.time_step * np.arange(self.samples.size, dtype=np.float64)
 
     @property
+    def begins(self) -> Floats:
+        """When the records of a sequence begin (s); of one record none."""
+        begins = () if self.source is None else self.source.begins
+        return self.start + self.time_step * np.array(begins, dtype=np.float64)
+
+    @property
     def factor(self) -> float:
         """What the samples are multiplied by."""
         factor = self.scale

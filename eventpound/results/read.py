@@ -22,7 +22,8 @@ from eventpound.results.summary import summarise
 if TYPE_CHECKING:
     import pandas as pd
 
-HISTORY, EVENTS, MANIFEST = "history.csv", "events.csv", "manifest.json"
+HISTORY, EVENTS, SHOCKS = "history.csv", "events.csv", "shocks.csv"
+MANIFEST = "manifest.json"
 
 
 @dataclass(frozen=True)

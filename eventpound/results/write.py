@@ -12,9 +12,9 @@ from eventpound.response import EVENT_COLUMNS, Response
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import describe_run, sha256
-from eventpound.results.read import EVENTS, HISTORY, MANIFEST, SUMMARY
+from eventpound.results.read import EVENTS, HISTORY, MANIFEST, SHOCKS, SUMMARY
 from eventpound.results.summary import summarise
-from eventpound.results.tables import rows_csv
+from eventpound.results.tables import rows_csv, table_csv
 
 
 @checked
@@ -27,6 +27,8 @@ def write(
     started: datetime | None = None,
 ) -> None:
     """Write history.csv, events.csv, summary.json and manifest.json, all or none.
+
+    Of a sequence of records shocks.csv, too.
 
     A run that ended before its time is written too: ``success`` of the summary
     and ``complete`` of the manifest are then false.
@@ -57,6 +59,8 @@ def write(
         EVENTS: rows_csv([EVENT_COLUMNS, *response.event_rows()]),
         SUMMARY: to_json(summarise(response, error_estimate)),
     }
+    if response.success and not (shocks := response.shocks).empty:
+        contents[SHOCKS] = table_csv(shocks)
     hashes = {name: sha256(content) for name, content in contents.items()}
     contents[MANIFEST] = to_json(describe_run(response, case, started) | {"files": hashes})
     write_together(directory, contents)

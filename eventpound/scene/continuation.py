@@ -14,6 +14,7 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.given import number
+from eventpound.numerics.arrays import Floats
 from eventpound.scene.check import check_scene, starts_of_supports
 from eventpound.scene.contact import BARRIER, opening
 from eventpound.scene.scene import Scene
@@ -25,6 +26,16 @@ FinalState = Mapping[str, Mapping[str, float]]
 _DIMENSIONS = {"u": Dimension.LENGTH, "v": Dimension.VELOCITY, "z": Dimension.NUMBER}
 _BEYOND = 0.1
 """Part of its bound by which z may exceed it at the end of a run of the largest tolerance."""
+
+
+def state_of(scene: Scene, u: Floats, v: Floats, z: Floats) -> FinalState:
+    """The state of a scene: u (m) and v (m/s), shape (N,), and z, shape (H,)."""
+    state: dict[str, dict[str, float]] = {
+        body.name: {"u": float(u[i]), "v": float(v[i])} for i, body in enumerate(scene.bodies)
+    }
+    for i, name in enumerate(scene.hysteretic_springs):
+        state.setdefault(name, {})["z"] = float(z[i])
+    return state
 
 
 def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:

@@ -43,6 +43,8 @@ class RecordData:
         As the header has them.
     notes : tuple of str
         What was passed over, removed or found odd in reading.
+    begins : tuple of int
+        Samples at which the records of a sequence begin; of one record none.
     """
 
     acceleration: Floats
@@ -56,6 +58,7 @@ class RecordData:
     component: str | None = None
     date: str | None = None
     notes: tuple[str, ...] = ()
+    begins: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
