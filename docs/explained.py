@@ -1,4 +1,4 @@
-"""Pictures of docs/contact.md and of backfill in docs/case-format.md, from a few short runs.
+"""Pictures of docs/contact.md, docs/sensitivities.md and of backfill in docs/case-format.md.
 
 `python docs/explained.py` draws them.
 """
@@ -13,6 +13,7 @@ import numpy as np
 
 import eventpound
 from eventpound import ContactLaw
+from eventpound.report.tornado import tornado_figure
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "explained"
@@ -94,6 +95,13 @@ def backfill() -> None:
     _save(figure, "backfill.png")
 
 
+def tornado() -> None:
+    """What the opening of the joint of a bridge depends on."""
+    case = eventpound.load_case(HERE.parent / "cases" / "bridge-el-centro")
+    table = eventpound.sensitivities(case, of=["contacts.joint.largest_gap"])
+    _save(tornado_figure(table, case.title), "tornado.png")
+
+
 def _save(figure: plt.Figure, name: str) -> None:
     FOLDER.mkdir(exist_ok=True)
     figure.savefig(FOLDER / name)
@@ -104,3 +112,4 @@ if __name__ == "__main__":
     rest()
     contact_spring()
     backfill()
+    tornado()

@@ -10,6 +10,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from eventpound import Body, Contact, Cosine, InputError, Linear, Scene, Spring, load_case, simulate
+from eventpound.quantities.rows import rows_at
+from eventpound.solvers import solver_named
 
 BRIDGE = Path(__file__).parents[1] / "cases" / "bridge-el-centro"
 SOLVERS = pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
@@ -65,6 +67,23 @@ def test_it_is_what_the_run_has_rows_of(solver: str) -> None:
         # Rounding: `fast` looks at one polynomial from other places.
         apart = np.abs(found.to_numpy() - rows.to_numpy()).max(axis=0)
         assert (apart <= 1e-11 * whole.abs().max().to_numpy()).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "solver"),
+    [
+        *((name, "fast") for name in ("bridge-pulse", "elastic-record", "isolated-building")),
+        *(("bridge-pulse", solver) for solver in ("cvode", "ida", "moreau", "penalty")),
+    ],
+)
+def test_times_that_are_asked_for_change_no_step(name: str, solver: str) -> None:
+    response = simulate(load_case(BRIDGE.parent / name), solver, error_estimate=False)
+    task, kept = response.task, response.recording
+    t = np.random.default_rng(1).uniform(task.start, task.end, 500)
+    run, places = rows_at(task, solver_named(solver).solve, t, "after")
+    assert np.array_equal(run.history.t[places], t)
+    assert run.events == kept.events
+    assert np.array_equal(np.r_[run.u, run.v, run.z], np.r_[kept.u, kept.v, kept.z])
 
 
 def test_a_jump_of_the_ground_has_two_sides() -> None:

@@ -133,6 +133,8 @@ def test_the_numbers_of_a_shock_are_those_of_a_run_of_it_alone(folder: Path, sol
 def test_the_files_of_a_run_tell_each_shock(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    assert main(["check", str(folder)]) == 0
+    assert "samples every 0.01 s, records from 0, 7.99 s on" in capsys.readouterr().out
     assert main(["run", str(folder), "--no-figures"]) == 0
     assert "shock 2   from 7.99 s: largest |u| " in capsys.readouterr().out
     shocks = pd.read_csv(folder / "results" / "shocks.csv")

@@ -183,6 +183,8 @@ def _motion_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         sizes += f", T_g = {motion['period']:.6g} s, {length}"
     if "time_step" in motion:
         sizes += f", {motion['samples']} samples every {motion['time_step']:g} s"
+    if "begins" in motion:
+        sizes += f", records from {', '.join(f'{begin:.6g}' for begin in motion['begins'])} s on"
     yield "motion", f"{motion['kind']}{sizes}"
     length = f"from {run['start']:g} s, as long as each motion says"
     if "duration" in run:

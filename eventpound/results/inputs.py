@@ -247,6 +247,7 @@ def _motion(case: Case) -> Row:
         row |= {"period": scales.period, "L_e": scales.length}
     if isinstance(motion, Record):
         row |= {"time_step": motion.time_step, "samples": motion.samples.size}
+        row |= {"begins": motion.begins.tolist()} if motion.begins.size else {}
     if case.record is not None:
         row["file"] = case.record.file
     return row
