@@ -87,7 +87,7 @@ class RecordOptions:
     @property
     def scaling(self) -> str:
         """What is done to the size of every record, in words; empty where nothing is."""
-        return self.size.words
+        return self.size.words()
 
     def of_file(self, file: str, data: RecordData) -> dict[str, object]:
         """``[excitation]`` of one file that was read, in SI with the defaults filled in."""

@@ -13,7 +13,7 @@ target_damping = "5 %"
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -36,6 +36,10 @@ _TARGET = (
     'a CSV file with columns period (s) and PSA_g (g), or a list of pairs, [[0.1, "0.5 g"], ...]'
 )
 _BETWEEN = 'two periods between which it counts, ["0.2 s", "2 s"]'
+
+
+def _in_g(acceleration: float) -> str:
+    return f"{acceleration / STANDARD_GRAVITY:.4g} g"
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,14 +95,15 @@ class RecordScaling:
             psa_at=self.psa_at,
         )
 
-    @property
-    def words(self) -> str:
-        """What is done to the size of every record; empty where nothing is."""
+    def words(self, acceleration: Callable[[float], str] = _in_g) -> str:
+        """What is done to the size of every record; empty where nothing is.
+
+        `acceleration` writes one (m/s^2) with its unit.
+        """
         if self.pga is not None:
-            size = f"{self.pga / STANDARD_GRAVITY:.4g} g"
-            return f"every record to a PGA of {size} (pga in [excitation])"
+            return f"every record to a PGA of {acceleration(self.pga)} (pga in [excitation])"
         if self.psa is not None:
-            size = f"{self.psa / STANDARD_GRAVITY:.4g} g"
+            size = acceleration(self.psa)
             at = f"{self.psa_at} = " * bool(self.psa_at) + f"{self.psa_period:.4g} s"
             return f"every record to a PSA of {size} at {at} (psa in [excitation])"
         if self.target is not None:

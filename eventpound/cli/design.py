@@ -140,12 +140,12 @@ def _going_on() -> Iterator[None]:
 
 def _lines(case: Case, table: pd.DataFrame) -> Iterator[str]:
     """What an engineer asks, to be read: a table a part, in units of the trade."""
-    from eventpound.report.design_tables import design_cells
+    from eventpound.report.design_tables import design_cells, scaling_words
     from eventpound.results.cells import lines_of
     from eventpound.results.trade import trade_of
 
-    if case.suite is not None and case.suite.options.scaling:
-        yield f"scaling   {case.suite.options.scaling}"
     trade = trade_of(case.scene, case.run.stated)
+    if scaling := scaling_words(case, trade):
+        yield f"scaling   {scaling}"
     for heading, cells in design_cells(case.scene, table, trade):
         yield from ("", heading, *lines_of(cells))

@@ -31,7 +31,7 @@ class TakenFrom(StrEnum):
     BETWEEN = "further runs with rows close together, where it is named"
     FREE = "one more run, without contact, where it is named"
     APART = "one more run, in which no contact can close, where it is named"
-    APART_ALONE = "one more run for each contact, in which it alone cannot close, where it is named"
+    APART_ALONE = "one more run for each joint that is named, in which it cannot close"
 
 
 FROM_FURTHER = (TakenFrom.FREE, TakenFrom.APART, TakenFrom.APART_ALONE)

@@ -129,8 +129,9 @@ LISTED: tuple[Quantity, ...] = (
              "Smallest gap that would have avoided contact, where no other contact closes either.",
              v.avoiding_gap, TakenFrom.APART, tabled=False),
     Quantity(_CONTACT + "avoiding_gap_alone", "separation needed", D.LENGTH,
-             "Smallest gap that would have avoided this contact, where the others stay as they "
-             "are and strike.", v.avoiding_gap_alone, TakenFrom.APART_ALONE, tabled=False),
+             "Smallest gap that would have avoided this contact and others between the same ends, "
+             "where all else stays and strikes.", v.avoiding_gap_alone, TakenFrom.APART_ALONE,
+             tabled=False),
     *(Quantity(_CONTACT + rule, f"separation by {called} of peaks", D.LENGTH,
                f"Distance by {text} of the peaks of its two ends without contact{where}.",
                value, TakenFrom.FREE, only, tabled=False)

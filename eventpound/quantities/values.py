@@ -173,8 +173,11 @@ def avoiding_gap(many: Runs, i: int) -> Floats:
 
 
 def avoiding_gap_alone(many: Runs, i: int) -> Floats:
-    """Smallest gap that would have avoided contact i, the others as they are (m)."""
-    return many.t * np.nan if many.apart is None else many.apart((i,))[:, 0]
+    """Smallest gap that would have avoided contact i, those of other ends as they are (m)."""
+    contacts = many.scene.contacts
+    # Corners of one joint open together, or the wider one would need the gap of the other.
+    joint = tuple(k for k, c in enumerate(contacts) if c.direction == contacts[i].direction)
+    return many.t * np.nan if many.apart is None else many.apart(joint)[:, joint.index(i)]
 
 
 def absolute_sum_of_peaks(many: Runs, i: int) -> Floats:

@@ -29,6 +29,12 @@ _MOST_LINES, _MOST_LEVELS = 6, 2
 _NAMES: Any = {"fontsize": 6.5, "ncols": 2, "columnspacing": 1.0, "handletextpad": 0.2}
 
 
+_ROOM = 270.0
+"""Size of letters of names in two columns, times their number and that of panels, that fits."""
+_ABOVE: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.96), **_NAMES, "borderaxespad": 0.0}
+"""A legend over its panel, not over a curve."""
+
+
 @style.styled()
 def demand_figure(
     scene: Scene, runs: pd.DataFrame, panels: Sequence[Sequence[Named]], trade: Trade
@@ -52,8 +58,8 @@ def demand_figure(
     for axes, demands in zip(np.atleast_1d(figure.subplots(1, len(panels))), panels, strict=True):
         quantity = demands[0].quantity
         name, size = trade.unit(quantity.dimension.unit, quantity.path)
-        colors = style.colors(min(len(demands), _MOST_LINES))
-        for named, color in zip(demands[:_MOST_LINES], colors, strict=False):
+        drawn = _largest(shown, demands)
+        for named, color in zip(drawn, style.colors(len(drawn)), strict=True):
             values = shown[named.name].abs().to_numpy(float) / size
             label = style.literal(owners(scene, quantity.owner)[named.i])
             axes.plot(numbers, values, "o", markersize=3.0, color=color, label=label)
@@ -62,11 +68,23 @@ def demand_figure(
             for fractile, line in zip(few, (":", "--"), strict=False):
                 level = np.nanpercentile(values, fractile) if np.isfinite(values).any() else np.nan
                 axes.axhline(level, color=color, linestyle=line, linewidth=0.8)
-        axes.set(xlabel="record", ylim=(0.0, None), xlim=(0.0, len(runs) + 1.0))
+        axes.set(xlabel="record", xlim=(0.0, len(runs) + 1.0))
+        # A point is as wide as half a millimetre.
+        axes.set_ylim(0.0, 1.05 * axes.get_ylim()[1])
         axes.set_ylabel(f"{quantity.called} ({name})" if name else quantity.called)
         if len(demands) > 1:
-            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), **_NAMES)
+            longest = max(len(str(label)) for label in axes.get_legend_handles_labels()[1])
+            fitting = min(_NAMES["fontsize"], _ROOM / (len(panels) * longest))
+            look = _NAMES | {"fontsize": fitting}
+            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), **look)
     return figure
+
+
+def _largest(runs: pd.DataFrame, demands: Sequence[Named]) -> list[Named]:
+    """Demands that are largest under some record, as many as a panel shows, in their order."""
+    most = runs[[named.name for named in demands]].abs().max()
+    kept = set(most.nlargest(_MOST_LINES).index)
+    return [named for named in demands if named.name in kept][:_MOST_LINES]
 
 
 @style.styled()
@@ -101,7 +119,7 @@ def governing_figure(view: View, contact: Contact | None, body: str, trade: Trad
         if contact is not None:
             draw_circles(motion, view, contact.name, (view.t, line), color)
     motion.set_ylabel(f"displacement ({unit})")
-    motion.legend(loc="upper right", **_NAMES)
+    motion.legend(**_ABOVE)
     for axes in gaps:
         assert contact is not None
         _draw_gap(axes, view, contact, trade)
@@ -118,7 +136,7 @@ def _draw_gap(axes: Axes, view: View, contact: Contact, trade: Trade) -> None:
     axes.axhline(contact.gap / size, color=style.PALETTE[2], **style.DASHED)
     draw_circles(axes, view, contact.name, (view.t[:1], np.zeros(1)), style.PALETTE[2])
     axes.set_ylabel(f"gap ({unit})")
-    axes.legend(loc="upper right", **_NAMES)
+    axes.legend(**_ABOVE)
 
 
 def _bodies(view: View, contact: Contact) -> list[str]:

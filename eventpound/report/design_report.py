@@ -23,9 +23,10 @@ from eventpound.report.design_tables import (
     record_cells,
     record_names,
     report_cells,
+    scaling_words,
 )
 from eventpound.report.model_figure import model_figure
-from eventpound.report.sheets import Block, Columns, Head, Picture, Sheet, Words
+from eventpound.report.sheets import WIDTH, Block, Columns, Head, Picture, Sheet, Words, share_of
 from eventpound.report.view import View
 from eventpound.response import Response
 from eventpound.results import gather
@@ -45,19 +46,25 @@ _PANELS = (
     *("springs.<spring>.drift_ratio", "contacts.<contact>.max_impulse", "peaks.<body>.abs_max"),
 )
 """Demands that are drawn over the records, the first three that there are."""
-_MOST_PANELS, _MOST_PARTS, _MOST_LISTED, _MOST_WARNINGS = 3, 7, 4, 4
-_SKETCH, _MOTION, _DEMAND = 80.0, 95.0, 58.0
+_MOST_PANELS, _MOST_LISTED, _MOST_WARNINGS = 3, 4, 4
+_ROOM = ((4, 7, 2), (3, 5, 2), (2, 4, 1), (1, 3, 1))
+"""Springs or bodies of one demand, those with the largest; parts in a table of the model; modes of
+structures: the first with which the sheet holds its sketch at `_LEAST` of its size at least."""
+_LEAST = 0.8
+_SKETCH = WIDTH / 25.4, 3.6
+"""Inches of the sketch."""
+_MOTION, _DEMAND = 95.0, 58.0
 """Heights of pictures (mm)."""
 _WIDE = 6
 """Columns of a table that stands beside no other."""
-_TALL, _MOST_STRUCTURES = 0.7, 2
-"""Height of a sketch over its width; structures whose modes are told."""
+_TALL = 0.7
+"""Height of a sketch over its width."""
 _LEFT_OUT = ("alpha", "mass on it", "F_y/W", "Q (", "height", "offset", "post-yield")
 """Columns of the model that have no room; they begin so."""
 _LIMITS = (
     "Bodies move along one line. Impacts follow Newton's law of restitution, or the law of a "
     "contact that has one; local damage, torsion and vertical motion are not computed.",
-    "Separation needed: the least gap at which nothing touches there, the other contacts as they "
+    "Separation needed: the least gap at which nothing touches there, other joints as they "
     "are. By sum, SRSS and CQC: of the peaks without contact (EN 1998-1, 4.4.2.7; ASCE 7-16, "
     "12.12.3).",
     "Seat width used is the motion in the earthquake only; the least bearing length, creep, "
@@ -103,6 +110,11 @@ class Told:
         return trade_of(self.scene, self.case.run.stated)
 
     @property
+    def scaling(self) -> str:
+        """What is done to the size of every record; empty where nothing is."""
+        return scaling_words(self.case, self.trade)
+
+    @property
     def names(self) -> Mapping[str, str]:
         """What the records are called."""
         return {} if self.runs is None else record_names(self.runs)
@@ -127,28 +139,32 @@ def motion_under(case: Case, record: str) -> Response:
 
 def design_sheets(told: Told) -> list[Sheet]:
     """The two sheets of a report."""
-    return [list(_first(told)), list(_second(told))]
+    sketch = Picture(model_figure(told.scene, trade=told.trade, within=_SKETCH), _SKETCH[1] * 25.4)
+    firsts = (list(_first(told, sketch, *room)) for room in _ROOM)
+    first = next(firsts)
+    while share_of(first) < _LEAST and (shorter := next(firsts, None)) is not None:
+        first = shorter
+    return [first, list(_second(told))]
 
 
-def _first(told: Told) -> Iterator[Block]:
-    """What is needed, and of what model."""
+def _first(told: Told, sketch: Picture, most: int, parts: int, structures: int) -> Iterator[Block]:
+    """What is needed, and of what model, with at most so many lines of each."""
     yield Head(told.case.title, title=True)
     yield Words(tuple(_asked(told)))
     yield Head("Design numbers")
-    numbers = report_cells(told.scene, told.design, told.names, told.trade)
+    numbers = report_cells(told.scene, told.design, told.names, told.trade, most)
     # Of a run they are narrow.
     beside = Columns(tuple((table,) for table in numbers))
     yield from (beside,) if told.runs is None else numbers
     yield Head("Model")
-    yield from _model(told)
+    yield from _model(told, sketch, parts, structures)
 
 
-def _model(told: Told) -> Iterator[Block]:
+def _model(told: Told, sketch: Picture, parts: int, structures: int) -> Iterator[Block]:
     """The sketch and the tables of the parts; a tall sketch stands beside tables."""
-    sketch = Picture(model_figure(told.scene, trade=told.trade), _SKETCH)
-    parts = input_tables(_inputs(told.case), told.trade.chosen)
+    given = input_tables(_inputs(told.case, structures), told.trade.chosen)
     nothing = min(told.trade.nothing(dimension.unit) for dimension in TOLD)
-    tables = [_short(table, nothing) for table in parts]
+    tables = [_short(table, nothing, parts) for table in given]
     narrow = [table for table in tables if len(table.headings) <= _WIDE]
     wide, high = sketch.figure.get_size_inches()
     if high > _TALL * wide:
@@ -159,11 +175,11 @@ def _model(told: Told) -> Iterator[Block]:
     yield from (table for table in tables if len(table.headings) > _WIDE)
 
 
-def _inputs(case: Case) -> dict[str, Any]:
+def _inputs(case: Case, most: int) -> dict[str, Any]:
     """What was understood, without what says little: modes of single bodies, dashpots of modes."""
     inputs = inputs_of(case)
     structures = [each for each in inputs["structures"] if len(each["bodies"]) > 1]
-    inputs["structures"] = structures[:_MOST_STRUCTURES]
+    inputs["structures"] = structures[:most]
     return inputs | ({"dashpots": []} if structures else {})
 
 
@@ -197,7 +213,7 @@ def _asked(told: Told) -> Iterator[str]:
     if suite is None or runs is None:
         yield f"Under {_motion(told)}."
     else:
-        scaling = (suite.options.scaling or "every record as it is").partition(" (")[0]
+        scaling = told.scaling.partition(" (")[0] or "every record as it is"
         yield f"Under {int((runs[FAILED] == '').sum())} records; {scaling}."
     for i in lacking_contacts(told.scene, design)[:_MOST_LISTED]:
         contact = told.scene.contacts[i]
@@ -220,14 +236,14 @@ def _motion(told: Told) -> str:
     return f"a pulse, {motion.kind}, {peak}, period {three_digits(scales.period)} s"
 
 
-def _short(table: Cells, nothing: float) -> Cells:
+def _short(table: Cells, nothing: float, most: int) -> Cells:
     """A table of the model with three digits, without what the report has no room for."""
     kept = [i for i, head in enumerate(table.headings) if not head.startswith(_LEFT_OUT)]
     rows = tuple(
         tuple(row[i] if table.words[i] else _three(row[i], nothing) for i in kept)
-        for row in table.rows[:_MOST_PARTS]
+        for row in table.rows[:most]
     )
-    more = table.more + max(0, len(table.rows) - _MOST_PARTS)
+    more = table.more + max(0, len(table.rows) - most)
     heads, words = [table.headings[i] for i in kept], [table.words[i] for i in kept]
     return Cells(tuple(heads), rows, tuple(words), more)
 

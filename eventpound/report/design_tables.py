@@ -15,9 +15,12 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Hysteretic
 from eventpound.study.design import FRACTILES
 from eventpound.study.records import FAILED
+from eventpound.units import Dimension
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from eventpound.case.case import Case
 
 _Row: TypeAlias = "Mapping[Any, Any]"
 _NUMBERS = ("value", *(f"{p:g} %" for p in FRACTILES), "largest")
@@ -38,8 +41,8 @@ _OF_OTHERS = (
     *("acceleration.<body>.abs_max", "peaks.<body>.abs_max", "base_shear.abs_max"),
 )
 """Demands that stand in a report."""
-_MOST_OF_CONTACTS, _MOST_OF_ONE = 3, 4
-"""Contacts in a report; springs or bodies of one demand, those with the largest."""
+_MOST_OF_CONTACTS = 3
+"""Contacts in a report."""
 _MOST_RECORDS, _IN_ONE_COLUMN = 44, 12
 _LONGEST = 44
 """Letters of the name of a record."""
@@ -117,7 +120,7 @@ def _word(value: object) -> str:
 
 
 def report_cells(
-    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], trade: Trade
+    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], trade: Trade, most: int
 ) -> list[Cells]:
     """The design numbers that a report has room for: at contacts, and of all others.
 
@@ -131,10 +134,12 @@ def report_cells(
         What records are called, by their names in the table.
     trade : Trade
         Units.
+    most : int
+        Springs or bodies of one demand, those with the largest.
     """
     rows = {str(row["quantity"]): row for row in table.to_dict("records")}
     parts = (_at_contacts(scene, table, rows), _of_others(scene, rows))
-    return [_reported(list(part), names, trade) for part in parts if part]
+    return [_reported(list(part), names, trade, most) for part in parts if part]
 
 
 def _at_contacts(
@@ -174,10 +179,12 @@ def _told(name: str, rows: Mapping[str, _Row]) -> bool:
     return bool(np.allclose([own[k] for k in keys], [other[k] for k in keys], rtol=_SAME))
 
 
-def _reported(groups: list[tuple[_Row, ...]], names: Mapping[str, str], trade: Trade) -> Cells:
+def _reported(
+    groups: list[tuple[_Row, ...]], names: Mapping[str, str], trade: Trade, most: int
+) -> Cells:
     """A table of some groups of rows; those that there is no room for are counted."""
     of_contacts = str(groups[0][0]["quantity"]).startswith("contacts.")
-    shown = groups[:_MOST_OF_CONTACTS] if of_contacts else [g[:_MOST_OF_ONE] for g in groups]
+    shown = groups[:_MOST_OF_CONTACTS] if of_contacts else [g[:most] for g in groups]
     kept = [row for group in shown for row in group]
     numbers = [key for key in _NUMBERS if key in kept[0]]
     under = ["under"] if "under" in kept[0] else []
@@ -192,6 +199,14 @@ def _reported(groups: list[tuple[_Row, ...]], names: Mapping[str, str], trade: T
     words = (True, True, True, *(False for _ in numbers), *(True for _ in under))
     more = sum(map(len, groups)) - len(kept)
     return Cells(("of", "demand", "unit", *numbers, *under), tuple(lines), words, more)
+
+
+def scaling_words(case: Case, trade: Trade) -> str:
+    """What a case does to the size of every record of its suite; empty where that is nothing."""
+    if case.suite is None:
+        return ""
+    size = case.suite.options.size
+    return size.words(lambda value: trade.words(value, Dimension.ACCELERATION.unit))
 
 
 def lacking_contacts(scene: Scene, table: pd.DataFrame) -> list[int]:

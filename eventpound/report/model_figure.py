@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,10 +19,11 @@ from matplotlib.patches import Rectangle
 
 from eventpound.numerics.arrays import Floats
 from eventpound.report.law_panel import draw_law, laws_of
-from eventpound.report.model_layout import HIGH, Box, Layout, kinked, layout_of
+from eventpound.report.model_layout import HIGH, LEVEL, WIDE, Box, Layout, kinked, layout_of
 from eventpound.report.model_links import WALL, LinkPath, routes_of
 from eventpound.report.style import PALETTE, arrow, literal, new_figure, say, styled
 from eventpound.results.trade import Trade
+from eventpound.scene.body import Body
 from eventpound.scene.contact import BARRIER, Contact, End, weights_of
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
@@ -46,15 +48,22 @@ _LAW = 2.1
 """Inches of the picture of a law."""
 _LETTERS, _LETTER_WIDTH = 6.5, 0.6
 """Points, of names of springs and contacts; a letter is so much of it wide."""
-_SMALLEST = 4.5
+_SMALLEST, _LINE = 4.5, 1.2
+"""Points, and from line to line in letters."""
+_LARGEST = 14.0, 1e3
+"""Inches of a figure that is looked at by itself: as high as it has to be."""
 _USUAL = Trade()
 
 
 @dataclass(frozen=True)
 class _Names:
-    """How many points one unit of the picture has, whether parts are named, and units of gaps."""
+    """What names have room: `points` of a unit of the picture, `floor` the least height of one.
+
+    `shown`: whether parts are named; `trade`: units of gaps.
+    """
 
     points: float
+    floor: float
     shown: bool
     trade: Trade
 
@@ -63,15 +72,28 @@ class _Names:
         needed = max(map(len, text.split("\n"))) * _LETTER_WIDTH * _LETTERS
         return max(_SMALLEST, min(_LETTERS, _LETTERS * room * self.points / needed))
 
-    @property
-    def high(self) -> float:
-        """Height of what is said of a contact."""
-        return (2.4 + 1.2 * self.shown) * _LETTERS / self.points
+    def has_room(self, text: str, room: float) -> bool:
+        """Whether a text is about this long with the smallest letters."""
+        needed = max(map(len, text.split("\n"))) * _LETTER_WIDTH * _SMALLEST
+        return needed < 1.2 * room * self.points
+
+    def below(self, lines: int, room: float, letters: float = _LETTERS) -> float:
+        """Size of letters (points), no larger, with which lines have at most this height."""
+        return min(letters, room * self.points / (_LINE * lines))
+
+    def high(self, text: str) -> float:
+        """Height of lines of a text."""
+        return _LINE * (text.count("\n") + 1) * _LETTERS / self.points
 
 
 @styled()
 def model_figure(
-    scene: Scene, title: str = "", *, with_laws: bool = False, trade: Trade = _USUAL
+    scene: Scene,
+    title: str = "",
+    *,
+    with_laws: bool = False,
+    trade: Trade = _USUAL,
+    within: tuple[float, float] = _LARGEST,
 ) -> Figure:
     """Draw a scene.
 
@@ -85,6 +107,8 @@ def model_figure(
         Whether the laws of its springs are drawn below it.
     trade : Trade
         Units of the gaps.
+    within : tuple of float
+        Width and height that the scene has at most (in).
     """
     standing = grounded(scene)
     layout = layout_of(standing)
@@ -92,17 +116,22 @@ def model_figure(
     boxes = layout.boxes.values()
     left = min(box.left for box in boxes) - _MARGIN
     right = max(box.right for box in boxes) + _MARGIN
-    scale = min(0.75, 14.0 / (right - left))
+    top = max(box.top for box in boxes) + 1.0
+    # As small as that, but so large that the name of a body fits into it.
+    least = max(len(body.name) for body in scene.bodies) * _LETTER_WIDTH * _SMALLEST / 72.0 / WIDE
+    scale = max(min(within[0] / (right - left), within[1] / top), least)
+    scale = min(0.75, _LARGEST[0] / (right - left), scale)
     few = len(scene.springs) + len(scene.contacts) <= _MOST_NAMES
-    names = _Names(72.0 * scale, few, trade)
+    names = _Names(72.0 * scale, _least_floor(layout), few, trade)
     low = -0.8 if scene.supports else -0.5
     tops = [box.top + 0.3 for box in boxes]
-    tops += [_label_of(layout, c, names)[1] + _UP + names.high for c in standing.contacts]
+    labels = [_label_of(layout, joint, names) for joint in _joints(standing)]
+    tops += [bottom + _UP + names.high(text) for text, bottom in labels]
     tops += [y + 0.4 for route in routes for _, y in route.corners]
     laws = laws_of(scene.springs) if with_laws else []
     wide, high = scale * (right - left), scale * (max(tops) - low) + 0.9
     heights = [high, _LAW] if laws else [high]
-    figure = new_figure(max(4.5, wide, _LAW * len(laws)), sum(heights))
+    figure = new_figure(max(min(4.5, within[0]), wide, _LAW * len(laws)), sum(heights))
     grid = figure.add_gridspec(len(heights), max(1, len(laws)), height_ratios=heights)
     axes = figure.add_subplot(grid[0, :])
     for i, (name, law) in enumerate(laws):
@@ -113,8 +142,15 @@ def model_figure(
         _name_below(axes, *foot)
     axes.set(xlim=(left, right), ylim=(low, max(tops)), aspect="equal", title=literal(title))
     axes.axis("off")
-    _legend(axes, scene)
+    hidden = len(routes) < len(scene.springs) + len(scene.dashpots)
+    _legend(axes, scene, "dashpots past a floor are not drawn" if hidden else "")
     return figure
+
+
+def _least_floor(layout: Layout) -> float:
+    """Least height between bodies above each other."""
+    levels = sorted({box.y for box in layout.boxes.values()})
+    return min((b - a for a, b in pairwise(levels) if b - a > HIGH), default=LEVEL)
 
 
 def _draw(
@@ -126,17 +162,14 @@ def _draw(
     # A wall beside a body may have a spring and a contact.
     level = [route.link.between for route in routes if not route.upright]
     joined = {frozenset(BARRIER if end == GROUND else end for end in ends) for ends in level}
-    for contact in scene.contacts:
-        _contact(axes, layout, contact, _UP * (frozenset(contact.ends) in joined), names)
+    for joint in _joints(scene):
+        _contact(axes, layout, joint, _UP * (frozenset(joint[0].ends) in joined), names)
     for body in scene.bodies:
-        _body(axes, layout.boxes[body.name], body.name, body.mass)
+        _body(axes, layout.boxes[body.name], body, names)
     for box in (layout.boxes[name] for name in {force.body for force in scene.forces}):
         y = box.top + 0.12
         ends = (box.x - 0.4, y), (box.x + 0.4, y)
         arrow(axes, *ends, arrowstyle="->", color=PALETTE[3], linewidth=1.2)
-    if len(routes) < len(scene.springs) + len(scene.dashpots):
-        said = "dashpots past a floor are not drawn"
-        axes.text(0.5, 0.0, said, transform=axes.transAxes, ha="center", va="bottom", fontsize=6.5)
 
 
 def _feet(
@@ -196,8 +229,8 @@ def _link(axes: Axes, route: LinkPath, names: _Names) -> None:
         _still(axes, (a[0], a[0]), (a[1] - 0.35, a[1] + 0.55), away=np.sign(a[0] - b[0]))
     elif GROUND in route.link.between and a[1] > 0.0:
         _still(axes, (a[0] - 0.4, a[0] + 0.4), (a[1], a[1]))
-    if names.shown and route.label:
-        room = float(np.hypot(*(b - a))) + (0.0 if route.upright else 0.6)
+    room = float(np.hypot(*(b - a))) + (0.0 if route.upright else 0.6)
+    if names.shown and route.label and names.has_room(route.label, room):
         beside = np.array([_SWAY, 0.0] if route.upright else [0.0, _SWAY])
         x, y = 0.5 * (a + b) - beside
         look = {"fontsize": names.fitted(route.label, room), "color": color}
@@ -234,8 +267,19 @@ def _dashpot(axes: Axes, a: Floats, b: Floats) -> None:
         axes.plot(*np.array(line).T, color="#777777", linewidth=0.9, zorder=2)
 
 
-def _contact(axes: Axes, layout: Layout, contact: Contact, up: float, names: _Names) -> None:
+def _joints(scene: Scene) -> list[list[Contact]]:
+    """Contacts, those between the same ends together, such as the corners of a skew deck."""
+    found: dict[object, list[Contact]] = {}
+    for contact in scene.contacts:
+        found.setdefault((contact.left, contact.right), []).append(contact)
+    return list(found.values())
+
+
+def _contact(
+    axes: Axes, layout: Layout, joint: Sequence[Contact], up: float, names: _Names
+) -> None:
     """Two faces with the gap between them."""
+    contact = joint[0]
     (x_1, y_1), (x_2, y_2) = faces = [(x, y + up) for x, y in _faces(layout, contact)]
     for end, (x, y), side in zip((contact.left, contact.right), faces, (-1.0, 1.0), strict=True):
         if end == BARRIER:
@@ -247,19 +291,27 @@ def _contact(axes: Axes, layout: Layout, contact: Contact, up: float, names: _Na
         tip = middle + side * 0.12
         axes.plot([x, tip], [y, level], color=PALETTE[2], linewidth=1.2, zorder=2)
         axes.plot([tip, tip], [level - 0.14, level + 0.14], color=PALETTE[2], linewidth=2.2)
-    text, bottom = _label_of(layout, contact, names)
-    place = middle, bottom + up
-    axes.text(*place, text, ha="center", va="bottom", fontsize=_LETTERS, color=PALETTE[2])
+    text, bottom = _label_of(layout, joint, names)
+    letters = min(
+        names.below(text.count("\n") + 1, 0.8 * (names.floor - 0.3 - up)),
+        names.fitted(text.replace("$", "").replace("\\epsilon", "e"), abs(x_2 - x_1) + WIDE),
+    )
+    look: Any = {"ha": "center", "va": "bottom", "fontsize": letters, "color": PALETTE[2]}
+    axes.text(middle, bottom + up, text, **look)
 
 
-def _label_of(layout: Layout, contact: Contact, names: _Names) -> tuple[str, float]:
-    """What is said of a contact, and how high: between its bodies where there is room for it."""
-    law = f"$\\epsilon$ = {contact.restitution:g}" if contact.law is None else contact.law.kind
-    unit, size = names.trade.unit(Dimension.LENGTH.unit)
-    said = f"{contact.gap / size:.4g} {unit}\n{law}"
-    text = f"{literal(contact.name)}\n{said}" if names.shown else said
-    (x_1, y_1), (x_2, y_2) = _faces(layout, contact)
-    if names.fitted(contact.name, abs(x_2 - x_1)) == _LETTERS:
+def _label_of(layout: Layout, joint: Sequence[Contact], names: _Names) -> tuple[str, float]:
+    """What is said of a joint, and how high: between its bodies where there is room for it."""
+    lines, (unit, size) = list[str](), names.trade.unit(Dimension.LENGTH.unit)
+    for contact in joint:
+        law = f"$\\epsilon$ = {contact.restitution:g}" if contact.law is None else contact.law.kind
+        gap = f"{contact.gap / size:.4g} {unit}"
+        lines += [literal(contact.name)] * names.shown
+        lines += [gap, law] if len(joint) == 1 else [f"{gap}, {law}"]
+    text, room = "\n".join(lines), 0.5 * HIGH - 0.2
+    (x_1, y_1), (x_2, y_2) = _faces(layout, joint[0])
+    fits = all(names.fitted(contact.name, abs(x_2 - x_1)) == _LETTERS for contact in joint)
+    if fits and (len(joint) == 1 or names.high(text) < room + LEVEL - HIGH):
         return text, 0.5 * (y_1 + y_2) + 0.2
     return text, max(y_1, y_2) + 0.5 * HIGH + 0.05
 
@@ -300,20 +352,22 @@ def _still(axes: Axes, x: tuple[float, float], y: tuple[float, float], away: flo
         axes.fill_between(x, y[0] - 0.28, y[0], **hatched)
 
 
-def _body(axes: Axes, box: Box, name: str, mass: float) -> None:
-    corner = box.left, box.bottom
+def _body(axes: Axes, box: Box, body: Body, names: _Names) -> None:
+    mass, corner = body.mass, (box.left, box.bottom)
     shape = Rectangle(corner, box.wide, HIGH, facecolor="#E8EEF4", edgecolor=_INK, zorder=4)
     axes.add_patch(shape)
     weight = f"{mass / 1e3:.4g} t" if mass >= 1e3 else f"{mass:.4g} kg"
-    text = f"{literal(name)}\n{weight}"
-    axes.text(box.x, box.y, text, ha="center", va="center", fontsize=7.5, zorder=5)
+    letters = names.fitted(f"{body.name}\n{weight}", 0.95 * box.wide)
+    look: Any = {"ha": "center", "va": "center", "fontsize": names.below(2, HIGH, letters)}
+    axes.text(box.x, box.y, f"{literal(body.name)}\n{weight}", zorder=5, **look)
 
 
-def _legend(axes: Axes, scene: Scene) -> None:
-    """What the colours of the springs say, where there are two of them at least."""
+def _legend(axes: Axes, scene: Scene, said: str) -> None:
+    """What the colours of the springs say, below a note."""
     there = {_color(spring) for spring in scene.springs}
     handles = [
         Line2D([], [], color=color, label=name) for name, color in _LAWS.items() if color in there
     ]
     if handles:
-        axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4)
+        look: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "ncols": 4}
+        axes.legend(handles=handles, title=said, title_fontsize=_LETTERS, fontsize=_LETTERS, **look)

@@ -82,7 +82,7 @@ def as_html(title: str, sheets: Sequence[Sheet]) -> bytes:
     """The sheets as one page in itself, which a browser prints on as many of A4."""
     body = []
     for sheet in sheets:
-        share = _share(sheet)
+        share = share_of(sheet)
         blocks = "".join(_html(block, WIDTH, share) for block in sheet)
         body.append(f'<section class="sheet">\n{blocks}</section>\n')
     return document(title, "sheets.css", body)
@@ -120,7 +120,7 @@ def as_pdf(title: str, sheets: Sequence[Sheet]) -> bytes:
     with PdfPages(buffer, metadata=about) as pages:
         for sheet in sheets:
             page = Figure(figsize=(_PAGE[0] / 25.4, _PAGE[1] / 25.4))
-            pen = _Pen(page, _share(sheet))
+            pen = _Pen(page, share_of(sheet))
             top = (_PAGE[1] - _MARGIN) * _MM
             for block in sheet:
                 top -= pen.draw(block, _MARGIN * _MM, top, WIDTH * _MM)
@@ -179,8 +179,8 @@ class _Pen:
         self.page.text(x / w, top / h, literal(text), **where)  # type: ignore[arg-type]
 
 
-def _share(sheet: Sheet) -> float:
-    """Part of their size that the pictures of a sheet have, so that all is on it."""
+def share_of(sheet: Sheet) -> float:
+    """Part of their size that the pictures of a sheet have, so that all is on it, if it can be."""
     room = (_PAGE[1] - 2.0 * _MARGIN) * _MM
     whole, bare = (sum(_height(block, WIDTH, share) for block in sheet) for share in (1.0, 0.0))
     return min(1.0, max((room - bare) / (whole - bare), 0.3)) if whole > bare else 1.0

@@ -132,6 +132,16 @@ def test_with_one_contact_both_meanings_are_one() -> None:
     assert gap(response, "avoiding_gap_alone") == gap(response, "avoiding_gap")
 
 
+def test_corners_of_one_joint_open_together() -> None:
+    joint, wall = row().contacts
+    corners = replace(joint, name="other", gap=0.5 * joint.gap)
+    found = [
+        gap(simulate(replace(row(), contacts=contacts), "fast", duration=END), "avoiding_gap_alone")
+        for contacts in ((joint, wall), (joint, corners, wall))
+    ]
+    assert found[0] == found[1] > joint.gap
+
+
 def test_codes_combine_the_peaks_without_contact() -> None:
     response = simulate(row(), rtol=1e-11, duration=END)
     a, b = (response.without_contact.peaks["abs_max"][name] for name in NAMES)

@@ -13,8 +13,10 @@ from eventpound import design_numbers, load_case, simulate
 from eventpound.case.case import Case
 from eventpound.cli import main
 from eventpound.report.design_report import Told, design_sheets
+from eventpound.report.design_tables import scaling_words
 from eventpound.report.model_layout import layout_of
-from eventpound.report.sheets import as_html, as_pdf
+from eventpound.report.sheets import as_html, as_pdf, share_of
+from eventpound.results.trade import trade_of
 from tests.report.test_page import CHROMIUM, Balanced
 from tests.study.test_suite import time_series
 
@@ -139,7 +141,7 @@ def test_it_speaks_as_the_trade_does(suite: Path) -> None:
         assert "e" not in digits, number
         assert len(digits.rstrip("0")) <= 3, number
     assert not re.search(r"Pi|Π|L_e|docs/|case\.toml|m/s\^2", plain)
-    for word in ("separation needed", "ductility", "kN s", "every record to a PSA of 0.5 g"):
+    for word in ("separation needed", "ductility", "kN s", "every record to a PSA of 0.500 g"):
         assert word in plain
     assert "3 records are few" in plain
 
@@ -163,3 +165,24 @@ def test_decks_stand_on_bearings_on_piers(suite: Path) -> None:
     for i, pier in enumerate(piers):
         assert pier.top < decks[0].bottom
         assert decks[i].x < pier.x < decks[i + 1].x
+
+
+def test_scaling_is_said_in_the_chosen_unit(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text(time_series(0.3))
+    (tmp_path / "case.toml").write_text(bridge() + '[run]\nunits = ["m/s^2"]\n')
+    case = load_case(tmp_path)
+    said = scaling_words(case, trade_of(case.scene, case.run.stated))
+    assert said.startswith("every record to a PSA of 4.90 m/s² at T1 of deck 2 = ")
+
+
+def test_the_first_sheet_of_tall_buildings_has_room_for_its_sketch(tmp_path: Path) -> None:
+    text = '[excitation]\nkind = "sine"\namplitude = "0.4 g"\nperiod = "0.7 s"\n'
+    for name in "AB":
+        text += f'[[building]]\nname = "{name}"\nstoreys = 12\nmass = "200 t"\n'
+        text += 'stiffness = "300 MN/m"\nyield_force = "0.3 W"\nheight = "3.2 m"\n'
+    for i in range(1, 13):
+        text += f'[[contact]]\nname = "floor {i}"\nbetween = ["A{i}", "B{i}"]\n'
+        text += 'gap = "2 cm"\nrestitution = 0.6\n'
+    (tmp_path / "case.toml").write_text(text + '[run]\nduration = "1.5 s"\n')
+    first, _ = design_sheets(told(load_case(tmp_path)))
+    assert share_of(first) > 0.6

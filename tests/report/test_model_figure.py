@@ -303,3 +303,13 @@ def test_dashpots_of_modal_damping_are_drawn_beside_springs_alone() -> None:
     damper = Dashpot(("A1", "A3"), 1.0)
     routes = routes_of(Scene(bodies, tuple(springs), (damper,)), layout_of(scene))
     assert damper in [route.link for route in routes]
+
+
+def test_corners_of_one_joint_are_named_one_above_the_other() -> None:
+    joint = [
+        Contact(name, "A1", "B1", gap, 0.5) for name, gap in (("acute", 0.03), ("obtuse", 0.05))
+    ]
+    bodies, springs = (Body("A1", 1e5), Body("B1", 1e5)), (*storeys("A", 1), *storeys("B", 1))
+    axes = model_figure(Scene(bodies, springs, contacts=tuple(joint))).axes[0]
+    (said,) = [text.get_text() for text in axes.texts if "acute" in text.get_text()]
+    assert said.split("\n")[::2] == ["acute", "obtuse"]
