@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,7 +37,8 @@ from eventpound.response import Response
 from eventpound.scene.check import check_scene, motion_problems
 from eventpound.scene.parameters import Place, motion_with, places_of, with_values
 from eventpound.scene.worst_variants import worst_variants
-from eventpound.simulation import options_of, simulate, task_with
+from eventpound.simulation import ReadyScene, options_of, output_times, task_with
+from eventpound.solvers import solver_named
 from eventpound.study.variants import Rows, complete
 
 if TYPE_CHECKING:
@@ -178,51 +180,48 @@ class Sweep:
         # These had more events than there was room for.
         return np.flatnonzero(kept.ended == FULL)
 
-    def variant(self, i: int) -> Case:
-        """One row as a case of its own."""
-        variants, case = self.variants, self.rows.case
-        values = {p: float(v[i]) for p, v in variants.values.items() if p.kind != "excitation"}
-        motion = variants.motions[variants.motion_of[i]]
-        return replace(case, scene=replace(with_values(case.scene, values), motion=motion))
+    @cached_property
+    def _ready(self) -> ReadyScene:
+        task, stated = self.variants.task, self.rows.case.run.stated
+        return ReadyScene(solver_named(self.wanted.solver), task, stated)
 
     def alone(self, i: int) -> None:
         """Run one row the ordinary way."""
-        wanted, length = self.wanted, self._length(i)
-        case = self.variant(i)
-        step = length
-        if wanted.keep is not None:
-            step = case.run.output_step
-            if np.isnan(step):
-                step = default_output_step(case.scene.motion, length)
-        energy = needs_energy(wanted.quantities) or None
+        values = {p: float(v[i]) for p, v in self.variants.values.items() if p.kind != "excitation"}
+        wanted, task = self.wanted, self._task_of(i)
         try:
-            response = simulate(
-                case, wanted.solver, wanted.rtol, duration=length, output_step=step, energy=energy
-            )
+            response = self._ready.run(values, task)
             keep_named(self.result, i, response.runs)
             keep_recording(self.result, i, response.recording)
         except ComputationError as error:
-            self._fail(i, error, case)
+            mark_failed(self.result, i, error)
+            if wanted.keep is not None and error.recording is not None:
+                task = replace(task, scene=with_values(task.scene, values))
+                wanted.keep(i, Response(task, wanted.solver, error.recording))
         except OverflowError:
-            start = self.variants.task.start
-            mark_failed(
-                self.result, i, ComputationError("its scales are beyond all doubles", start)
-            )
+            beyond = ComputationError("its scales are beyond all doubles", task.start)
+            mark_failed(self.result, i, beyond)
         else:
             self.seconds[i] = response.work.seconds
             if wanted.keep is not None:
                 wanted.keep(i, response)
 
-    def _length(self, i: int) -> float:
-        assert self.rows.lengths is not None
-        return float(self.rows.lengths[i])
-
-    def _fail(self, i: int, error: ComputationError, case: Case) -> None:
-        """Mark a run that failed, and hand on what there is of it."""
-        mark_failed(self.result, i, error)
-        if self.wanted.keep is not None and error.recording is not None:
-            task = _task(case, self.wanted, self._length(i))
-            self.wanted.keep(i, Response(task, self.wanted.solver, error.recording))
+    def _task_of(self, i: int) -> Task:
+        """The task of the scene with the motion, the length and the rows of one row."""
+        task, run, lengths = self.variants.task, self.rows.case.run, self.rows.lengths
+        assert lengths is not None
+        motion = self.variants.motions[self.variants.motion_of[i]]
+        length = step = float(lengths[i])
+        if self.wanted.keep is not None:
+            step = run.output_step
+            if np.isnan(step):
+                step = default_output_step(motion, length)
+        return replace(
+            task,
+            scene=replace(task.scene, motion=motion),
+            end=task.start + length,
+            output_times=output_times(replace(run, duration=length, output_step=step)),
+        )
 
 
 def cores() -> int:

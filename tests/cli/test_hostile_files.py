@@ -19,11 +19,11 @@ import eventpound.input_files
 import eventpound.results.files
 import eventpound.study.engines.local
 import eventpound.study.suite
-import eventpound.study.sweep
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.input_files import matching_files, read_bytes
 from eventpound.results import write_together
+from eventpound.simulation import ReadyScene
 from eventpound.study.table import read_suite
 from tests.cli.test_hostile import DECK, ENDLESS
 from tests.motion.readers.writers import at2, motion
@@ -254,7 +254,7 @@ def test_synthetic_motions_without_number(key, tmp_path, capsys):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, capsys):
     results = suite(tmp_path, "records/*", records=8)
-    run = eventpound.study.sweep.simulate
+    run = ReadyScene.run
     begun = []
 
     def third_stops(*words: object, **options: object) -> object:
@@ -263,7 +263,7 @@ def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, c
             os.kill(os.getpid(), number)
         return run(*words, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(eventpound.study.sweep, "simulate", third_stops)
+    monkeypatch.setattr(ReadyScene, "run", third_stops)
     assert main(["run", str(tmp_path), "--solver", "cvode"]) == 130
     monkeypatch.undo()
     table, manifest = read_suite(results)
@@ -282,7 +282,7 @@ def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, c
         again.append(words)
         return run(*words, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(eventpound.study.sweep, "simulate", counted)
+    monkeypatch.setattr(ReadyScene, "run", counted)
     assert main(["run", str(tmp_path), "--solver", "cvode"]) == 0
     assert len(again) == 8 - len(table)
     whole, manifest = read_suite(results)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from eventpound.errors import ComputationError
-from eventpound.simulation import simulate
+from eventpound.scene.parameters import with_values
+from eventpound.simulation import ReadyScene, simulate
 from eventpound.study.plan import Chunk
 from eventpound.study.table import TABLE, compute, header, read_table
 from eventpound.study.variants import rows_of, scene_of_row
@@ -98,14 +99,14 @@ values = [0.0, 0.01, -0.02, 0.005]
 
 
 def test_a_failed_run_is_a_row_with_its_reason(make_study, table, monkeypatch):
-    from eventpound.study import sweep
+    run = ReadyScene.run
 
-    def failing(case, *arguments, **options):
-        if case.scene.contacts[0].gap > 0.4:
+    def failing(ready, values, task):
+        if with_values(task.scene, values).contacts[0].gap > 0.4:
             raise ComputationError("no step is small enough", 1.25)
-        return simulate(case, *arguments, **options)
+        return run(ready, values, task)
 
-    monkeypatch.setattr(sweep, "simulate", failing)
+    monkeypatch.setattr(ReadyScene, "run", failing)
     text = ELASTOPLASTIC.replace("count = 40", "count = 2") + '[solver]\nname = "cvode"\n'
     text = text.replace('"free.pi_um", "amplification", ', "")
     found = table(make_study(text).study)
