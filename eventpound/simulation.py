@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
@@ -39,67 +39,25 @@ from eventpound.units import Dimension
 Progress = Callable[[float], None]
 
 
+class Options(TypedDict, total=False):
+    """Options of `eventpound.simulate` beside solver and tolerance, as they are described there."""
+
+    duration: float | str | None
+    output_step: float | str | None
+    energy: bool | None
+    settings: Mapping[str, object] | None
+    progress: Progress | None
+    max_steps: int | None
+
+
 def simulate(
     case: Case | Scene,
     solver: str | Solver | None = None,
     rtol: float | str | None = None,
-    *,
-    duration: float | str | None = None,
-    output_step: float | str | None = None,
-    energy: bool | None = None,
-    settings: Mapping[str, object] | None = None,
-    progress: Progress | None = None,
-    max_steps: int | None = None,
+    **options: Unpack[Options],
 ) -> Response:
-    """Compute how a scene moves.
-
-    Parameters
-    ----------
-    case : Case or Scene
-        What moves; a case brings its own options, which the others override.
-    solver : str or Solver, optional
-        Name of a solver (`eventpound.solvers.available`), ``"cvode"`` for a scene; with settings
-        as ``"cvode:events=sundials"``; or one of your own (page "your-solver" of the docs).
-    rtol : float, optional
-        Relative tolerance, 1e-14 to 1e-2; 1e-9 for a scene.
-    duration : float, optional
-        Length of the run (s), or with a unit, ``"12 s"``; for a scene that of its motion and
-        four periods.
-    output_step : float, optional
-        Distance of the rows of the history (s).
-    energy : bool, optional
-        Keep the energy ledger.
-    settings : mapping, optional
-        Settings of the solver (`Solver.settings` names them), in place of all those of the
-        case.
-    progress : callable, optional
-        Called with the time reached (s) as the run goes on.
-    max_steps : int, optional
-        Steps after which the run ends with a ComputationError.
-
-    Returns
-    -------
-    Response
-        Peaks, events, history and final state.
-
-    Raises
-    ------
-    InputError
-        Where the scene or an option cannot be run.
-    ComputationError
-        Where the computation failed; what was computed is in its `recording`.
-    """
-    ready = made_ready(
-        case,
-        solver,
-        rtol,
-        duration=duration,
-        output_step=output_step,
-        energy=energy,
-        settings=settings,
-        progress=progress,
-        max_steps=max_steps,
-    )
+    """Compute how a scene moves; `eventpound.simulate` without an estimate of the errors."""
+    ready = made_ready(case, solver, rtol, **options)
     return ready.run({}, ready.task)
 
 
@@ -107,22 +65,16 @@ def made_ready(
     case: Case | Scene,
     solver: str | Solver | None,
     rtol: float | str | None,
-    *,
-    duration: float | str | None,
-    output_step: float | str | None,
-    energy: bool | None,
-    settings: Mapping[str, object] | None,
-    progress: Progress | None = None,
-    max_steps: int | None = None,
+    **asked_for: Unpack[Options],
 ) -> ReadyScene:
     """What `simulate` is asked for, checked; its arguments."""
-    check_case(case)
+    settings, max_steps = asked_for.get("settings"), asked_for.get("max_steps")
     number = positive("rtol", rtol, Dimension.NUMBER)
     run, options = options_of(
         case,
-        positive("duration", duration, Dimension.TIME),
-        positive("output_step", output_step, Dimension.TIME),
-        energy,
+        positive("duration", asked_for.get("duration"), Dimension.TIME),
+        positive("output_step", asked_for.get("output_step"), Dimension.TIME),
+        asked_for.get("energy"),
     )
     if solver is not None:
         options = solver_instead(options, name_of(solver), "solver")
@@ -132,7 +84,7 @@ def made_ready(
             raise InputError(f"settings: found beside solver = {solver!r}; accepted: one of them")
         options = replace(options, settings=settings_in_si(settings))
     scene = case.scene if isinstance(case, Case) else case
-    task = task_with(scene, run, options, progress)
+    task = task_with(scene, run, options, asked_for.get("progress"))
     asked([(scene, run.stated)])
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
