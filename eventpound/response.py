@@ -150,7 +150,7 @@ class Response:
             names += chosen(self.scene, [SHEAR_OF_SUPPORTS])
         return {name: self.quantity(name) for name in dict.fromkeys(names)}
 
-    @cached_property
+    @property
     def shocks(self) -> pd.DataFrame:
         """Each record of a sequence by itself, one row a shock; of one record none.
 
@@ -160,16 +160,21 @@ class Response:
         """
         import pandas as pd
 
-        rows: list[dict[str, object]] = []
+        return pd.DataFrame(self.shock_rows)
+
+    @cached_property
+    def shock_rows(self) -> list[dict[str, Any]]:
+        """Rows of `shocks`."""
+        rows: list[dict[str, Any]] = []
         for task, state in shocks_of(self.task, self._rerun):
-            row: dict[str, object] = {"shock": len(rows) + 1, "start": task.start, "end": task.end}
+            row: dict[str, Any] = {"shock": len(rows) + 1, "start": task.start, "end": task.end}
             try:
                 scene = self.scene if state is None else continued(self.scene, state, task.start)
                 row |= {"failed": "", **self._of_task(replace(task, scene=scene)).numbers()}
             except EventpoundError as error:
                 row["failed"] = str(error)
             rows.append(row)
-        return pd.DataFrame(rows)
+        return rows
 
     @cached_property
     def without_contact(self) -> Response:

@@ -138,7 +138,7 @@ def _compute(case: Case, options: Options, out: Path) -> tuple[Response, dict[st
             say(f"solved: {response.message}, {response.work.steps} steps")
             # Computed here, where it can be interrupted; kept with the response.
             progress.begins("again, for the quantities named")
-            _ = response.named, response.shocks
+            _ = response.named, response.shock_rows
             progress.begins("again, for the error")
             asked = True if options.error_estimate else case.run.error_estimate
             estimate = estimate_of(response, asked=asked, progress=watch)
@@ -200,9 +200,11 @@ def _summary(response: Response) -> Iterator[str]:
         counted = f"{response.impacts}, {faster:.0f} faster than {speed:.4g} cm/s"
         yield f"impacts   {counted}{rested}"
     yield from _demands(response)
-    for shock in response.shocks.to_dict("records"):
-        peak = max(shock[f"peaks.{body.name}.abs_max"] for body in scene.bodies)
-        told = shock["failed"] or f"largest |u| {peak:.6e} m, {shock['impacts']:.0f} impacts"
+    for shock in response.shock_rows:
+        told = shock["failed"]
+        if not told:
+            peak = max(shock[f"peaks.{body.name}.abs_max"] for body in scene.bodies)
+            told = f"largest |u| {peak:.6e} m, {shock['impacts']:.0f} impacts"
         yield f"shock {shock['shock']:<3} from {shock['start']:.6g} s: {told}"
     work = response.work
     by = f"({response.solver}, rtol {response.task.rtol:g})"

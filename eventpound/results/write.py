@@ -59,8 +59,8 @@ def write(
         EVENTS: rows_csv([EVENT_COLUMNS, *response.event_rows()]),
         SUMMARY: to_json(summarise(response, error_estimate)),
     }
-    if response.success and not (shocks := response.shocks).empty:
-        contents[SHOCKS] = table_csv(shocks)
+    if response.success and response.shock_rows:
+        contents[SHOCKS] = table_csv(response.shocks)
     hashes = {name: sha256(content) for name, content in contents.items()}
     contents[MANIFEST] = to_json(describe_run(response, case, started) | {"files": hashes})
     write_together(directory, contents)
