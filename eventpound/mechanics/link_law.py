@@ -47,7 +47,8 @@ class Yielding(NamedTuple):
 
 def link_law(laws: Sequence[Law | Hysteretic], damping: Any) -> LinkLaw:
     """Laws of links as arrays; those of which `damping` (N s/m) is longer are dashpots alone."""
-    rows = np.tile(np.array((ELASTIC, 0.0, 1.0, 20.0, 0.5, 0.5)), (len(damping), 1))
+    rows = np.empty((len(damping), len(CONSTANTS)))
+    rows[:] = (ELASTIC, 0.0, 1.0, 20.0, 0.5, 0.5)
     for row, law in zip(rows, laws, strict=False):
         if isinstance(law, BoucWen):
             row[:] = (BOUC_WEN, *(getattr(law, name) for name in CONSTANTS[1:]))

@@ -214,7 +214,7 @@ def without_rounding(gap: Floats, at_zero: Floats, u: Floats, length: Floats | f
     length : float or ndarray, shape (...)
         The scene's own (m).
     """
-    largest = np.max(np.abs(at_zero), -1, initial=0.0) + 2.0 * np.max(np.abs(u), -1, initial=0.0)
+    largest = np.abs(at_zero).max(-1, initial=0.0) + 2.0 * np.abs(u).max(-1, initial=0.0)
     rounding = EPS * np.maximum(4.0 * largest, 64.0 * np.asarray(length))
     return np.where(np.abs(gap) <= rounding[..., None], 0.0, gap)
 

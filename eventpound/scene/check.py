@@ -126,7 +126,10 @@ class _Element:
     def number(
         self, key: str, value: object, accepted: str, condition: _Condition = math.isfinite
     ) -> Iterator[Problem]:
-        if not (isinstance(value, Real) and math.isfinite(value) and condition(float(value))):
+        # To ask for a float, which nearly all are, takes less time.
+        if not (
+            isinstance(value, float | Real) and math.isfinite(value) and condition(float(value))
+        ):
             yield self.problem(key, value, accepted)
 
 
@@ -433,6 +436,7 @@ def motion_problems(motion: GroundMotion) -> Iterator[Problem]:
     with np.errstate(all="ignore"):
         pieces = motion.pieces()
     for piece in pieces:
-        if not (np.isfinite(piece.coefficients).all() and np.isfinite(piece.samples).all()):
+        numbers = piece.coefficients, piece.samples
+        if not all(np.isfinite(each).all() for each in numbers if each.size > 0):
             found = "an acceleration that is not finite"
             yield Problem("excitation", 1, motion.kind, "values", found, "finite numbers")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from functools import cache
 from pkgutil import resolve_name
 
 from eventpound.errors import InputError
@@ -66,6 +67,7 @@ def _own_names() -> list[str]:
     return [name for name in _OWN if name != OPENSEES or installed()]
 
 
+@cache
 def _own(name: str) -> Solver:
     solver: Solver = resolve_name(_OWN[name])()
     return solver

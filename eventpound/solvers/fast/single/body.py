@@ -413,18 +413,19 @@ def oscillators_of(
     Oscillator
         `alone` is an array of the leading shape.
     """
-    to_right, to_left = np.flatnonzero(model.right < 0), np.flatnonzero(model.left < 0)
+    bodies = model.right.tolist(), model.left.tolist()
+    to_right, to_left = ([j for j, b in enumerate(ends) if b < 0] for ends in bodies)
     fits = (
         model.bodies == 1
         and model.loads == 0
         and not energy
         and model.hysteretic.size <= 1
-        and max(to_right.size, to_left.size) <= 1
+        and max(len(to_right), len(to_left)) <= 1
     )
     alone: Any = np.logical_not(links.kinked) & fits
-    if fits and to_right.size and to_left.size:
+    if fits and to_right and to_left:
         alone &= gap.sum(axis=-1) > LEAST_PLAY * np.asarray(length)
-    right, left = (int(found[0]) if found.size else -1 for found in (to_right, to_left))
+    right, left = (found[0] if found else -1 for found in (to_right, to_left))
     return Oscillator(alone, right, left)
 
 
