@@ -32,7 +32,7 @@ from eventpound.case.springs import read_springs
 from eventpound.case.suite import Suite, with_suite
 from eventpound.case.supports import Driven, read_driven
 from eventpound.case.table import CaseProblem, Table
-from eventpound.case.understood import understood_case
+from eventpound.case.understood import SOURCED, understood_case
 from eventpound.errors import InputError
 from eventpound.given import checked
 from eventpound.input_files import read_bytes
@@ -169,14 +169,14 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     excitation = _excitation(top, file.parent)
     figure = _figure(top, excitation)
     pi, run_table, warnings, carried = None, top.table("run"), list[str](), dict[str, float]()
-    driven = Driven()
+    driven, sources = Driven(), dict[str, list[str]]()
     if top.has("pi"):
         pi = read_pi(top)
         scene = scene_of_pi(top, pi, excitation)
         run_table = with_periods(run_table, pi, scene)
     else:
         needed = figure is None or figure.kind.needs_scene
-        scene, warnings, carried, driven = _read_scene(
+        scene, warnings, carried, driven, sources = _read_scene(
             top, excitation, problems, needed, file.parent
         )
     if excitation is not None and not problems:
@@ -207,7 +207,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         source_hash=source_hash,
         record=excitation.record,
         warnings=tuple(f"{file}: {warning}" for warning in warnings),
-        understood=understood_case(title, excitation.table, scene, run, solver)
+        understood=understood_case(title, excitation.table, scene, run, solver, sources)
         | dict(driven.tables)
         | ({} if figure is None else {"figure": document["figure"]}),
         suite=suite,
@@ -280,12 +280,14 @@ def _read_scene(
     problems: list[CaseProblem],
     needed: bool,
     directory: Path,
-) -> tuple[Scene, list[str], dict[str, float], Driven]:
-    """Scene, warnings, masses that springs carry, supports and forces.
+) -> tuple[Scene, list[str], dict[str, float], Driven, dict[str, list[str]]]:
+    """Scene, warnings, masses that springs carry, supports and forces, sources of numbers.
 
     What is wrong is added to the problems.
     """
     tables = {kind: top.tables(kind) for kind in OF_SCENE}
+    said = "where its numbers are from"
+    sources = {kind: [t.text("source", said, "") for t in tables[kind]] for kind in SOURCED}
     bodies = [read_body(table) for table in tables["body"]]
     masses = {body.name: body.mass for body in bodies}
     in_suite = excitation is not None and excitation.suite is not None
@@ -314,7 +316,7 @@ def _read_scene(
     warnings += scene_warnings(scene) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
     carried = {} if problems else masses_carried(tables["spring"], springs, masses, held)
-    return scene, warnings, carried, driven
+    return scene, warnings, carried, driven, sources
 
 
 def _add_scene_problems(

@@ -10,7 +10,7 @@ from typing import Any
 from eventpound.case.case import Case
 from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.suite import Member
-from eventpound.case.understood import understood_case
+from eventpound.case.understood import sources_of, understood_case
 from eventpound.motion import RecordData
 
 
@@ -43,7 +43,8 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
     if math.isnan(run.output_step):
         run = replace(run, output_step=default_output_step(scene.motion, run.duration))
     read = member.options.of_file(member.file, data)
-    understood = understood_case(case.title, read, scene, run, case.solver)
+    sources = sources_of(case.understood)
+    understood = understood_case(case.title, read, scene, run, case.solver, sources)
     records = {name: own.options.of_file(own.file, own.read()) for name, own in member.supports}
     driven: dict[str, Any] = {
         key: case.understood[key] for key in ("support", "force") if key in case.understood

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from types import MappingProxyType
+from typing import Any
 
 from eventpound.case.case import DEFAULTS, RunOptions, SolverOptions
 from eventpound.scene.contact import Contact, written
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import law_keys
+
+SOURCED = ("body", "spring", "contact")
+"""Tables of a case that may say where their numbers are from."""
 
 
 def understood_case(
@@ -17,6 +22,7 @@ def understood_case(
     scene: Scene,
     run: RunOptions,
     solver: SolverOptions,
+    sources: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> dict[str, object]:
     """Tables of the case that says everything in SI.
 
@@ -30,13 +36,15 @@ def understood_case(
         Its bodies, springs, dashpots (Rayleigh damping among them) and contacts.
     run, solver : RunOptions, SolverOptions
         The options.
+    sources : mapping of str to sequence of str
+        Where numbers are from, of each of the `SOURCED`, empty where that is not said.
 
     Returns
     -------
     dict
         Loading it gives the same case.
     """
-    return {
+    found: dict[str, Any] = {
         "title": title,
         "excitation": dict(excitation),
         "body": [
@@ -77,6 +85,15 @@ def understood_case(
             **solver.settings,
         },
     }
+    for kind, said in sources.items():
+        for row, source in zip(found[kind], said, strict=True):
+            row |= {"source": source} if source else {}
+    return found
+
+
+def sources_of(understood: Mapping[str, Any]) -> dict[str, list[str]]:
+    """Where numbers of a case as it was understood are from."""
+    return {kind: [row.get("source", "") for row in understood.get(kind, ())] for kind in SOURCED}
 
 
 def contact_law(contact: Contact) -> dict[str, object]:

@@ -184,13 +184,8 @@ def _keep_partial(case: Case, error: BaseException, response: Response | None, o
 
 
 def _summary(response: Response) -> Iterator[str]:
-    """Peaks, contacts and cost of a run, to be read."""
+    """Contacts and what they need, peaks and cost of a run, to be read."""
     recording, scene = response.recording, response.scene
-    yield f"{'body':<16} {'max (m)':>14} {'at (s)':>10} {'min (m)':>14} {'at (s)':>10}"
-    x = recording.displacement
-    for i, body in enumerate(scene.bodies):
-        high = f"{x.maximum[i]:>14.6e} {x.time_of_maximum[i]:>10.4f}"
-        yield f"{body.name:<16} {high} {x.minimum[i]:>14.6e} {x.time_of_minimum[i]:>10.4f}"
     if scene.contacts:
         resting = float(sum(recording.resting_time))
         # Some solvers do not know it.
@@ -200,6 +195,11 @@ def _summary(response: Response) -> Iterator[str]:
         counted = f"{response.impacts}, {faster:.0f} faster than {speed:.4g} cm/s"
         yield f"impacts   {counted}{rested}"
     yield from _demands(response)
+    yield f"{'body':<16} {'max (m)':>14} {'at (s)':>10} {'min (m)':>14} {'at (s)':>10}"
+    x = recording.displacement
+    for i, body in enumerate(scene.bodies):
+        high = f"{x.maximum[i]:>14.6e} {x.time_of_maximum[i]:>10.4f}"
+        yield f"{body.name:<16} {high} {x.minimum[i]:>14.6e} {x.time_of_minimum[i]:>10.4f}"
     for shock in response.shock_rows:
         told = shock["failed"]
         if not told:

@@ -20,6 +20,7 @@ from eventpound.report.towers import storeys_of
 from eventpound.report.view import Beside, View, view_of
 from eventpound.results import StoredResults
 from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.spring import GROUND
 
 # Circles of more contacts than this, all at gap zero, get a row each instead.
 _CONTACTS_IN_ONE_PANEL = 4
@@ -127,7 +128,7 @@ def _draw_displacements(axes: Axes, view: View, beside: Beside | None) -> None:
 
 
 def _draw_drifts(axes: Axes, view: View) -> None:
-    """Draw the elongation of every storey above the lowest, in the colour of its upper body."""
+    """Draw the elongation of every storey, in the colour of its upper body."""
     shades = shades_of(view)
     storeys = storeys_of(view)
     drifts = {spring.name: view.elongation(spring) for spring in storeys}
@@ -135,7 +136,7 @@ def _draw_drifts(axes: Axes, view: View) -> None:
     style.zero_lines(axes)
     for spring in storeys:
         # The body that a storey carries: of a structure it comes later.
-        upper = max(spring.between, key=view.bodies.index)
+        upper = max(set(spring.between) - {GROUND}, key=view.bodies.index)
         values = drifts[spring.name] / unit.size
         axes.plot(view.t, values, color=shades[upper], label=spring.name, zorder=3)
     axes.set_ylabel(f"drift ({unit.name})")

@@ -71,5 +71,9 @@ def _below(group: Sequence[str], springs: Sequence[DrawnSpring]) -> tuple[DrawnS
 
 
 def storeys_of(view: View) -> list[DrawnSpring]:
-    """Storeys between two bodies."""
-    return [spring for tower in towers_of(view) for spring in tower.storeys[1:]]
+    """Storeys between two bodies, and those on the ground that have a height: no isolators."""
+    return [
+        spring
+        for tower in towers_of(view)
+        for spring in tower.storeys[0 if tower.heights and tower.heights[0] > 0.0 else 1 :]
+    ]

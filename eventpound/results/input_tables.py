@@ -31,13 +31,13 @@ def _columns(text: str) -> tuple[_Column, ...]:
 _TABLES: dict[str, tuple[_Column, ...]] = {
     kind: _columns(text)
     for kind, text in (
-        ("bodies", "name=body; mass:mass; weight:force"),
+        ("bodies", "name=body; mass:mass; weight:force; source"),
         (
             "springs",
             "name=spring; between; law; height:length; K0:stiffness; K_s:stiffness; F_y:force; "
             "Q:force; u_y:length; alpha; compression:stiffness; extension:stiffness; "
             "offset:length; mass=mass on it:mass; F_y/W; T_initial=T initial:s; "
-            "T_post_yield=T post-yield:s",
+            "T_post_yield=T post-yield:s; source",
         ),
         (
             "dashpots",
@@ -47,7 +47,7 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
         (
             "contacts",
             "name=contact; between; gap:length; law; stiffness=k (SI); restitution; damping; "
-            "c:damping; effective_mass=mass:mass",
+            "c:damping; effective_mass=mass:mass; source",
         ),
         (
             "supports",

@@ -15,7 +15,7 @@ import numpy as np
 
 from eventpound.case.case import Case, RunOptions
 from eventpound.case.suite import Suite
-from eventpound.case.understood import contact_law
+from eventpound.case.understood import contact_law, sources_of
 from eventpound.errors import InputError
 from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
@@ -57,7 +57,7 @@ def inputs_of(case: Case) -> dict[str, Any]:
     """
     scene = case.scene
     carried = {spring.name: _mass_on(case, spring) for spring in scene.springs}
-    return {
+    found: dict[str, Any] = {
         "title": case.title,
         "bodies": [
             {"name": b.name, "mass": b.mass, "weight": b.mass * STANDARD_GRAVITY}
@@ -74,6 +74,11 @@ def inputs_of(case: Case) -> dict[str, Any]:
         "pi": pi_terms(scene) if scene.bodies else {},
         "pi_number": None if scene.motion.scales() is None else number_of_terms(scene),
     }
+    for kind, sources in sources_of(case.understood).items():
+        rows = found["bodies" if kind == "body" else f"{kind}s"]
+        for row, source in zip(rows, sources, strict=False):
+            row |= {"source": source} if source else {}
+    return found
 
 
 def _driven(case: Case) -> dict[str, list[Row]]:

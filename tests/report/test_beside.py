@@ -92,7 +92,10 @@ def test_heights_make_drift_ratios(buildings: Response) -> None:
     springs = tuple(replace(spring, height=3.0) for spring in buildings.scene.springs)
     scene = replace(buildings.scene, springs=springs)
     response = simulate(scene, "fast", rtol=1e-6, duration=buildings.task.end)
-    left, right = figures(response)["profiles.png"].axes
+    drawn = figures(response)
+    drifts = panel(drawn["displacements.png"], "drift").get_lines()
+    assert {spring.name for spring in springs} <= {line.get_label() for line in drifts}
+    left, right = drawn["profiles.png"].axes
     assert (left.get_ylabel(), right.get_xlabel()) == ("height (m)", "drift ratio (%)")
     first = right.patches[1].get_data()
     ratio = response.quantity(f"springs.{springs[0].name}.max_elongation")

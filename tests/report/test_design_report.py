@@ -9,13 +9,16 @@ from pathlib import Path
 
 import pytest
 
-from eventpound import design_numbers, load_case, simulate
+from eventpound import InputError, design_numbers, load_case, simulate
+from eventpound.case import read_case
 from eventpound.case.case import Case
+from eventpound.case.member import member_case
 from eventpound.cli import main
 from eventpound.report.design_report import Told, design_sheets
 from eventpound.report.design_tables import scaling_words
 from eventpound.report.model_layout import layout_of
 from eventpound.report.sheets import as_html, as_pdf, share_of
+from eventpound.results.inputs import inputs_of
 from eventpound.results.trade import trade_of
 from tests.report.test_page import CHROMIUM, Balanced
 from tests.study.test_suite import time_series
@@ -165,6 +168,25 @@ def test_decks_stand_on_bearings_on_piers(suite: Path) -> None:
     for i, pier in enumerate(piers):
         assert pier.top < decks[0].bottom
         assert decks[i].x < pier.x < decks[i + 1].x
+
+
+def test_the_sources_of_numbers_stand_in_the_model(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text(time_series(0.3))
+    text = bridge().replace('gap = "80 mm"', 'gap = "80 mm"\nsource = "drawing B-12"', 1)
+    (tmp_path / "case.toml").write_text(text)
+    case = load_case(tmp_path)
+    assert case.suite is not None
+    (member,) = case.suite.members(tmp_path)
+    one = member_case(case, member, member.read())
+    for each in (case, one, read_case(one.understood, tmp_path / "case.toml")):
+        sources = [contact.get("source") for contact in inputs_of(each)["contacts"]]
+        assert sources == ["drawing B-12", None, None, None]
+    assert main(["design", str(tmp_path)]) == 0
+    page = (tmp_path / "results" / "design" / "design.html").read_text(encoding="utf-8")
+    assert "drawing B-12" in page
+    (tmp_path / "case.toml").write_text(text.replace('"drawing B-12"', "12"))
+    with pytest.raises(InputError, match="source: found 12; accepted: where its numbers are from"):
+        load_case(tmp_path)
 
 
 def test_scaling_is_said_in_the_chosen_unit(tmp_path: Path) -> None:

@@ -8,11 +8,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import InputError, Study, design_numbers, load_case, simulate
+from eventpound import InputError, Study, design_numbers, load_case, simulate, simulate_many
 from eventpound.case.member import member_case
 from eventpound.cli import main
+from eventpound.motion import Record
 from eventpound.quantities.lookup import find
 from eventpound.results.trade import three_digits
+from eventpound.scene import GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.study.design import DEMANDS
 from tests.quantities.test_separation import row
 from tests.study.test_suite import CASE, time_series
@@ -200,3 +202,58 @@ def test_records_without_bodies_and_suites_that_all_fail_are_no_design(
     (suite / "case.toml").write_text(text[: text.index("[[body]]")] + figure)
     assert main(["design", str(suite)]) == 2
     assert "[[body]]: missing; design numbers are of bodies" in capsys.readouterr().err
+
+
+def two_buildings(record: Record, gap: float = 0.02) -> Scene:
+    """Two linear buildings of one storey, unlike each other."""
+    bodies, springs, dashpots = [], [], []
+    for name, mass, period, ratio in (("a", 2e5, 0.8, 0.05), ("b", 3e5, 0.7, 0.04)):
+        omega = 2.0 * np.pi / period
+        bodies.append(Body(name, mass))
+        springs.append(Spring(name, (GROUND, name), Linear(mass * omega**2)))
+        dashpots.append(Dashpot((GROUND, name), 2.0 * ratio * mass * omega))
+    joint = Contact("joint", "a", "b", gap, 0.6)
+    return Scene(tuple(bodies), tuple(springs), tuple(dashpots), (joint,), record)
+
+
+def white_noise(seed: int, count: int) -> Record:
+    return Record(np.random.default_rng(seed).normal(0.0, 1.0, count), 0.02)
+
+
+def test_the_spectral_difference_is_what_two_linear_buildings_need_under_white_noise() -> None:
+    needed, cqc, srss = [], [], []
+    for seed in range(12):
+        table = by_name(design_numbers(two_buildings(white_noise(seed, 1500))))
+        for found, word in ((needed, "avoiding_gap"), (cqc, "cqc"), (srss, "srss")):
+            found.append(table.loc[JOINT + word, "value"])
+    # CQC has peaks of both signs, the gap those of one: of n cycles they are as the roots of
+    # ln n and ln 2n. A record scatters by a tenth: the mean of twelve is within three deviations.
+    cycles = 1500 * 0.02 / 0.75
+    one_sided = np.sqrt(np.log(cycles) / np.log(2.0 * cycles))
+    assert np.mean(needed) == pytest.approx(one_sided * np.mean(cqc), rel=0.09)
+    # Of so like periods the peaks alone say more than is needed.
+    assert np.mean(needed) < 0.9 * np.mean(srss)
+
+
+def test_ten_records_need_what_a_bisection_finds(tmp_path: Path) -> None:
+    text = CASE.format('suite = "?.txt"\nunits = "g"\ntime_step = "0.02 s"')
+    (tmp_path / "case.toml").write_text(text)
+    for seed in range(10):
+        (tmp_path / f"{seed}.txt").write_text(time_series(0.1 + 0.08 * seed))
+    case = load_case(tmp_path)
+    assert case.suite is not None
+    table = by_name(design_numbers(case))
+    edges = []
+    for member in case.suite.members(tmp_path):
+        own, low, high = member_case(case, member, member.read()), 0.0, 2.0
+        while high - low > 1e-7:
+            tried = np.linspace(low, high, 34)[1:-1]
+            many = simulate_many(own, {"contact.joint.gap": tried}, rtol=1e-9)
+            count = np.count_nonzero(many.impacts[:, 0])
+            assert many.impacts[:count, 0].all()
+            low, high = [low, *tried][count], [*tried, high][count]
+        edges.append(0.5 * (low + high))
+    found = table.loc[JOINT + "avoiding_gap_alone"]
+    assert found["largest"] == pytest.approx(max(edges), abs=2e-7)
+    for part in (50, 84):
+        assert found[f"{part} %"] == pytest.approx(np.percentile(edges, part), abs=2e-7)
