@@ -1,4 +1,4 @@
-"""SciPy's `solve_ivp` on a scene, with events and restarts, as a competent user writes it.
+"""SciPy's `solve_ivp`, or CVODE from Python, on a scene, with events and restarts, as users do.
 
 Every gap g is a terminal event for its closing; at one, Newton's law
 
@@ -15,12 +15,16 @@ and time are bounded here and what happened is reported.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from itertools import compress
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from sksundae.cvode import CVODE
 
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import BARRIER, BoucWen, Contact, Scene
@@ -28,6 +32,9 @@ from eventpound.solvers.base import Task
 from tests.benchmarks.answers import Answer, Impact
 from tests.benchmarks.scipy_equations import Rates, ground, rates
 
+SUNDIALS = "SUNDIALS"
+"""The method that is CVODE, not one of SciPy's."""
+MOST_STEPS = 100_000
 MOST_IMPACTS = 2000
 """Restarts after which a run counts as one that does not end."""
 
@@ -116,7 +123,7 @@ def _initial(scene: Scene) -> Floats:
     return np.array([*u, *v, *z], dtype=float)
 
 
-def _tolerances(scene: Scene, rtol: float) -> Floats:
+def tolerances(scene: Scene, rtol: float) -> Floats:
     """Absolute tolerances of a state: rtol times L, L/T and 1, L and T of the ground motion."""
     count = len(scene.bodies)
     scales = scene.motion.scales()
@@ -125,13 +132,46 @@ def _tolerances(scene: Scene, rtol: float) -> Floats:
     return rtol * np.array([length] * count + [length * omega] * count + [1.0] * z)
 
 
+def _cvode(
+    equation: Rates, span: tuple[float, float], y: Floats, events: Sequence[Any], **options: Any
+) -> SimpleNamespace:
+    """The same as `solve_ivp` by CVODE of scikit-sundae."""
+
+    def rates_into(t: float, y: Floats, into: Floats) -> None:
+        into[:] = equation(t, y)
+
+    def events_into(t: float, y: Floats, into: Floats) -> None:
+        into[:] = [event(t, y) for event in events]
+
+    ends = [getattr(event, "terminal", False) for event in events]
+    rules: Any = events_into
+    rules.terminal, rules.direction = ends, [int(getattr(e, "direction", 0.0)) for e in events]
+    solver = CVODE(
+        rates_into,
+        eventsfn=events_into,
+        num_events=len(events),
+        max_num_steps=MOST_STEPS,
+        **options,
+    )
+    sol = solver.solve(span, y)
+    happened = np.zeros((0, len(events))) if sol.i_events is None else sol.i_events
+    found = [np.flatnonzero(column) for column in happened.T]
+    return SimpleNamespace(
+        t=sol.t,
+        y=sol.y.T,
+        t_events=[sol.t_events[rows] if len(rows) else [] for rows in found],
+        y_events=[sol.y_events[rows] if len(rows) else [] for rows in found],
+        status=int(any(map(len, compress(found, ends)))) if sol.success else -1,
+    )
+
+
 class _Run:
     """One run under way."""
 
     def __init__(self, task: Task, method: str, seconds: float) -> None:
         scene = task.scene
         self.task, self.method = task, method
-        self.atol = _tolerances(scene, task.rtol)
+        self.atol = tolerances(scene, task.rtol)
         self.count = len(scene.bodies)
         self.gaps = [_Gap(scene, contact) for contact in scene.contacts]
         self.events = [gap.event(self._check) for gap in self.gaps]
@@ -165,9 +205,12 @@ class _Run:
 
     def _stretch(self, equation: Rates, stop: float) -> None:
         """Integrate up to `stop` or the next impact."""
-        options = {"method": self.method, "rtol": self.task.rtol, "atol": self.atol}
+        options = {"rtol": self.task.rtol, "atol": self.atol}
+        integrate = partial(solve_ivp, method=self.method)
+        if self.method == SUNDIALS:
+            integrate = _cvode
         try:
-            sol = solve_ivp(equation, (self.t, stop), self.y, events=self.events, **options)
+            sol = integrate(equation, (self.t, stop), self.y, events=self.events, **options)
         except ValueError as error:
             # The root finder's, where an event function is not what it was at the step's end.
             raise _GivenUpError(f"solve_ivp raised {error}") from error
@@ -204,7 +247,7 @@ def solve(task: Task, method: str, seconds: float) -> BaselineRun:
         The scene, the stretch of time, and the relative tolerance; absolute ones
         are rtol times the scene's scales.
     method : str
-        ``"LSODA"`` or ``"DOP853"``.
+        ``"LSODA"``, ``"DOP853"`` or `SUNDIALS`.
     seconds : float
         Processor time after which the run is given up (s).
     """

@@ -10,9 +10,10 @@ import pytest
 
 from eventpound.motion.synthetic import synthetic_motion
 from eventpound.solvers import solver_named
-from tests.benchmarks import rows, scipy_baseline, suite, work, yardsticks
+from tests.benchmarks import rows, scipy_baseline, suite, yardsticks
 from tests.benchmarks.answers import Answer, Impact, answer_of, deviation
-from tests.benchmarks.runs import Run, milliseconds_at
+from tests.benchmarks.peers import __main__ as peers
+from tests.benchmarks.peers.programs import PROGRAMS, lines_of
 
 YARDSTICKS = yardsticks.load()
 ALLOWED = 1e3
@@ -63,21 +64,48 @@ def test_deviation_counts_impacts_and_takes_the_largest_error():
     assert deviation(replace(true, impacts=()), true, 10.0).remark == "0 impacts, not 1"
 
 
-def test_time_at_an_error_lies_on_the_line_between_runs():
-    def run(milliseconds: float, error: float) -> Run:
-        return Run(1e-6, milliseconds, error)
-
-    runs = [run(1.0, 1e-2), run(100.0, 1e-6), run(50.0, 1e-1)]
-    assert milliseconds_at(1e-4, runs) == pytest.approx(10.0)
-    assert milliseconds_at(1.0, runs) == pytest.approx(1.0)
-    assert math.isnan(milliseconds_at(1e-8, runs))
+def test_program_of_peers_gets_to_the_error_at_the_loosest_tolerance_that_does():
+    timed = peers.at_error(PROGRAMS["SciPy, DOP853"], YARDSTICKS["P3"])
+    far = deviation(timed.call(), YARDSTICKS["P3"].answer, YARDSTICKS["P3"].task.end)
+    assert (far.remark, far.error <= peers.ERROR, timed.runs) == ("", True, 1)
+    # It is not written for a body that stays at its barrier.
+    assert peers.at_error(PROGRAMS["SciPy, DOP853"], YARDSTICKS["PZ"]) is None
 
 
-def test_work_command_prints_its_table(capsys):
-    work.main(["--problems", "P4", "elastic-barrier", "--rtol", "1e-6"])
-    printed = capsys.readouterr().out
-    assert "| P4 | " in printed
-    assert "| elastic-barrier | " in printed
+def test_cvode_from_python_follows_the_tolerance():
+    problem = YARDSTICKS["P3"]
+    task = replace(problem.task, rtol=1e-8)
+    run = scipy_baseline.solve(task, scipy_baseline.SUNDIALS, seconds=60.0)
+    far = deviation(run.answer, problem.answer, problem.task.end)
+    assert (run.trouble, far.remark, far.error <= ALLOWED * 1e-8) == ("", "", True)
+
+
+OTHERS = [
+    (name, problem)
+    for name, program in PROGRAMS.items()
+    if program.sources and program.installed and "SciPy" not in name
+    for problem in program.problems.split()
+]
+
+
+@pytest.mark.parametrize(("name", "problem"), OTHERS)
+def test_programs_of_others_are_right(name, problem):
+    call, _ = PROGRAMS[name].ready(YARDSTICKS[problem], 1e-10)
+    far = deviation(call(), YARDSTICKS[problem].answer, YARDSTICKS[problem].task.end)
+    assert (far.remark, far.error < 1e-6) == ("", True)
+
+
+def test_lines_of_a_program_leave_out_comments_and_docstrings():
+    what = '"""What\nit does."""\n\n# why\nx = 1  # so\n\n'
+    text = what + 'def f():\n    """Nothing."""\n    return (\n        x\n    )\n'
+    assert lines_of(text) == 5
+
+
+def test_peers_command_prints_its_table(capsys):
+    peers.main(["--programs", "SciPy, DOP853", "sundials4py", "--problems", "P3", "--no-bridge"])
+    rows = capsys.readouterr().out.splitlines()
+    assert rows[2].startswith("| SciPy, DOP853 | ")
+    assert ("absent" in rows[3]) != PROGRAMS["sundials4py"].installed
 
 
 @pytest.mark.sweep
