@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from eventpound import (
-    Backfill,
     Body,
     BoucWen,
     Contact,
@@ -79,6 +78,20 @@ def test_a_run_cut_in_two_is_the_run_in_one(
         # The tolerance, 1e-9, and what impacts make of it; rounding alone of steps that are whole.
         assert np.abs(getattr(kept, word) - getattr(found, word)).max() <= off * size
     assert np.abs(kept.z - found.z).max(initial=0.0) <= 1e-6
+
+
+# While it yields, is unloaded, is let go before and behind its first gap.
+@pytest.mark.parametrize("part", [0.1, 0.16, 0.25, 0.29, 0.323, 0.6])
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_soil_remembers_across_the_cut_how_far_it_was_pushed_in(solver: str, part: float) -> None:
+    one, first, second = cut(load_case(CASES / "deck-on-backfill"), solver, part)
+    kept, found = one.recording, second.recording
+    assert np.abs(kept.u - found.u).max() <= 1e-6 * np.abs(kept.history.u).max()
+    assert np.abs(kept.z - found.z).max() <= 1e-6 * np.abs(kept.history.z).max()
+    name = "springs.right.residual_gap"
+    assert second.quantity(name) == pytest.approx(one.quantity(name), rel=1e-6)
+    lost = [run.quantity("springs.right.dissipated_energy") for run in (first, second, one)]
+    assert lost[0] + lost[1] == pytest.approx(lost[2], rel=1e-6)
 
 
 @pytest.mark.parametrize("name", ["bridge-el-centro", "isolated-building"])
@@ -203,12 +216,6 @@ def test_a_state_may_have_numbers_of_numpy_and_units() -> None:
     final: Any = {"a": {"u": np.float32(0.5), "v": "10 cm/s"}, "s": {"z": np.int64(0)}}
     first = simulate(scene(gap=1.0), duration=0.1, start=final).history.iloc[0]
     assert [first["u.a"], first["v.a"], first["z.s"]] == [0.5, 0.1, 0.0]
-
-
-def test_a_memory_that_a_scene_cannot_begin_with_is_refused() -> None:
-    soil = Spring("s", ("ground", "a"), Backfill(1e4, 1e3, 0.8))
-    with pytest.raises(InputError, match=r"start: found 's' \(law backfill\), whose memory"):
-        simulate(replace(scene(), springs=(soil,)), duration=1.0, start=STATE)
 
 
 def test_without_a_memory_there_is_nothing_but_the_motion() -> None:

@@ -118,6 +118,7 @@ def _read_backfill(table: Table) -> Backfill:
         table.quantity("ultimate_force", Dimension.FORCE),
         table.quantity("failure_ratio", Dimension.NUMBER),
         table.quantity("gap", Dimension.LENGTH, 0.0),
+        table.quantity("initial_gap", Dimension.LENGTH, 0.0),
     )
 
 

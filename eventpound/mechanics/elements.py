@@ -216,6 +216,20 @@ def next_branch(
     return APART if -z * memory[a, YIELD] < 0.5 * knee else YIELDING
 
 
+@scalar_kernel
+def branch_within(a: int, memory: Floats, offset: float, x: float, z: float, noise: float) -> int:
+    """The branch of link a inside the backbone that it left, at x (m) and z; 0 where it is on it.
+
+    On it, or where it was never pushed in, the motion decides.
+    """
+    knee = 0.0
+    if has_branches(a, memory):
+        knee = _knee(a, memory, offset, x, z)
+    if knee <= noise or -z * memory[a, YIELD] > knee - noise:
+        return 0
+    return APART if z >= 0.0 else CLOSED
+
+
 @kernel
 def z_coefficient(
     a: int, k: int, memory: Floats, x_rate: Floats, z: Floats, power: Floats, sigma: float

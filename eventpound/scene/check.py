@@ -252,6 +252,10 @@ def _backfill_problems(element: _Element, law: Backfill) -> Iterator[Problem]:
     accepted = "a number above 0, at most 1"
     yield from number("failure_ratio", law.failure_ratio, accepted, lambda r: 0.0 < r <= 1.0)
     yield from number("gap", law.gap, "a length >= 0 (m)", _not_negative)
+    accepted = "a length of at least gap (m), or 0"
+    yield from number(
+        "initial_gap", law.initial_gap, accepted, lambda g: g in (0.0, max(g, law.gap))
+    )
 
 
 def _dashpot_problems(scene: Scene) -> Iterator[Problem]:

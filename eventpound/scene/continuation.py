@@ -18,7 +18,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene.check import check_scene, starts_of_supports
 from eventpound.scene.contact import BARRIER, opening
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
+from eventpound.scene.spring import GROUND, Backfill, BoucWen
 from eventpound.units import Dimension
 
 FinalState = Mapping[str, Mapping[str, float]]
@@ -46,7 +46,7 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
     scene : Scene
         Whose initial displacements, velocities and z are replaced.
     final : mapping
-        A state of each body and of each Bouc-Wen spring, by name.
+        A state of each body and of each spring with a memory, by name.
     start : float
         When the run starts (s).
 
@@ -60,12 +60,15 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
         replace(body, displacement=state[body.name]["u"], velocity=state[body.name]["v"])
         for body in scene.bodies
     ]
+    places = {body.name: body.displacement for body in bodies}
+    places |= {BARRIER: 0.0, GROUND: 0.0, **starts_of_supports(scene, start)}
     springs = []
     for spring in scene.springs:
         law = spring.law
-        if isinstance(law, Hysteretic) and not isinstance(law, BoucWen):
-            found = f"{spring.name!r} (law {law.word}), whose memory a scene cannot begin with"
-            raise InputError(f"start: found {found}; accepted: Bouc-Wen springs and elastic ones")
+        if isinstance(law, Backfill):
+            first, second = (places.get(end, 0.0) for end in spring.between)
+            gap = law.residual_gap(second - first, state[spring.name]["z"])
+            law = replace(law, initial_gap=max(gap, law.gap))
         if isinstance(law, BoucWen):
             z = state[spring.name]["z"]
             # What a tolerance leaves beyond the bound is a spring that has yielded.
@@ -74,7 +77,7 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
         springs.append(replace(spring, law=law))
     later = replace(scene, bodies=tuple(bodies), springs=tuple(springs))
     check_scene(later, start)
-    _refuse_closed(later, start)
+    _refuse_closed(later, places)
     return later
 
 
@@ -98,10 +101,8 @@ def _read(scene: Scene, final: FinalState) -> dict[str, dict[str, float]]:
     return found
 
 
-def _refuse_closed(scene: Scene, start: float) -> None:
+def _refuse_closed(scene: Scene, displacements: Mapping[str, float]) -> None:
     """Refuse contacts with a law of their own that are closed."""
-    displacements = {body.name: body.displacement for body in scene.bodies}
-    displacements |= {BARRIER: 0.0, GROUND: 0.0, **starts_of_supports(scene, start)}
     closed = [
         contact.name
         for contact in scene.contacts

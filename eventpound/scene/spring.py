@@ -273,6 +273,8 @@ class Backfill(Hysteretic):
         R_f, above 0 and at most 1; far in, the force tends to ``F_ult/R_f``.
     gap : float
         Compression before the soil is touched (m), not negative.
+    initial_gap : float
+        The same at the start of a run (m), where it was pushed in before; 0 where it was not.
     """
 
     word: ClassVar[LawName] = LawName.BACKFILL
@@ -286,6 +288,7 @@ class Backfill(Hysteretic):
     ultimate_force: Annotated[Number, Dimension.FORCE]
     failure_ratio: Annotated[Number, Dimension.NUMBER]
     gap: Annotated[Number, Dimension.LENGTH] = default(0.0)
+    initial_gap: Annotated[Number, Dimension.LENGTH] = default(0.0)
 
     def __post_init__(self) -> None:
         read_fields(self)
@@ -306,11 +309,10 @@ class Backfill(Hysteretic):
         return -self.gap
 
     def z_at(self, elongation: float) -> float:
-        """The z of a start at an elongation (m), for soil that is pushed in for the first time."""
+        """The z of a start at an elongation (m), never beyond the backbone."""
+        z = (elongation + max(self.initial_gap, self.gap)) / self.yield_displacement
         depth = self.offset - elongation
-        if depth > 0.0:
-            return -self.push(depth) / self.strength
-        return -depth / self.yield_displacement
+        return max(z, -self.push(depth) / self.strength) if depth > 0.0 else z
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -335,8 +337,12 @@ class Backfill(Hysteretic):
         return self.yield_displacement * z - elongation
 
     def dissipated(self, elongation: float, z: float) -> float:
-        """Work that was lost up to here (J), ``∫ F dp`` along the backbone in its plastic depth."""
-        zeta = max((self.residual_gap(elongation, z) - self.gap) / self.yield_displacement, 0.0)
+        """Work lost since the start (J)."""
+        return self._lost(self.residual_gap(elongation, z)) - self._lost(self.initial_gap)
+
+    def _lost(self, gap: float) -> float:
+        """Work that left a gap (m), ``∫ F dp`` along the backbone in its plastic depth (J)."""
+        zeta = max((gap - self.gap) / self.yield_displacement, 0.0)
         t = 1.0 + 0.5 * (zeta + math.sqrt(zeta * (zeta + 4.0)))
         lost = t - math.log(t) + 1.0 / t - 0.5 / t**2 - 1.5
         return self.strength * self.yield_displacement * lost

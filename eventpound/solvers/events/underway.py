@@ -22,6 +22,7 @@ from eventpound.mechanics.clusters import unique_forces
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.descriptor import contact_rows
+from eventpound.mechanics.elements import branch_within
 from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.observables import Observed, blank
@@ -30,7 +31,7 @@ from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.motion.loads import add_body_loads
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
 from eventpound.scene.contact_law import Element
@@ -62,7 +63,7 @@ from eventpound.solvers.events.run import (
 )
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.events.step_check import broken_contact, contact_error
-from eventpound.tolerances import FLAT_WITHIN, FORCE, GAP
+from eventpound.tolerances import FLAT_WITHIN, FORCE, GAP, LENGTH
 
 SPARE_ROWS = 64
 """Lines of the history for which there is room at first beside those at output times, and
@@ -318,11 +319,20 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
         gap_rate=model.rates(model.v0),
         resting=np.zeros(model.contacts, np.bool_),
         pressed=np.zeros(model.contacts, np.bool_),
-        branch=np.zeros(model.links, np.int64),
+        branch=_first_branches(model, LENGTH * scales.length),
         ledger=np.zeros(model.ledger_entries),
         clock=clock,
         count=count,
     )
+
+
+def _first_branches(model: Model, noise: float) -> Ints:
+    """Branches that z alone decides (L,), else 0; lengths (m) below `noise` are none."""
+    branch, x = np.zeros(model.links, np.int64), model.elongations(model.u0)
+    for a, z in zip(model.hysteretic.tolist(), model.z0.tolist(), strict=True):
+        within = in_python(branch_within)
+        branch[a] = within(a, model.law.memory, model.elastic.offset[a], x[a], z, noise)
+    return branch
 
 
 def _record_of(task: Task, model: Model, scales: SceneScales) -> RunRecord:
