@@ -68,6 +68,7 @@ def made_ready(
     **asked_for: Unpack[Options],
 ) -> ReadyScene:
     """What `simulate` is asked for, checked; its arguments."""
+    check_case(case)
     settings, max_steps = asked_for.get("settings"), asked_for.get("max_steps")
     number = positive("rtol", rtol, Dimension.NUMBER)
     run, options = options_of(
