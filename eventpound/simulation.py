@@ -39,7 +39,7 @@ from eventpound.units import Dimension
 Progress = Callable[[float], None]
 
 
-class Options(TypedDict, total=False):
+class SimulateOptions(TypedDict, total=False):
     """Options of `eventpound.simulate` beside solver and tolerance, as they are described there."""
 
     duration: float | str | None
@@ -54,7 +54,7 @@ def simulate(
     case: Case | Scene,
     solver: str | Solver | None = None,
     rtol: float | str | None = None,
-    **options: Unpack[Options],
+    **options: Unpack[SimulateOptions],
 ) -> Response:
     """Compute how a scene moves; `eventpound.simulate` without an estimate of the errors."""
     ready = made_ready(case, solver, rtol, **options)
@@ -65,7 +65,7 @@ def made_ready(
     case: Case | Scene,
     solver: str | Solver | None,
     rtol: float | str | None,
-    **asked_for: Unpack[Options],
+    **asked_for: Unpack[SimulateOptions],
 ) -> ReadyScene:
     """What `simulate` is asked for, checked; its arguments."""
     check_case(case)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from eventpound.case import Case
-    from eventpound.study.design import Made
+    from eventpound.study.design import DesignRuns
 
 _FOLDER, REPORT, PRINTED = "design", "design.html", "design.pdf"
 
@@ -72,7 +72,7 @@ def _design(options: Options) -> int:
     return 0
 
 
-def _report(made: Made) -> dict[str, bytes]:
+def _report(made: DesignRuns) -> dict[str, bytes]:
     """The two sheets, as HTML and PDF; of a suite with the motion under the governing record."""
     from eventpound.report.design_report import Told, design_sheets, governing_record, motion_under
     from eventpound.report.sheets import as_html, as_pdf
@@ -87,7 +87,7 @@ def _report(made: Made) -> dict[str, bytes]:
     return {REPORT: as_html(case.title, sheets), PRINTED: as_pdf(case.title, sheets)}
 
 
-def _of_run(case: Case, out: Path) -> Made:
+def _of_run(case: Case, out: Path) -> DesignRuns:
     """Run a case, and what its design numbers need."""
     from eventpound import results
     from eventpound.study.design import made_of_run
@@ -101,7 +101,7 @@ def _of_run(case: Case, out: Path) -> Made:
     return made
 
 
-def _of_suite(case: Case, out: Path) -> Made:
+def _of_suite(case: Case, out: Path) -> DesignRuns:
     """Run a case under every record; those that failed are named."""
     from eventpound.study.design import made_of_suite
 

@@ -148,7 +148,7 @@ def design_numbers(
 
 
 @dataclass(frozen=True)
-class Made:
+class DesignRuns:
     """Design numbers, with what they come from.
 
     Parameters
@@ -173,14 +173,14 @@ def made_of_run(
     case: Case | Scene,
     progress: Callable[[float], None] | None = None,
     again: Callable[[], None] | None = None,
-) -> Made:
+) -> DesignRuns:
     """Run a case once, then what its design numbers need; `again` is called in between."""
     asked = case if isinstance(case, Scene) else asking(case)
     response = simulate(asked, progress=progress)
     if again is not None:
         again()
     table = design_of_run(response)
-    return Made(table, None if isinstance(case, Scene) else case, response)
+    return DesignRuns(table, None if isinstance(case, Scene) else case, response)
 
 
 def made_of_suite(
@@ -188,20 +188,20 @@ def made_of_suite(
     out: Path,
     progress: Callable[[int, int], None] | None = None,
     workers: int | None = None,
-) -> Made:
+) -> DesignRuns:
     """Run a case under every record, with what its design numbers need."""
     plan, own = plan_of(asking(case), None, None, None, intensities=True)
     run_suite(plan, own, out, progress, workers=workers)
     runs = read_table(out, SUITE_TABLE)
-    return Made(design_of_suite(runs, own), own, runs=runs)
+    return DesignRuns(design_of_suite(runs, own), own, runs=runs)
 
 
-def made_of_study(plan: Plan, out: Path, progress: Progress | None = None) -> Made:
+def made_of_study(plan: Plan, out: Path, progress: Progress | None = None) -> DesignRuns:
     """Make the runs of a study, with what its design numbers need."""
     plan = plan_asking(plan)
     run_study(plan, out, engine_of(plan.solver, None), progress)
     runs = read_table(out)
-    return Made(design_of_study(runs, plan), runs=runs)
+    return DesignRuns(design_of_study(runs, plan), runs=runs)
 
 
 def design_of_run(response: Response) -> pd.DataFrame:
