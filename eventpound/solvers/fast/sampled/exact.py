@@ -22,7 +22,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_stepwise
 from eventpound.tolerances import NO_TERM
 
-MOST_BODIES = 8
+MOST_BODIES = 4
 """Bodies up to which matrices cost less than series."""
 KEPT = 16
 """Sets of tangents kept at a time."""
