@@ -11,11 +11,11 @@ from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import only_root
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
-from eventpound.solvers.fast.expansion import LOCAL_SHARE
+from eventpound.solvers.fast.expansion import LOCAL_SHARE, defect_error
 from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.sampled.bounds import pair_goes_one_way
 from eventpound.solvers.fast.sampled.forces import accelerations
-from eventpound.solvers.fast.sampled.series import propose_by_series, series_error
+from eventpound.solvers.fast.sampled.series import propose_by_series
 from tests.solvers.stepping import Stepper, stepper_of
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -93,7 +93,8 @@ def test_a_step_is_that_of_the_equations_of_motion(z: float, h: float) -> None:
     accelerations(2, at.table, *where, bodies.next_acceleration, at.run)
     curved = at.state.part >= DOWN
     np.testing.assert_allclose(at.series.z[curved, 0], other[4:][curved], rtol=0.0, atol=1e-9)
-    assert series_error(order, length, GROUND_NOW + SLOPE * length, at.series) <= 1.0
+    g = GROUND_NOW + SLOPE * length
+    assert defect_error(length, order, g, bodies.next_acceleration, at.series) <= 1.0
 
 
 def test_a_step_that_the_series_cannot_reach_is_shortened() -> None:

@@ -208,37 +208,52 @@ def flat_time(plan: FastPlan) -> float:
 
 
 @compiled
-def forces_inside_step(tau: float, order: int, run: FastRun) -> bool:
-    """Turning points within a step of length tau (s); whether `seen` was overwritten."""
+def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bool:
+    """Turning points within a step of length tau (s); whether `seen` was overwritten.
+
+    `last` (N,) has the absolute accelerations at its end (m/s²). A quantity whose rate changes by
+    no more than b all in all goes one way if its rate at the start is larger, and strays from the
+    straight line between its values at both ends by no more than b τ / 4.
+    """
     plan, state, series, running = run.plan, run.state, run.series, run.running
     bodies, at = plan.mass.size, running.at
-    shear, spread = 0.0, 0.0
+    shear, end, rate, bend = 0.0, 0.0, 0.0, 0.0
     # Where nothing rests on a barrier or is pushed, all links to the ground together pull at all
     # bodies.
     held = state.count[RESTING] > 0 or series.load.shape[0] > 0
     looked = False
     for b in range(bodies):
-        c = series.of_body[b]
+        c, m = series.of_body[b], plan.mass[b]
         if c < 0:
             continue
-        value, change = _acceleration(c, tau, order, series)
-        if not held:
-            shear -= plan.mass[b] * value
-            spread += plan.mass[b] * change
-        if not stays_within(at.acceleration + b, value - change, value + change, running):
+        value, its_rate = _acceleration_term(c, 0, series), _acceleration_term(c, 1, series)
+        shear, end = shear - m * value, end - m * last[b]
+        rate, bend = rate - m * its_rate, bend + m * series.bend[c]
+        if _may_turn(at.acceleration + b, value, last[b], its_rate, series.bend[c], tau, running):
             _set_acceleration_rate(c, order, series)
             looked = _turns(c, tau, order, run) or looked
-    if held or not stays_within(at.base_shear, shear - spread, shear + spread, running):
-        value = shear
-        if held:
-            value = _base_shear(order, plan, series)
-        else:
-            _shear_rate_of_bodies(order, plan.mass, series)
+    if held:
+        value = _base_shear(order, plan, series)
         if not _settled(at.base_shear, value, tau, order, series, running):
             looked = _turns(-1, tau, order, run) or looked
+    elif _may_turn(at.base_shear, shear, end, rate, bend, tau, running):
+        _shear_rate_of_bodies(order, plan.mass, series)
+        looked = _turns(-1, tau, order, run) or looked
     if state.count[RESTING] > 0:
         _at_rest(tau, order, run)
     return looked
+
+
+@compiled
+def _may_turn(
+    i: int, value: float, end: float, rate: float, bend: float, tau: float, running: Running
+) -> bool:
+    """Whether a quantity may turn within a step beyond its extremes, by the bound `bend`."""
+    stray = 0.25 * bend * tau
+    return not (
+        abs(rate) > bend
+        or stays_within(i, min(value, end) - stray, max(value, end) + stray, running)
+    )
 
 
 @compiled
@@ -277,15 +292,6 @@ def _turns(c: int, tau: float, order: int, run: FastRun) -> bool:
 def _acceleration_term(c: int, k: int, series: FastSeries) -> float:
     """Coefficient k of the absolute acceleration of a cluster (m/s^(2+k))."""
     return (k + 1) * (k + 2) * series.X[c, k + 2] + series.ground[k]
-
-
-@compiled
-def _acceleration(c: int, tau: float, order: int, series: FastSeries) -> tuple[float, float]:
-    """Absolute acceleration of a cluster (m/s²), and how much it may change within the step."""
-    spread = 0.0
-    for k in range(order - 2, 0, -1):
-        spread = (spread + abs(_acceleration_term(c, k, series))) * tau
-    return _acceleration_term(c, 0, series), spread
 
 
 @compiled

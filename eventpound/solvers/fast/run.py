@@ -210,7 +210,8 @@ class FastSeries(NamedTuple):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
     (L,): links that move, those of clusters that go together first. apart: of clusters that go by
     themselves. expected (N,): relative acceleration of clusters by their series, where they have
-    been looked at last (m/s²). travel, swing, reach (N,): bounds of the motion over a step.
+    been looked at last (m/s²). travel, swing, reach, bend (N,): bounds of the motion over a step;
+    end (N,): absolute accelerations there (m/s²).
     c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,). load
     (p + 3, N): of the loads on bodies, empty without any.
     Where contacts rest: contact_force (K, p + 3), rests (K,) and elimination (K, 4) as in
@@ -240,6 +241,8 @@ class FastSeries(NamedTuple):
     travel: Floats
     swing: Floats
     reach: Floats
+    bend: Floats
+    end: Floats
     c: Floats
     d: Floats
     work: Floats

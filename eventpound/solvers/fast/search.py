@@ -41,14 +41,18 @@ def set_travel(order: int, h: float, count: int, series: FastSeries) -> None:
     """Bounds of the motion of clusters over a step of length h (s).
 
     `reach`: of the change of displacement (m). `travel` and `swing`: of what
-    the quadratics leave of the displacement (m) and of the velocity (m/s).
+    the quadratics leave of the displacement (m) and of the velocity (m/s). `bend`: of the
+    change of the rate of the absolute acceleration (m/s³).
     """
-    X = series.X
+    X, ground = series.X, series.ground
     for c in range(count):
-        travel, swing = 0.0, 0.0
+        travel, swing, bend = 0.0, 0.0, 0.0
         for k in range(order, 3, -1):
-            travel = (travel + abs(X[c, k])) * h
-            swing = (swing + k * abs(X[c, k])) * h
+            size = abs(X[c, k])
+            travel = (travel + size) * h
+            swing = (swing + k * size) * h
+            bend = (bend + (k - 2) * abs(k * (k - 1) * X[c, k] + ground[k - 2])) * h
+        series.bend[c] = bend
         series.swing[c] = swing * h * h
         travel = (travel + abs(X[c, 3])) * h * h * h
         series.travel[c] = travel

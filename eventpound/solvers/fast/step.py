@@ -85,7 +85,7 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
         t_end = stop if tau == stop - t else t + tau
         g_end = ground_acceleration(piece, t_end)
         look(tau, order, g_end, run)
-        error = defect_error(tau, order, g_end, run)
+        error = defect_error(tau, order, g_end, seen.a, series)
         pulls = _pulls(first <= tau, run)
         if count[RESTING] > 0:
             error = max(error, 2.0 if pulls else 0.0, _contact_force_error(tau, order, run))
@@ -144,7 +144,9 @@ def _record_inside(tau: float, t_end: float, order: int, piece: CurrentPiece, ru
     """Extremes, energy and rows inside a step; whether `seen` was overwritten."""
     plan, state = run.plan, run.state
     inside_step(tau, order, run)
-    again = forces_inside_step(tau, order, run)
+    # Where a force turns is looked at, too.
+    copy_numbers(run.seen.a, run.series.end)
+    again = forces_inside_step(tau, order, run.series.end, run)
     if plan.limits.ledger:
         add_work(tau, order, piece, run)
         again = True

@@ -33,12 +33,6 @@ NOTHING, KINK, BORDER, REVERSAL, CLOSING = range(5)
 
 
 @compiled
-def goes_one_way(rate: float, next_rate: float, change: float) -> bool:
-    """Whether a rate that changes by no more than `change` all in all keeps its sign."""
-    return rate * next_rate > 0.0 and abs(rate) + abs(next_rate) > change
-
-
-@compiled
 def pair_goes_one_way(
     h: float,
     first: int,
@@ -50,7 +44,7 @@ def pair_goes_one_way(
 ) -> bool:
     """Whether the distance of two bodies, the ground among them, only grows or only shrinks."""
     fastest = bound_of_pair(first, second, tables.bodies.fastest)
-    if goes_one_way(rate, next_rate, h * fastest):
+    if rate * next_rate > 0.0 and abs(rate) + abs(next_rate) > h * fastest:
         return True
     a, spread = 0.0, fastest
     if first >= 0:
@@ -238,21 +232,3 @@ def forces_covered(n: int, mass: Floats, tables: SampleTables, running: Running)
         next_shear -= mass[b] * then
         spread += mass[b] * bend
     return _covered(at.base_shear, shear, next_shear, spread, running)
-
-
-@compiled
-def forces_go_one_way(h: float, mass: Floats, tables: SampleTables) -> bool:
-    """Whether all absolute accelerations, and the base shear they make, go one way.
-
-    Their rates at both ends stand in the `jerk` and `next_jerk` of the bodies.
-    """
-    bodies = tables.bodies
-    shear, next_shear, shear_change = 0.0, 0.0, 0.0
-    for b in range(mass.size):
-        change = 8.0 * bodies.bend[b] / h
-        if not goes_one_way(bodies.jerk[b], bodies.next_jerk[b], change):
-            return False
-        shear += mass[b] * bodies.jerk[b]
-        next_shear += mass[b] * bodies.next_jerk[b]
-        shear_change += mass[b] * change
-    return goes_one_way(shear, next_shear, shear_change)

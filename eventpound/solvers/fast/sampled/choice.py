@@ -1,15 +1,15 @@
-"""How the next step under a record is taken: by matrices, by a series, or until something happens.
+"""How the next step under a record is taken: by a series, or until something happens.
 
 The first way in which the step is good is taken. It is good only if bounds
-(`eventpound.solvers.fast.sampled.bounds`) exclude every event but one that ends it, and every
-extreme inside that is not found.
+(`eventpound.solvers.fast.sampled.bounds`) exclude every event but one that ends it. Extremes inside
+that they do not exclude are located.
 
-Of steps that something ends only what is simple is done here: where a series proposed for a longer
-step shows that one link leaves its branch or its part, or one gap is below zero, the step ends at
-the root of that quantity, and must then be clear of everything else. The root is the only one if
-the pair of bodies goes one way until then: for a kink, a border or a closing by the bound of
-`pair_goes_one_way`, for a reversal because the acceleration keeps its sign. All else (two events at
-a time, grazes, gaps that are variables of their own) is left to `eventpound.solvers.fast.step`.
+Of steps that something ends only what is simple is done here: where the series shows that one link
+leaves its branch or its part, or one gap is below zero, the step ends at the root of that quantity,
+and must then be clear of everything else. The root is the only one if the pair of bodies goes one
+way until then: for a kink, a border or a closing by the bound of `pair_goes_one_way`, for a
+reversal because the acceleration keeps its sign. All else (two events at a time, grazes, gaps that
+are variables of their own) is left to `eventpound.solvers.fast.step`.
 """
 
 from __future__ import annotations
@@ -17,9 +17,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from eventpound.contact.cascade import T, is_fleeting
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.polynomial import only_root
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import look
+from eventpound.solvers.fast.expansion import defect_error
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
 from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, place, reverse
 from eventpound.solvers.fast.record import has_room, put_row
@@ -31,18 +33,15 @@ from eventpound.solvers.fast.sampled.bounds import (
     NOTHING,
     REVERSAL,
     forces_covered,
-    forces_go_one_way,
     keeps_parts,
     places_unseen,
     stays_open,
 )
-from eventpound.solvers.fast.sampled.exact import SampleTables, propose_by_matrices, set_jerks
+from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.solvers.fast.sampled.forces import GroundLine, accelerations, stretch_links
 from eventpound.solvers.fast.sampled.series import (
     end_of_series,
     propose_by_series,
-    series_error,
-    set_series_jerks,
 )
 from eventpound.solvers.fast.search import relative, set_travel
 from eventpound.tolerances import EVENTS_APART, OWN_GAP, SOONEST_EVENT
@@ -175,19 +174,13 @@ def do_event(what: int, which: int, g: float, run: FastRun) -> None:
         state.count[DUE] = 1
 
 
-MATRICES, SERIES, UNTIL_EVENT, NO_WAY = range(4)
-"""Ways of a step, tried one after the other: by matrices to the next sample, by series as far
-towards it as they reach, by the same series until something happens."""
-
-
 class ProposedStep(NamedTuple):
     """A step proposed.
 
-    way: above. table: of which tangents. order: of its series, 0 where there is none. h: its
-    length (s). what, which: what happens at its end, to which link or contact.
+    table: of which tangents. order: of its series, 0 for no step. h: its length (s). what, which:
+    what happens at its end, to which link or contact.
     """
 
-    way: int
     table: int
     order: int
     h: float
@@ -196,65 +189,52 @@ class ProposedStep(NamedTuple):
 
 
 @compiled
-def clear_step(linear: bool, i: int, line: GroundLine, run: FastRun) -> ProposedStep:
-    """The first way in which a step is good, or `NO_WAY`."""
-    none = ProposedStep(NO_WAY, i, 0, 0.0, NOTHING, -1)
-    step, way = none, MATRICES if linear else SERIES
-    while True:
-        if way == UNTIL_EVENT:
-            step = _until_event(step, run)
-            if step.what == NOTHING:
-                return none
-        else:
-            step = _propose(way, i, line, run)
-        if _is_clear(step, line, run):
-            return step
-        if way == UNTIL_EVENT or not has_room(run):
-            return none
-        way += 1
+def clear_step(i: int, line: GroundLine, run: FastRun) -> ProposedStep:
+    """A step by series towards the next sample, or until something happens, if it is good."""
+    step = _propose(i, line, run)
+    if _is_clear(step, line, run):
+        return step
+    step = _until_event(step, run)
+    if step.what == NOTHING or not (has_room(run) and _is_clear(step, line, run)):
+        return ProposedStep(i, 0, 0.0, NOTHING, -1)
+    return step
 
 
 @compiled
-def _propose(way: int, i: int, line: GroundLine, run: FastRun) -> ProposedStep:
-    """A step by table i along the line: its order, 0 for none, and length."""
-    plan, state, series = run.plan, run.state, run.series
-    tables, n, longest = series.tables, state.u.size, line.end - state.clock[T]
+def _propose(i: int, line: GroundLine, run: FastRun) -> ProposedStep:
+    """A step by table i along the line."""
+    state, bodies = run.state, run.series.tables.bodies
+    n, longest = state.u.size, line.end - state.clock[T]
     for b in range(n):
-        tables.bodies.pulled[b] = tables.bodies.acceleration[b] - line.g
-    if way == MATRICES:
-        propose_by_matrices(n, i, line.slope, state.u, state.v, tables)
-        return ProposedStep(way, i, plan.limits.order, tables.step[i], NOTHING, -1)
+        bodies.pulled[b] = bodies.acceleration[b] - line.g
     state.count[EXPANSIONS] += 1
     if n == 2:
         # The compiler unrolls the loops over two bodies.
         order, h = propose_by_series(2, i, longest, line.slope, run)
     else:
         order, h = propose_by_series(n, i, longest, line.slope, run)
-    return ProposedStep(way, i, order, h, NOTHING, -1)
+    return ProposedStep(i, order, h, NOTHING, -1)
 
 
 @compiled
 def _until_event(step: ProposedStep, run: FastRun) -> ProposedStep:
-    """End a step by series where something happens."""
+    """End a step where something happens."""
     state, series = run.state, run.series
     what, which, tau = NOTHING, -1, step.h
     if step.order > 0:
         what, which, tau = first_simple_event(step.order, step.h, run)
     if what != NOTHING:
         end_of_series(step.order, tau, state, series)
-    return ProposedStep(UNTIL_EVENT, step.table, step.order, tau, what, which)
+    return ProposedStep(step.table, step.order, tau, what, which)
 
 
 @compiled
 def _is_clear(step: ProposedStep, line: GroundLine, run: FastRun) -> bool:
-    """Whether a step is good and nothing else happens in it.
-
-    Extremes inside a step by series are taken; one by matrices may have none.
-    """
+    """Whether a step is good and nothing else happens in it; extremes inside it are taken then."""
     plan, state, series, running = run.plan, run.state, run.series, run.running
-    tables, h, what, which = series.tables, step.h, step.what, step.which
+    tables, order, h, what, which = series.tables, step.order, step.h, step.what, step.which
     bodies, n = tables.bodies, state.u.size
-    if step.order == 0:
+    if order == 0:
         return False
     # What happens first within a step that is not clear is told by this, too.
     stretch_links(plan.links.ends, tables)
@@ -263,44 +243,18 @@ def _is_clear(step: ProposedStep, line: GroundLine, run: FastRun) -> bool:
         and keeps_parts(h, what, which, plan, state, tables)
     ):
         return False
-    unseen = places_unseen(h, tables, run)
-    if step.way == MATRICES and not unseen:
+    u, v, a = bodies.next_u, bodies.next_v, bodies.next_acceleration
+    accelerations(n, step.table, tables.along.next_x, u, v, a, run)
+    if not defect_error(h, order, line.g + line.slope * h, a, series) <= 1.0:
         return False
-    accelerations(
-        n,
-        step.table,
-        tables.along.next_x,
-        bodies.next_u,
-        bodies.next_v,
-        bodies.next_acceleration,
-        run,
-    )
-    if step.way != MATRICES and not (
-        series_error(step.order, h, line.g + line.slope * h, series) <= 1.0
-    ):
-        return False
-    if unseen and not forces_covered(plan.mass.size, plan.mass, tables, running):
-        if step.way == MATRICES:
-            set_jerks(step.table, line.g + line.slope * h, state.v, tables)
-        else:
-            set_series_jerks(step.order, h, line.slope, series)
-        unseen = forces_go_one_way(h, plan.mass, tables)
-    if not unseen and step.way != MATRICES:
-        _extremes_inside(step, line, run)
-        unseen = True
-    return unseen
-
-
-@compiled
-def _extremes_inside(step: ProposedStep, line: GroundLine, run: FastRun) -> None:
-    """Take the extremes inside a step by series."""
-    state, series = run.state, run.series
-    order, h = step.order, step.h
-    for a in range(series.x.size):
-        series.x[a] = series.tables.along.x[a]
-    for k in range(order):
-        series.ground[k] = 0.0
-    series.ground[0], series.ground[1] = line.g, line.slope
-    set_travel(order, h, state.u.size, series)
-    inside_step(h, order, run)
-    forces_inside_step(h, order, run)
+    unseen, covered = places_unseen(h, tables, run), forces_covered(n, plan.mass, tables, running)
+    if not (unseen and covered):
+        series.ground[:order] = 0.0
+        series.ground[0], series.ground[1] = line.g, line.slope
+        set_travel(order, h, n, series)
+    if not unseen:
+        copy_numbers(tables.along.x, series.x)
+        inside_step(h, order, run)
+    if not covered:
+        forces_inside_step(h, order, a, run)
+    return True

@@ -42,9 +42,6 @@ class StepBodies(NamedTuple):
     next_v: Floats  # velocity at the end (m/s)
     next_acceleration: Floats  # A at the end (m/s²)
     bend: Floats  # dt² max|A''| / 8: distance of A from a straight line, at most (m/s²)
-    expected: Floats  # a at the end by the series, 2 X_2 + 6 X_3 dt + ... (m/s²)
-    jerk: Floats  # A' = -K v - C a at the start (m/s³)
-    next_jerk: Floats  # A' at the end (m/s³)
     unmoved: Floats  # A at no displacement (m/s²)
 
 
@@ -289,19 +286,3 @@ def _motion_by_matrices(
             change += tables.of_v[i, b, c] * v[c] + tables.of_a[i, b, c] * a
             rate += tables.rate_of_v[i, b, c] * v[c] + tables.rate_of_a[i, b, c] * a
         bodies.next_u[b], bodies.next_v[b] = u[b] + change, rate
-
-
-@compiled_apart
-def set_jerks(i: int, g: float, v: Floats, tables: SampleTables) -> None:
-    """Rates of the absolute accelerations, ``-K v - C a``, at both ends of a step (m/s³).
-
-    `g` is the acceleration of the ground at the end (m/s²).
-    """
-    bodies = tables.bodies
-    for b in range(v.size):
-        rate, next_rate = 0.0, 0.0
-        for c in range(v.size):
-            K, C = tables.stiffness[i, b, c], tables.damping[i, b, c]
-            rate -= K * v[c] + C * bodies.pulled[c]
-            next_rate -= K * bodies.next_v[c] + C * (bodies.next_acceleration[c] - g)
-        bodies.jerk[b], bodies.next_jerk[b] = rate, next_rate

@@ -21,7 +21,7 @@ from eventpound.solvers.fast.alone import (
     curve_coefficient,
     on_curve,
 )
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.expansion import last_terms, set_weights
 from eventpound.solvers.fast.run import FastRun, FastSeries, FastState
 from eventpound.solvers.fast.search import distance_coefficient
@@ -160,31 +160,5 @@ def _end_of_body(b: int, order: int, h: float, state: FastState, series: FastSer
         fastest = fastest * h + weight * abs(x)
     bodies.next_u[b] = state.u[b] + h * (state.v[b] + h * change)
     bodies.next_v[b] = state.v[b] + h * rate
-    bodies.expected[b], bodies.fastest[b] = acceleration, fastest
+    series.expected[b], bodies.fastest[b] = acceleration, fastest
     bodies.sag[b], bodies.bend[b] = 0.125 * h * h * fastest, 0.125 * h * h * bend
-
-
-@compiled
-def series_error(order: int, h: float, g: float, series: FastSeries) -> float:
-    """Error of a step in units of its tolerance, by the forces at its end.
-
-    `g` is the acceleration of the ground there (m/s²). As
-    `eventpound.solvers.fast.expansion.defect_error` has it.
-    """
-    bodies, worst = series.tables.bodies, 0.0
-    of_u, of_v = series.weights[0], series.weights[1]
-    for b in range(of_u.size):
-        defect = abs(bodies.next_acceleration[b] - g - bodies.expected[b]) * h / order
-        worst = max(worst, defect * of_v[b], defect * h / order * of_u[b])
-    return worst
-
-
-@compiled_apart
-def set_series_jerks(order: int, h: float, slope: float, series: FastSeries) -> None:
-    """Rates of the absolute accelerations at both ends of a step (m/s³)."""
-    X, bodies = series.X, series.tables.bodies
-    for b in range(bodies.jerk.size):
-        rate = 0.0
-        for k in range(order, 2, -1):
-            rate = rate * h + k * (k - 1) * (k - 2) * X[b, k]
-        bodies.jerk[b], bodies.next_jerk[b] = 6.0 * X[b, 3] + slope, rate + slope

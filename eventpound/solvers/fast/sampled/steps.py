@@ -1,10 +1,9 @@
 """Several bodies under a record, step by step as long as little happens.
 
 From sample to sample the bodies go by exact steps (`eventpound.solvers.fast.sampled.exact`)
-where all their links are linear, several in a row where they stay in their room: nothing happens
-in such a step and no extreme is exceeded, so there is nothing to take down but where it ends. They
-go by short series (`eventpound.solvers.fast.sampled.series`) where a link is on a curved part, and
-from between two samples to the next. A step is taken only where it is clear of all but simple
+as long as all their links are linear and they stay in their room: nothing happens in such a step
+and no extreme is exceeded, so there is nothing to take down but where it ends. Else they go by
+short series (`eventpound.solvers.fast.sampled.series`), where a step is clear of all but simple
 events (`eventpound.solvers.fast.sampled.choice`); any other is left to
 `eventpound.solvers.fast.step`.
 """
@@ -33,8 +32,6 @@ from eventpound.solvers.fast.run import (
 )
 from eventpound.solvers.fast.sampled.bounds import CLOSING, NOTHING, forces_covered
 from eventpound.solvers.fast.sampled.choice import (
-    MATRICES,
-    NO_WAY,
     ProposedStep,
     clear_step,
     do_event,
@@ -164,10 +161,10 @@ def sample_steps(budget: int, piece_end: float, piece: CurrentPiece, run: FastRu
             fresh, segment = False, segment + taken
             if taken > 0:
                 continue
-        step = clear_step(linear, i, line, run)
-        if step.way == NO_WAY:
+        step = clear_step(i, line, run)
+        if step.order == 0:
             break
-        whole = step.way == MATRICES or step.h == line.end - clock[T]
+        whole = step.h == line.end - clock[T]
         _take(step, line, line.end if whole else clock[T] + step.h, piece, run)
         fresh, segment = True, segment + 1 if whole else segment
         if step.what != NOTHING:
@@ -201,26 +198,12 @@ def _take(
     step: ProposedStep, line: GroundLine, t_end: float, piece: CurrentPiece, run: FastRun
 ) -> None:
     """Take a step, which ends at t_end (s), and do what happens there."""
-    _write_between(step, line, t_end, piece, run)
+    if _next_output(run.plan, run.state) < t_end:
+        sample_step(run.state.clock[T], t_end, step.order, piece, run)
     _accept(step, t_end, run)
     if step.what != NOTHING:
         g = line.g + line.slope * step.h
         do_event(step.what, step.which, g, run)
-
-
-@compiled
-def _write_between(
-    step: ProposedStep, line: GroundLine, t_end: float, piece: CurrentPiece, run: FastRun
-) -> None:
-    """Rows of the history before the end of a step (s)."""
-    plan, state = run.plan, run.state
-    count, times = state.count, plan.output_times
-    if not (count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end):
-        return
-    if step.way == MATRICES:
-        write_line(step.table, line.slope, t_end, piece, run)
-    else:
-        sample_step(state.clock[T], t_end, step.order, piece, run)
 
 
 @compiled
