@@ -1,4 +1,4 @@
-"""Pictures of docs/contact.md, docs/sensitivities.md and of backfill in docs/case-format.md.
+"""Pictures of docs/contact.md, docs/sensitivities.md and of loops in docs/case-format.md.
 
 `python docs/explained.py` draws them.
 """
@@ -102,6 +102,18 @@ def tornado() -> None:
     _save(tornado_figure(table, case.title), "tornado.png")
 
 
+def slider() -> None:
+    """Force of friction pendulums against displacement of a deck: slip, stick, impact."""
+    case = eventpound.load_case(HERE.parent / "cases" / "deck-on-sliders")
+    response = eventpound.simulate(replace(case, run=replace(case.run, output_step=1e-3)))
+    history = response.history
+    figure, axis = plt.subplots(figsize=SIZE, dpi=DPI, layout="constrained")
+    axis.plot(100 * history["u.deck"], FORCE_IN_MN * history["force.bearings"], color="#0072b2")
+    axis.set(xlabel="displacement of the deck (cm)", ylabel="force of the bearings (MN)")
+    axis.grid(alpha=0.3)
+    _save(figure, "slider.png")
+
+
 def _save(figure: plt.Figure, name: str) -> None:
     FOLDER.mkdir(exist_ok=True)
     figure.savefig(FOLDER / name)
@@ -113,3 +125,4 @@ if __name__ == "__main__":
     contact_spring()
     backfill()
     tornado()
+    slider()

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
         Point,
         Scene,
         Series,
+        Slider,
         Spring,
         Support,
     )
@@ -89,6 +90,7 @@ __all__ = [
     "Scene",
     "Series",
     "Sine",
+    "Slider",
     "Spring",
     "Study",
     "StudyTable",

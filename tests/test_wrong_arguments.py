@@ -86,6 +86,14 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
         {"initial_stiffness": 1.0, "yield_force": 1.0},
         {NEEDED: "initial_stiffness yield_force hardening exponent beta gamma"},
     ),
+    "Slider": (
+        {"friction": 0.05, "normal_force": 1.0},
+        {NEEDED: "friction normal_force stiffness"},
+    ),
+    "Slider.pendulum": (
+        {"friction": 0.05, "normal_force": 1.0, "radius": 2.0},
+        {NEEDED: "friction normal_force radius"},
+    ),
     "Spring": (
         {"name": "s", "between": ("ground", "a"), "law": Linear(1.0)},
         {TEXT: "name", THINGS: "between law", NUMBER: "height"},

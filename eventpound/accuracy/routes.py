@@ -18,6 +18,7 @@ from dataclasses import dataclass, field, replace
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.base import Family
 from eventpound.scene.scene import Scene
+from eventpound.scene.spring import Slider
 from eventpound.solvers import available, knows_scene
 from eventpound.solvers.base import Recording, Task
 
@@ -153,6 +154,10 @@ SHARED_WITH_LAWS = {
     f"{_EVENTS}.law_contacts": "what is told of contacts with a law",
 }
 """What those share besides whose contacts have laws of their own."""
+SHARED_WITH_SLIDERS = {
+    f"{_EVENTS}.sliders": "which sliders stick, and which way others slip",
+}
+"""What those of a scene with sliders share besides."""
 SHARED_WITH_LOADS = {
     "eventpound.motion.loads": "forces and motions of supports at a time",
     "eventpound.motion.travel": "displacements of supports from their accelerations",
@@ -214,6 +219,8 @@ def shared_code(routes: tuple[Route, ...], scene: Scene) -> dict[str, str]:
         shared |= SHARED_AT_POINTS
     if any(contact.law is not None for contact in scene.contacts):
         shared |= SHARED_WITH_LAWS
+    if any(isinstance(spring.law, Slider) for spring in scene.springs):
+        shared |= SHARED_WITH_SLIDERS
     if scene.supports or scene.forces:
         shared |= SHARED_WITH_LOADS
     found = " and ".join(repr(route.label) for route in routes if route.finds_events)

@@ -22,6 +22,7 @@ from eventpound.scene.spring import (
     LawName,
     Linear,
     Series,
+    Slider,
     Spring,
 )
 from eventpound.units import Dimension
@@ -86,6 +87,8 @@ def _read_law(table: Table, between: tuple[str, str], masses: Mapping[str, float
             law = _read_bouc_wen(table, between, masses)
         case "backfill":
             law = _read_backfill(table)
+        case "slider":
+            law = _read_slider(table)
         case "series":
             law = _read_series(table)
         case _:
@@ -120,6 +123,20 @@ def _read_backfill(table: Table) -> Backfill:
         table.quantity("gap", Dimension.LENGTH, 0.0),
         table.quantity("initial_gap", Dimension.LENGTH, 0.0),
     )
+
+
+def _read_slider(table: Table) -> Slider:
+    friction = table.quantity("friction", Dimension.NUMBER)
+    force = table.quantity("normal_force", Dimension.FORCE)
+    stiffness = table.quantity("stiffness", Dimension.STIFFNESS, 0.0)
+    radius = table.optional_quantity("radius", Dimension.LENGTH)
+    if radius is None:
+        return Slider(friction, force, stiffness)
+    if table.has("stiffness"):
+        table.report("radius", "found beside stiffness; accepted: one of stiffness, radius")
+    elif not radius > 0.0 and not math.isnan(radius):
+        table.report("radius", f"found {table.data['radius']!r}; accepted: a positive length (m)")
+    return Slider(friction, force, force / radius if radius > 0.0 else math.nan)
 
 
 def _read_series(table: Table) -> Series:

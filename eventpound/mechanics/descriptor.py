@@ -43,6 +43,7 @@ class Descriptor(NamedTuple):
     elongations and gaps, opening (R,) the gaps at u = 0 (m).
     all_gaps (K, N), all_openings (K,): those of every contact.
     inverse_coupling (R, R): of Wᵀ M⁻¹ W (kg).
+    sliders (J,), link_ends (L, 2): of the `Model`.
     ledger_weight: factor of the rows of the ledger, which determine nothing else: no such row
     must become the pivot of another unknown, as it does where energies are large numbers.
     """
@@ -65,6 +66,8 @@ class Descriptor(NamedTuple):
     all_gaps: Floats
     all_openings: Floats
     inverse_coupling: Floats
+    sliders: Ints
+    link_ends: Ints
     ledger_weight: float
 
 
@@ -126,6 +129,8 @@ def descriptor_form(
         every,
         model.gap,
         np.asarray(np.linalg.inv(W / model.mass @ W.T), np.float64),
+        model.sliders,
+        model.link_ends,
         ledger_weight,
     )
 

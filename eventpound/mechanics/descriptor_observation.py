@@ -17,7 +17,7 @@ from eventpound.mechanics.descriptor_motion import (
     loaded_powers,
 )
 from eventpound.mechanics.elements import link_force
-from eventpound.mechanics.observables import Observed
+from eventpound.mechanics.observables import Observed, observe_friction
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats
@@ -103,3 +103,5 @@ def observe_descriptor(
         if forcing.family == LOADED:
             loaded_powers(tau, y, problem, pulled, rate[d.ledger :])
     _observe_contacts(d, contact, contact_rate, out)
+    if d.sliders.size > 0:
+        observe_friction(d.sliders, d.z_of_link, d.law.memory, d.link_ends, out)

@@ -21,6 +21,9 @@ With ``Q = F_ult/R_f``, ``u_y = Q/K_0`` and ``η = y/u_y``
 
     z' = x'/u_y              apart, Q z no force, and inside the backbone,
     z' = (x'/u_y) (1 + z)^2  yielding: z = -η/(1 + η), until x' turns.
+
+A slider has two, the directions of its slip, on which it pulls with a constant Q of their sign and
+z is one. Whether it sticks `eventpound.solvers.events.slider_instant` decides.
 """
 
 from __future__ import annotations
@@ -35,6 +38,7 @@ from eventpound.mechanics.link_law import (
     EXPONENT,
     GAMMA,
     KIND,
+    SLIDER,
     STRENGTH,
     YIELD,
     YIELDING,
@@ -155,7 +159,7 @@ def bends_at_zero(a: int, memory: Floats) -> bool:
 @_part
 def has_branches(a: int, memory: Floats) -> bool:
     """Whether the law of link a has branches of its own, beside an elastic part without a kink."""
-    return bool(memory[a, KIND] == BACKFILL)
+    return bool(memory[a, KIND] == BACKFILL or memory[a, KIND] == SLIDER)
 
 
 @kernel
@@ -163,7 +167,10 @@ def memory_on_branches(memory: Floats, branch: Ints) -> Floats:
     """Constants of links (L, ·) on their present branches (L,); the same array where none has."""
     found, any_changed = memory, False
     for a in range(branch.size):
-        if has_branches(a, memory) and branch[a] != CLOSED:
+        if memory[a, KIND] == SLIDER and branch[a] < 0:
+            found, any_changed = found if any_changed else memory.copy(), True
+            found[a, STRENGTH] = -memory[a, STRENGTH]
+        elif memory[a, KIND] == BACKFILL and branch[a] != CLOSED:
             if not any_changed:
                 found, any_changed = memory.copy(), True
             if branch[a] == YIELDING:
@@ -191,8 +198,10 @@ def branch_ends(
 ) -> tuple[float, float]:
     """Elongations (m) between which link a stays on a branch, and is now, at x (m) and z.
 
-    That of YIELDING ends where x' rises above zero: then they are of x'.
+    That of YIELDING ends where x' rises above zero: then they are of x'. So are those of a slip.
     """
+    if memory[a, KIND] == SLIDER:
+        return (0.0, np.inf) if branch > 0 else (-np.inf, 0.0)
     apart = x - memory[a, YIELD] * z
     if branch == YIELDING:
         return -np.inf, 0.0
@@ -206,6 +215,9 @@ def next_branch(
     a: int, memory: Floats, branch: int, offset: float, x: float, z: float, noise: float
 ) -> int:
     """The branch of link a where one has ended, at x (m) and z; lengths below `noise` are none."""
+    if memory[a, KIND] == SLIDER:
+        # What follows a slip the accelerations decide.
+        return branch
     if not has_branches(a, memory):
         return -branch
     knee = _knee(a, memory, offset, x, z)
@@ -223,7 +235,7 @@ def branch_within(a: int, memory: Floats, offset: float, x: float, z: float, noi
     On it, or where it was never pushed in, the motion decides.
     """
     knee = 0.0
-    if has_branches(a, memory):
+    if memory[a, KIND] == BACKFILL:
         knee = _knee(a, memory, offset, x, z)
     if knee <= noise or -z * memory[a, YIELD] > knee - noise:
         return 0

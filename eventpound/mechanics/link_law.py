@@ -13,12 +13,12 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.elastic_laws import ElasticLaws, elastic_force
-from eventpound.scene.spring import Backfill, BoucWen, Hysteretic, Law
+from eventpound.scene.spring import Backfill, BoucWen, Hysteretic, Law, Slider
 
 CONSTANTS = ("kind", "strength", "yield_displacement", "exponent", "beta", "gamma")
 """Columns of `LinkLaw.memory`; but for the first, fields of `BoucWen`."""
 KIND, STRENGTH, YIELD, EXPONENT, BETA, GAMMA = range(len(CONSTANTS))
-ELASTIC, BOUC_WEN, BACKFILL, YIELDING_SOIL = 0.0, 1.0, 2.0, 3.0
+ELASTIC, BOUC_WEN, BACKFILL, YIELDING_SOIL, SLIDER = 0.0, 1.0, 2.0, 3.0, 4.0
 """Kinds of links; that of a contact element is its code, which is negative."""
 APART, CLOSED, YIELDING = 1, -1, -2
 """Branches of a link: above its kink, below it, and below it on the backbone of a memory."""
@@ -55,6 +55,9 @@ def link_law(laws: Sequence[Law | Hysteretic], damping: Any) -> LinkLaw:
         elif isinstance(law, Backfill):
             # Off its backbone dz/dx is constant: eq. 3 with β and γ zero.
             row[:] = (BACKFILL, law.strength, law.yield_displacement, 1.0, 0.0, 0.0)
+        elif isinstance(law, Slider):
+            # A z that does not move with x: it is 1, and the sign of Q that of the slip.
+            row[:] = (SLIDER, law.strength, np.inf, 1.0, 0.0, 0.0)
     return LinkLaw(np.array(damping, np.float64), rows)
 
 
@@ -68,7 +71,7 @@ def contact_law(codes: Floats, damping: Floats) -> LinkLaw:
 def yielding(memory: Floats) -> Yielding:
     """What memory adds to links; `memory` of shape (..., L, constants)."""
     strength, yields = memory[..., STRENGTH], memory[..., YIELD]
-    return Yielding(strength / yields, strength, yields)
+    return Yielding(strength / yields, strength, np.where(np.isinf(yields), 0.0, yields))
 
 
 def z_bound(memory: Floats) -> Floats:

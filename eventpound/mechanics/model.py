@@ -19,7 +19,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements, elements_of
-from eventpound.mechanics.link_law import LinkLaw, contact_law, link_law, spring_forces
+from eventpound.mechanics.link_law import (
+    KIND,
+    SLIDER,
+    LinkLaw,
+    contact_law,
+    link_law,
+    spring_forces,
+)
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact import BARRIER
@@ -70,6 +77,8 @@ class Model:
         are -1.
     spread : ndarray, shape (D, N)
         Their columns of W.
+    sliders : ndarray of int, shape (J,)
+        Links of sliders, whose last J contacts hold them while they stick (`with_sliders`).
     """
 
     mass: Floats
@@ -91,6 +100,7 @@ class Model:
     laws: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
     points: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
     spread: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    sliders: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @property
     def bodies(self) -> int:
@@ -106,6 +116,11 @@ class Model:
     def contacts(self) -> int:
         """K."""
         return self.gap.size
+
+    @property
+    def own_contacts(self) -> int:
+        """Number of the contacts of the scene, which come first."""
+        return self.contacts - self.sliders.size
 
     @property
     def ledger_entries(self) -> int:
@@ -199,6 +214,32 @@ def with_elements(model: Model) -> Model:
             *map(np.append, model.elastic, (elements.stiffness[laws], nothing, -model.gap[laws]))
         ),
         laws=laws,
+    )
+
+
+def with_sliders(model: Model) -> Model:
+    """The model with a contact for every slider, from its first end to its second.
+
+    It rests while the slider sticks, and is given what friction lacks of that of a slip.
+    """
+    sliders = np.flatnonzero(model.law.memory[:, KIND] == SLIDER)
+    if sliders.size == 0:
+        return model
+    nothing, ends = np.zeros(sliders.size), model.link_ends[sliders]
+    elements, none = model.elements, np.full(sliders.size, NO_LAW)
+    return replace(
+        model,
+        left=np.append(model.left, ends[:, 0]),
+        right=np.append(model.right, ends[:, 1]),
+        gap=np.append(model.gap, nothing),
+        restitution=np.append(model.restitution, nothing),
+        elements=Elements(
+            np.append(elements.kind, none),
+            np.append(elements.stiffness, nothing),
+            np.append(elements.damping, nothing),
+            np.append(elements.cut, np.zeros_like(none)),
+        ),
+        sliders=sliders,
     )
 
 

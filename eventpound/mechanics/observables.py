@@ -15,6 +15,7 @@ import numpy as np
 from eventpound.mechanics.clusters import Clusters, is_support
 from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.elements import contact_code, link_force
+from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.points import add_points, hold_beside_ground
 from eventpound.mechanics.reduced import Forcing, Reduced, rate_on_ground
@@ -30,7 +31,7 @@ class Bodies(NamedTuple):
 
     z_of_link: below -1 the code of a closed contact element. laws (P,): contacts whose elements
     are the last P links. points (D,), spread (D, N): contacts at points, and their columns of
-    W. projection: of the `Reduced`.
+    W. projection: of the `Reduced`. sliders (J,): links of sliders, whose contacts are the last J.
     """
 
     mass: Floats
@@ -57,6 +58,7 @@ class Bodies(NamedTuple):
     points: Ints
     spread: Floats
     projection: Floats
+    sliders: Ints
 
 
 class Observed(NamedTuple):
@@ -125,6 +127,7 @@ def view(
         model.points,
         model.spread,
         system.projection,
+        model.sliders,
     )
 
 
@@ -267,6 +270,24 @@ def _contact_forces(bodies: Bodies, out: Observed) -> None:
 
 
 @kernel
+def observe_friction(
+    sliders: Ints, z_of_link: Ints, memory: Floats, link_ends: Ints, out: Observed
+) -> None:
+    """Take the forces of the contacts of sliders (J,) from those of slips: what friction is."""
+    first = out.gap.shape[1] - sliders.size
+    for i in range(sliders.size):
+        link, held = sliders[i], out.contact_force[:, first + i]
+        slip, h = memory[link, STRENGTH], z_of_link[link]
+        out.z[0, h], out.z[1, h] = (slip - held[0]) / abs(slip), -held[1] / abs(slip)
+        for row in range(2):
+            out.force[row, link] -= held[row]
+            if link_ends[link, 0] < 0:
+                out.shear[row] -= held[row]
+            elif link_ends[link, 1] < 0:
+                out.shear[row] += held[row]
+
+
+@kernel
 def observe_gaps(bodies: Bodies, out: Observed) -> None:
     """Gaps and their rates from the motion of the bodies, of resting contacts too."""
     for j in range(bodies.gap.size):
@@ -337,6 +358,8 @@ def _observe_on_ground(
         add_load_series(forcing, forcing.start + tau, 2, np.empty(2), out.pull)
     _accelerations(bodies, out)
     _contact_forces(bodies, out)
+    if bodies.sliders.size > 0:
+        observe_friction(bodies.sliders, bodies.z_of_link, bodies.memory, bodies.link_ends, out)
     observe_gaps(bodies, out)
     for i in range(bodies.resting.size):
         out.gap[:, bodies.resting[i]] = 0.0

@@ -24,13 +24,13 @@ class TakenFrom(StrEnum):
 
     EXTREMES = "every run"
     ACCELERATIONS = "every run; of many, where accelerations are asked for"
-    CONTACTS = "every run; of many, where it is named"
-    FORCES = "every run; of many, where it is named, one by one"
-    LAWS = "every run with such a spring or contact; of many, where it is named, one by one"
+    CONTACTS = "every run; of many, where named"
+    FORCES = "every run; of many, where named, one by one"
+    LAWS = "runs that have one; of many, where named, one by one"
     ENERGY = "the ledger (energy = true)"
-    BETWEEN = "further runs with rows close together, where it is named"
-    FREE = "one more run, without contact, where it is named"
-    APART = "one more run, in which no contact can close, where it is named"
+    BETWEEN = "further runs with rows close together, where named"
+    FREE = "one more run, without contact, where named"
+    APART = "one more run, in which no contact can close, where named"
     APART_ALONE = "one more run for each joint that is named, in which it cannot close"
 
 

@@ -16,7 +16,7 @@ from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.scene.scene import Scene
 from eventpound.scene.separation import absolute_sum, correlation, cqc, srss
-from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
+from eventpound.scene.spring import GROUND, BoucWen, Hysteretic, Slider
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes
 
@@ -29,6 +29,11 @@ def is_hysteretic(scene: Scene, i: int) -> bool:
 def is_bouc_wen(scene: Scene, i: int) -> bool:
     """Whether spring i has a Bouc-Wen law."""
     return isinstance(scene.springs[i].law, BoucWen)
+
+
+def is_slider(scene: Scene, i: int) -> bool:
+    """Whether spring i is a slider."""
+    return isinstance(scene.springs[i].law, Slider)
 
 
 def told_by_law(name: str) -> Callable[[Scene, int], bool]:
@@ -97,24 +102,49 @@ def by_law(name: str) -> Value:
 
     def values(many: Runs, i: int) -> Floats:
         spring, found = many.scene.springs[i], np.full(many.t.shape, np.nan)
-        law: Any = spring.law
         names = [body.name for body in many.scene.bodies]
         for n, run in enumerate(many.recordings):
-            changed = {
-                field: float(many.parameters[key][n])
-                for field in asdict(law)
-                if (key := f"spring.{spring.name}.{field}") in many.parameters
-            }
             place = {GROUND: 0.0} | dict(zip(names, run.u, strict=True))
             if run.supports is not None:
                 own = [support.name for support in many.scene.supports]
                 place |= dict(zip(own, run.supports.s[-1], strict=True))
             first, second = (float(place[end]) for end in spring.between)
             z = run.z[many.scene.hysteretic_springs.index(spring.name)]
-            found[n] = getattr(replace(law, **changed), name)(second - first, float(z))
+            found[n] = getattr(_law_of(many, i, n), name)(second - first, float(z))
         return found
 
     return values
+
+
+def _law_of(many: Runs, i: int, n: int) -> Any:
+    """The law of spring i in run n."""
+    spring = many.scene.springs[i]
+    law: Any = spring.law
+    changed = {
+        field: float(many.parameters[key][n])
+        for field in asdict(law)
+        if (key := f"spring.{spring.name}.{field}") in many.parameters
+    }
+    return replace(law, **changed)
+
+
+def slip_path(many: Runs, i: int) -> Floats:
+    """Length of all slips of a slider (m): from row to row, with one wherever it turns or stops."""
+    between, found = many.scene.springs[i].between, np.full(many.t.shape, np.nan)
+    for n, run in enumerate(many.recordings):
+        h = run.history
+        place = {GROUND: np.zeros(h.t.size)}
+        place |= {body.name: h.u[:, b] for b, body in enumerate(many.scene.bodies)}
+        if run.supports is not None:
+            place |= {s.name: run.supports.s[:, k] for k, s in enumerate(many.scene.supports)}
+        found[n] = np.abs(np.diff(place[between[1]] - place[between[0]])).sum()
+    return found
+
+
+def friction_work(many: Runs, i: int) -> Floats:
+    """Work of the friction of a slider (J)."""
+    force = [_law_of(many, i, n).strength for n in range(len(many.recordings))]
+    return np.asarray(force) * slip_path(many, i)
 
 
 def peak_term(many: Runs, i: int) -> Floats:

@@ -14,6 +14,7 @@ from eventpound.scene.spring import (
     BoucWen,
     Linear,
     Series,
+    Slider,
     Spring,
 )
 from eventpound.scene.support import Support
@@ -33,6 +34,7 @@ __all__ = [
     "Point",
     "Scene",
     "Series",
+    "Slider",
     "Spring",
     "Support",
 ]

@@ -19,7 +19,7 @@ from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import joined
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Backfill, BilinearElastic, BoucWen, Law, Linear
+from eventpound.scene.spring import GROUND, Backfill, BilinearElastic, BoucWen, Law, Linear, Slider
 from eventpound.tolerances import EPS
 
 _TINY = sys.float_info.min
@@ -194,6 +194,9 @@ def _spring_problems(scene: Scene) -> Iterator[Problem]:
     for element, spring in zip(elements, scene.springs, strict=True):
         yield from _end_problems(element, spring.between, scene, GROUND)
         yield from _law_problems(element, spring.law)
+        if isinstance(spring.law, Slider) and any(c.at_point for c in scene.contacts):
+            accepted = "slider only in a scene without contacts at points between bodies"
+            yield element.problem("law", spring.law.word.value, accepted)
         if spring.height is not None:
             yield from element.number("height", spring.height, "a positive length (m)", _positive)
 
@@ -203,6 +206,8 @@ def _law_problems(element: _Element, law: Law, prefix: str = "") -> Iterator[Pro
         yield from _bouc_wen_problems(element, law)
     elif isinstance(law, Backfill):
         yield from _backfill_problems(element, law)
+    elif isinstance(law, Slider):
+        yield from _slider_problems(element, law)
     elif isinstance(law, Linear):
         yield from element.number(
             f"{prefix}stiffness", law.stiffness, "a stiffness >= 0 (N/m)", _not_negative
@@ -256,6 +261,13 @@ def _backfill_problems(element: _Element, law: Backfill) -> Iterator[Problem]:
     yield from number(
         "initial_gap", law.initial_gap, accepted, lambda g: g in (0.0, max(g, law.gap))
     )
+
+
+def _slider_problems(element: _Element, law: Slider) -> Iterator[Problem]:
+    yield from element.number("friction", law.friction, "a positive number", _positive)
+    yield from element.number("normal_force", law.normal_force, "a positive force (N)", _positive)
+    accepted = "a stiffness >= 0 (N/m)"
+    yield from element.number("stiffness", law.stiffness, accepted, _not_negative)
 
 
 def _dashpot_problems(scene: Scene) -> Iterator[Problem]:

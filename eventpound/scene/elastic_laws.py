@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.scene.spring import BilinearElastic, BoucWen, Hysteretic, Law, Linear
+from eventpound.scene.spring import BilinearElastic, BoucWen, Hysteretic, Law, Linear, Slider
 
 
 class ElasticLaws(NamedTuple):
@@ -58,7 +58,7 @@ def reduced(law: Law | Hysteretic) -> BilinearElastic:
     BilinearElastic
         The same force for every elongation.
     """
-    if isinstance(law, Linear | BoucWen):
+    if isinstance(law, Linear | BoucWen | Slider):
         return BilinearElastic(law.stiffness, law.stiffness, 0.0)
     if isinstance(law, Hysteretic):
         return BilinearElastic(0.0, 0.0, law.offset)

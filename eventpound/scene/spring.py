@@ -13,6 +13,7 @@ from dataclasses import asdict
 from enum import StrEnum
 from typing import Annotated, ClassVar
 
+from eventpound.errors import InputError
 from eventpound.given import (
     Given,
     Number,
@@ -37,12 +38,13 @@ class LawName(StrEnum):
     BILINEAR_ELASTIC = "bilinear-elastic"
     BOUC_WEN = "bouc-wen"
     BACKFILL = "backfill"
+    SLIDER = "slider"
     SERIES = "series"
 
     @property
     def hysteretic(self) -> bool:
         """Whether it has a memory."""
-        return self in (LawName.BOUC_WEN, LawName.BACKFILL)
+        return self in (LawName.BOUC_WEN, LawName.BACKFILL, LawName.SLIDER)
 
 
 @converting
@@ -348,7 +350,84 @@ class Backfill(Hysteretic):
         return self.strength * self.yield_displacement * lost
 
 
-Law = Linear | BilinearElastic | Series | BoucWen | Backfill
+@converting
+class Slider(Hysteretic):
+    """Coulomb friction under a constant normal force, perhaps with a spring beside it.
+
+    ``F = stiffness x + friction normal_force z``. While it slips z is the sign of x'; while it
+    sticks x stands still and z is what holds it, ``|z| <= 1``.
+
+    Parameters
+    ----------
+    friction : float
+        Coefficient of friction, positive.
+    normal_force : float
+        N (N), positive.
+    stiffness : float
+        Of the spring beside it (N/m), not negative.
+    """
+
+    word: ClassVar[LawName] = LawName.SLIDER
+    equation: ClassVar[str] = (
+        "F = stiffness x + friction normal_force z, z = sign x' where it slips, |z| <= 1 where it"
+        " sticks"
+    )
+    has_branches: ClassVar[bool] = True
+    friction: Annotated[Number, Dimension.NUMBER]
+    normal_force: Annotated[Number, Dimension.FORCE]
+    stiffness: Annotated[Number, Dimension.STIFFNESS] = default(0.0)
+
+    def __post_init__(self) -> None:
+        read_fields(self)
+
+    @classmethod
+    @checked
+    def pendulum(
+        cls, friction: float | str, normal_force: float | str, radius: float | str
+    ) -> Slider:
+        """Friction pendulum, whose stiffness is normal_force / radius.
+
+        Parameters
+        ----------
+        friction, normal_force : float
+            As of the class.
+        radius : float
+            Of its concave surface (m), positive.
+
+        Raises
+        ------
+        InputError
+            Where a number is none, or the radius is zero.
+        """
+        force = number("normal_force", normal_force, Dimension.FORCE)
+        length = number("radius", radius, Dimension.LENGTH)
+        if not length > 0.0:
+            raise InputError(f"radius: found {radius!r}; accepted: a positive length (m)")
+        return cls(friction, force, force / length)
+
+    @property
+    def strength(self) -> float:
+        """Friction force of a slip (N)."""
+        return self.friction * self.normal_force
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """What a table of a case shows of it (SI)."""
+        return {"K_s": self.stiffness, "Q": self.strength}
+
+    def z_at(self, elongation: float) -> float:
+        """The z of a start: its sign is on the branches of the law."""
+        return 1.0
+
+    def drawn(self) -> tuple[list[float], list[float]]:
+        """Elongations (m) and forces (N) of a slip there and back."""
+        x = self.strength / self.stiffness if self.stiffness > 0.0 else 1.0
+        corners = ((0.0, 0.0), (0.0, 1.0), (x, 1.0), (x, -1.0), (-x, -1.0), (-x, 1.0), (0.0, 1.0))
+        force = [self.stiffness * at + self.strength * z for at, z in corners]
+        return [at for at, _ in corners], force
+
+
+Law = Linear | BilinearElastic | Series | BoucWen | Backfill | Slider
 """What a spring may have."""
 
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.model import Model, assemble, with_sliders
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import SUNDIALS, finders, sundials_finds
@@ -50,7 +50,7 @@ class Ida:
 
     def _solve(self, task: Task) -> Recording:
         finds_events = sundials_finds(task.settings, SUNDIALS)
-        model = assemble(task.scene)
+        model = with_sliders(assemble(task.scene))
         scales = scene_scales(task.scene, model, task.end - task.start)
         chosen = integrator(task, model, scales)
         loop = EventLoop(task, chosen, finds_events=finds_events)

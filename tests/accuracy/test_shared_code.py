@@ -18,11 +18,12 @@ from eventpound.accuracy.routes import (
     SHARED_BY_METHODS,
     SHARED_WITH_LAWS,
     SHARED_WITH_LOADS,
+    SHARED_WITH_SLIDERS,
     TAYLOR,
     routes_of,
     shared_code,
 )
-from eventpound.scene import ContactLaw, Force, Point
+from eventpound.scene import ContactLaw, Force, Point, Slider, Spring
 from tests.reference.problems import load
 
 ROOT = Path(eventpound.__file__).parents[1]
@@ -120,6 +121,7 @@ def test_what_some_scenes_need_is_listed_where_they_do():
     plain = load()["A01"].scene
     contact, body = plain.contacts[0], plain.bodies[0].name
     side = "left" if contact.left == body else "right"
+    sliding = Spring("bearing", ("ground", body), Slider(0.1, 1.0))
     pointed = replace(contact, **{side: Point({body: 1.0})})
     alone = {*SHARED_BY_METHODS}
     for scene, more in (
@@ -129,6 +131,7 @@ def test_what_some_scenes_need_is_listed_where_they_do():
             alone | {*SHARED_WITH_LAWS},
         ),
         (replace(plain, forces=(Force(body, 1.0),)), {*SHARED_WITH_LOADS}),
+        (replace(plain, springs=(sliding,)), {*SHARED_WITH_SLIDERS}),
     ):
         known = shared_code(routes_of(plain), plain)
         assert set(shared_code(routes_of(scene), scene)) - set(known) == more

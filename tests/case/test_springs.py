@@ -11,7 +11,7 @@ import pytest
 from eventpound.case import Case, read_case
 from eventpound.case.template import template
 from eventpound.errors import InputError
-from eventpound.scene import Backfill, BilinearElastic, BoucWen, Dashpot, Linear, Series
+from eventpound.scene import Backfill, BilinearElastic, BoucWen, Dashpot, Linear, Series, Slider
 from eventpound.scene.modes import modes_of
 
 Table = dict[str, object]
@@ -154,6 +154,23 @@ def test_backfill() -> None:
     said = problems(spring=[spring(**soil, failure_ratio=1.2, gap=-1.0)])
     assert "[[spring]] 1: failure_ratio: found 1.2; accepted: a number above 0, at most 1" in said
     assert "[[spring]] 1: gap: found -1.0; accepted: a length >= 0 (m)" in said
+
+
+def test_slider() -> None:
+    bearing: Table = {"law": "slider", "friction": 0.05, "normal_force": "2 MN"}
+    tables = [spring(**bearing), spring(**bearing, radius="4 m"), spring(**bearing, stiffness=3.0)]
+    laws = [read.law for read in case_with(spring=tables).scene.springs]
+    assert laws == [Slider(0.05, 2e6), Slider.pendulum(0.05, 2e6, 4.0), Slider(0.05, 2e6, 3.0)]
+    assert laws[1].stiffness == 5e5
+    said = problems(spring=[spring(**bearing, radius="4 m", stiffness=3.0)])
+    assert (
+        "[[spring]] 1: radius: found beside stiffness; accepted: one of stiffness, radius" in said
+    )
+    said = problems(spring=[spring(**{**bearing, "friction": 0.0}, radius=0.0)])
+    assert "[[spring]] 1: radius: found 0.0; accepted: a positive length (m)" in said
+    said = problems(spring=[spring(**{**bearing, "friction": 0.0, "normal_force": -1.0})])
+    assert "[[spring]] 1: friction: found 0.0; accepted: a positive number" in said
+    assert "[[spring]] 1: normal_force: found -1.0; accepted: a positive force (N)" in said
 
 
 def test_names_by_default_are_those_of_the_ends() -> None:

@@ -12,14 +12,16 @@ from eventpound.mechanics.elements import (
     begin_curve,
     branch_ends,
     memory_on_branches,
+    memory_stiffness,
     next_branch,
     next_z,
+    pull_per_z,
     z_coefficient,
     z_rate,
     z_slopes,
 )
 from eventpound.mechanics.link_law import APART, CLOSED, YIELDING, link_law, z_bound
-from eventpound.scene import Backfill, BoucWen
+from eventpound.scene import Backfill, BoucWen, Slider
 from eventpound.solvers.fast.single.body import BODY
 from eventpound.solvers.fast.single.series import curved_series
 from tests.mechanics.dense import literal_z_rate, memory_of
@@ -161,3 +163,15 @@ def test_series_of_one_body_is_the_general_one(kappa: float) -> None:
     x = np.array(body.x[:order])
     wanted = _series_of_z(law, x, float(body.z), 1.0)
     np.testing.assert_allclose(body.z_terms[: order - 1], wanted[: order - 1], rtol=1e-10)
+
+
+def test_slider_pulls_with_its_friction_in_the_direction_of_its_slip() -> None:
+    law = link_law([Slider(0.1, 5.0, 2.0), BoucWen(0.0, 1.0, 0.1)], [0.0, 0.0]).memory
+    for branch, ends in ((1, (0.0, np.inf)), (-1, (-np.inf, 0.0))):
+        memory = memory_on_branches(law, np.array([branch, 0]))
+        assert pull_per_z(0, memory) == 0.5 * branch
+        assert z_rate(0, memory, 0.3, 0.3, 1.0) == 0.0
+        assert z_slopes(0, memory, 0.3, 1.0) == (0.0, 0.0)
+        assert memory_stiffness(0, memory) == 0.0
+        assert branch_ends(0, memory, branch, 0.0, 0.2, 1.0) == ends
+        np.testing.assert_array_equal(memory[1], law[1])

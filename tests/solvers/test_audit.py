@@ -28,8 +28,9 @@ LENGTH_NOISE, FORCE_NOISE = 1e-15, 1e-12
 def _watched(*, rests: bool) -> Watched:
     none = np.array([np.inf])
     marks = np.array([not rests]), np.array([rests])
-    turns = np.zeros(1, np.bool_)
-    return Watched(*marks, False, -none, none, turns, FORCE_NOISE, places_in(assemble(SCENE)))
+    forces, turns = (np.zeros(1), none), np.zeros(1, np.bool_)
+    at = places_in(assemble(SCENE))
+    return Watched(*marks, False, *forces, -none, none, turns, FORCE_NOISE, at)
 
 
 def _check(t: float, seen: Observed, watched: Watched) -> None:

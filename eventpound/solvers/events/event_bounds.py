@@ -37,7 +37,8 @@ class Watched(NamedTuple):
 
     open_contacts (K,): gaps that may close. unlocked (K,): resting contacts
     that may detach. follows: whether a contact element is closed: then every step is looked at
-    again, for what it does in it. kink_low, kink_high (L,): elongations at which a link
+    again, for what it does in it. force_low, force_high (K,): forces between which a contact stays
+    at rest (N). kink_low, kink_high (L,): elongations at which a link
     changes branch, of those that `turns` (L,) marks rates of elongation. force_noise: contact
     forces below which the sign means nothing (N). at: columns of the extremes.
     """
@@ -45,6 +46,8 @@ class Watched(NamedTuple):
     open_contacts: Bools
     unlocked: Bools
     follows: bool
+    force_low: Floats
+    force_high: Floats
     kink_low: Floats
     kink_high: Floats
     turns: Bools
@@ -108,7 +111,11 @@ def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, foun
         elif watched.unlocked[j]:
             i = at.contact_force + j
             low, high = _bounds(motion_of(i, at, a), motion_of(i, at, b), h, False)
-            found.detaching[j] = low - DOUBT * (high - low) < -watched.force_noise
+            doubt = DOUBT * (high - low)
+            found.detaching[j] = (
+                low - doubt < watched.force_low[j] - watched.force_noise
+                or high + doubt > watched.force_high[j] + watched.force_noise
+            )
         any_found = any_found or found.closing[j] or found.detaching[j]
     return any_found
 
@@ -135,13 +142,23 @@ def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: 
 
 @scalar_kernel
 def room_on_branch(link: int, watched: Watched, elongation: Floats) -> tuple[float, float]:
-    """How far a link is from the end of its branch, positive inside (m, or m/s), and the rate.
-
-    Between two ends it is the product of both distances over that of the ends.
-    """
+    """How far a link is from the end of its branch, positive inside (m, or m/s), and the rate."""
     order = 1 if watched.turns[link] else 0
     x, x_rate = elongation[order, link], elongation[order + 1, link]
-    below, above = x - watched.kink_low[link], watched.kink_high[link] - x
+    return _room_between(watched.kink_low[link], watched.kink_high[link], x, x_rate)
+
+
+@scalar_kernel
+def room_at_rest(j: int, watched: Watched, contact_force: Floats) -> tuple[float, float]:
+    """How far the force of a resting contact is from where its rest ends (N), and the rate."""
+    low, high = watched.force_low[j], watched.force_high[j]
+    return _room_between(low, high, contact_force[0, j], contact_force[1, j])
+
+
+@scalar_kernel
+def _room_between(low: float, high: float, x: float, x_rate: float) -> tuple[float, float]:
+    """How far x is inside of two ends, and the rate: the product of both distances over theirs."""
+    below, above = x - low, high - x
     if above == np.inf:
         return below, x_rate
     if below == np.inf:

@@ -68,10 +68,10 @@ SETTLE, AGAIN, TAKE, READY, LAST = range(5)
 """What `proceed` is asked for: all that an instant demands; to look again at a step of an
 integrator; to make the state vector of the run the present state; to make the present instant
 ready for a step; to put it, the last, into the history."""
-(OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, AT_POINTS) = range(20, 25)
+(OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, IN_PYTHON) = range(20, 25)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
 steps are used up; links have no branch yet; what is to be done is that of
-`eventpound.solvers.events.point_instant`."""
+`eventpound.solvers.events.point_instant` or `eventpound.solvers.events.sliders`."""
 NOT_FINITE, UNENDING = 30, 32
 """How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
 
@@ -192,8 +192,9 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     while ended == DONE:
         if not _has_room(run):
             return FULL
-        if mode.bodies.points.size > 0 and count[PHASE] <= RESTS:
-            return AT_POINTS
+        by_python = mode.bodies.points.size > 0 or mode.bodies.sliders.size > 0
+        if by_python and count[PHASE] <= RESTS:
+            return IN_PYTHON
         if count[PHASE] == DUTIES:
             ended = settle_impacts(at)
             if ended != DONE:

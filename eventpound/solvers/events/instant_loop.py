@@ -26,9 +26,9 @@ from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.instant import (
     AGAIN,
-    AT_POINTS,
     DUTIES,
     FIRST_BRANCHES,
+    IN_PYTHON,
     LAST,
     NEW_MODE,
     NOT_FINITE,
@@ -49,6 +49,7 @@ from eventpound.solvers.events.run import (
     SHORT_STEPS,
 )
 from eventpound.solvers.events.second_look import BROKEN, EVENT
+from eventpound.solvers.events.sliders import settle_sliders
 from eventpound.solvers.events.underway import Underway
 
 NOWHERE = Dense(np.zeros((1, 1)), 0.0, 0.0, 0.0, NO_FRAME, False, NO_GAPS)
@@ -86,8 +87,10 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
             most = now.steps + now.steps_left(STEPS_AT_ONCE)
         elif ended == NEW_MODE:
             now.enter_mode()
-        elif ended == AT_POINTS:
-            ended = settle_points(now, piece)
+        elif ended == IN_PYTHON:
+            # No scene has both.
+            settle = settle_sliders if now.model.sliders.size else settle_points
+            ended = settle(now, piece)
         if ended == FULL:
             now.make_room()
         elif ended == FIRST_BRANCHES:
@@ -123,7 +126,7 @@ def _choose_branches(now: Underway, piece: CurrentPiece) -> None:
     resting = state.resting & (state.gap == 0.0)
     # What is pressed shut, or pulled by a spring, moves what only touches.
     in_python(choose_clear_branches)(now.run.instant)
-    mode = table.mode(resting, state.branch, state.pressed)
+    mode = table.mode(resting, state.branch, state.pressed, now.run.instant.opening)
     now.take_closing_speeds(mode)
     make_ready(now, mode, piece)
     now.state.count[PHASE] = RESTS

@@ -29,6 +29,7 @@ from eventpound.solvers.events.event_bounds import (
     Found,
     Watched,
     noise_on_branch,
+    room_at_rest,
     room_on_branch,
 )
 from eventpound.solvers.events.run import Happened, Rules
@@ -76,7 +77,8 @@ def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
     if sought.kind == _GAP:
         return Sample(tau, seen.gap[0, i], seen.gap[1, i])
     if sought.kind == _FORCE:
-        return Sample(tau, seen.contact_force[0, i], seen.contact_force[1, i])
+        force, rate = room_at_rest(i, step.dynamics.watched, seen.contact_force)
+        return Sample(tau, force, rate)
     if sought.kind == _MONITORED:
         value, rate, _ = motion_of(i, step.dynamics.watched.at, seen)
         return Sample(tau, value, rate)
@@ -297,7 +299,7 @@ def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happe
     if not released:
         return
     for j in range(happened.released.size):
-        force, rate = seen.contact_force[0, j], seen.contact_force[1, j]
+        force, rate = room_at_rest(j, watched, seen.contact_force)
         if watched.unlocked[j] and force_vanishes(force, rate, watched.force_noise, rules.time):
             happened.released[j] = True
     for a in range(happened.kinked.size):

@@ -35,6 +35,7 @@ from eventpound.solvers.events.recorder import (
 )
 from eventpound.solvers.events.run import FINDER, STEPS
 from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
+from eventpound.solvers.events.sliders import own_recording
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     HAPPENED,
@@ -300,7 +301,7 @@ class EventLoop:
     def _recording(self, success: bool, message: str, clock: Stopwatch) -> Recording:
         now, integrator = self.now, self.integrator
         events = now.events()
-        return Recording(
+        recording = Recording(
             success,
             message,
             now.t,
@@ -323,3 +324,4 @@ class EventLoop:
             integrated=self._integrated,
             **kept(now.record.extremes, events, now.t, now.model),
         )
+        return own_recording(recording, now.model) if now.model.sliders.size else recording

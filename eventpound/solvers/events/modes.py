@@ -12,7 +12,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters_of_few
 from eventpound.mechanics.elements import branch_ends, has_branches, memory_on_branches
-from eventpound.mechanics.link_law import YIELDING
+from eventpound.mechanics.link_law import STRENGTH, YIELDING
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_in
 from eventpound.mechanics.observables import Bodies, view
@@ -80,24 +80,34 @@ class ModeTable:
             if in_python(has_branches)(a, model.law.memory)
         ]
 
-    def mode(self, resting: Bools, branch: Ints, pressed: Bools | None = None) -> Mode:
+    def mode(
+        self,
+        resting: Bools,
+        branch: Ints,
+        pressed: Bools | None = None,
+        opening: Floats | None = None,
+    ) -> Mode:
         """The mode with these contacts at rest and these branches.
 
-        Which of them are pressed matters only where forces are not unique.
+        Which of them are pressed matters only where forces are not unique. Sliders stick at the
+        openings (K,) of their contacts (m), which change from stick to stick.
         """
         pressed = resting if pressed is None else pressed
         key: tuple[bytes, ...] = (resting.tobytes(), branch.tobytes())
+        model, own = self.model, self.model.own_contacts
+        if opening is not None and resting[own:].any():
+            key = (*key, opening[own:][resting[own:]].tobytes())
+            model = replace(model, gap=opening.copy())
         known = self._modes.get(key)
         if known is not None and not known.clusters.tree:
             key = (*key, pressed.tobytes())
             known = self._modes.get(key)
         if known is None:
-            known = self._modes[key] = self._build(resting, branch, pressed)
+            known = self._modes[key] = self._build(model, resting, branch, pressed)
         return known
 
-    def _on_branches(self, branch: Ints) -> Model:
+    def _on_branches(self, model: Model, branch: Ints) -> Model:
         """The model with the laws of links on these branches."""
-        model = self.model
         memory = in_python(memory_on_branches)(model.law.memory, branch)
         if memory is model.law.memory:
             return model
@@ -106,16 +116,18 @@ class ModeTable:
     def place_ends(self, mode: Mode, u: Floats, z: Floats) -> None:
         """Say where branches of memories end, from displacements (N,) and z (H,) on them."""
         model, watched = self.model, mode.watched
+        at_rest = mode.clusters.resting - model.own_contacts
+        sticking = model.sliders[at_rest[at_rest >= 0]]
         for h, a in self._branched:
             branch, offset = int(mode.branch[a]), float(model.elastic.offset[a])
-            if branch != 0:
+            if branch != 0 and a not in sticking:
                 x = float(model.elongations(u)[a])
                 watched.kink_low[a], watched.kink_high[a] = in_python(branch_ends)(
                     a, model.law.memory, branch, offset, x, float(z[h])
                 )
 
-    def _build(self, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
-        model = self._on_branches(branch)
+    def _build(self, model: Model, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
+        model = self._on_branches(model, branch)
         at_points = np.zeros(model.contacts, np.bool_)
         at_points[model.points] = True
         ordinary, projection = resting & ~at_points, None
@@ -139,20 +151,50 @@ class ModeTable:
         frozen = np.zeros(model.hysteretic.size)
         bodies = on_loan(view(model, clusters, system, *branches, frozen))
         system = on_loan(system)
+        if model.sliders.size > 0 and not clusters.tree:
+            clusters = clusters._replace(locked=_locked_beside_sliders(model, ordinary, clusters))
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
         opened = ~resting
-        opened[model.laws] = False
-        kink = model.elastic.offset
+        opened[model.laws] = opened[model.own_contacts :] = False
+        kink, turns = model.elastic.offset, branch == YIELDING
+        turns[model.sliders] = True
+        never = np.full(model.sliders.size, np.inf)
+        kink_low = np.where(branch > 0, kink, -np.inf)
+        kink_high = np.where(branch < 0, kink, np.inf)
+        kink_low[model.sliders], kink_high[model.sliders] = -never, never
         watched = Watched(
             opened,
             unlocked,
             bool((branch[model.plain :] < 0).any()),
-            np.where(branch > 0, kink, -np.inf),
-            np.where(branch < 0, kink, np.inf),
-            branch == YIELDING,
+            *_force_limits(model),
+            kink_low,
+            kink_high,
+            turns,
             self.force_noise,
             self.places,
         )
         dynamics = on_loan(Dynamics(system, bodies, watched))
         return Mode(branch.copy(), clusters, system, bodies, watched, dynamics)
+
+
+def _force_limits(model: Model) -> tuple[Floats, Floats]:
+    """Forces between which contacts stay at rest (N), shape (K,), of a model on its branches.
+
+    From that of a slip on its branch a slider is taken back by up to twice its friction.
+    """
+    low, high = np.zeros(model.contacts), np.full(model.contacts, np.inf)
+    twice = 2.0 * model.law.memory[model.sliders, STRENGTH]
+    own = model.own_contacts
+    low[own:], high[own:] = np.minimum(twice, 0.0), np.maximum(twice, 0.0)
+    return low, high
+
+
+def _locked_beside_sliders(model: Model, resting: Bools, clusters: Clusters) -> Bools:
+    """Resting contacts (R,) that cannot open: a slider gives way in either direction."""
+    own = resting.copy()
+    own[model.own_contacts :] = False
+    alone = form_clusters_of_few(model.left, model.right, model.gap, own, own, model.bodies)
+    locked = np.zeros(model.contacts, np.bool_)
+    locked[alone.resting] = alone.locked
+    return locked[clusters.resting]

@@ -20,7 +20,12 @@ import numpy as np
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python, scalar_kernel
-from eventpound.solvers.events.event_bounds import Watched, noise_on_branch, room_on_branch
+from eventpound.solvers.events.event_bounds import (
+    Watched,
+    noise_on_branch,
+    room_at_rest,
+    room_on_branch,
+)
 from eventpound.solvers.settings import Settings, word
 from eventpound.tolerances import GAP, NO_ZERO
 
@@ -56,8 +61,7 @@ def values_and_rates(seen: Observed, watched: Watched, pairs: Floats) -> None:
             pairs[place, 0], pairs[place, 1] = seen.gap[0, j], seen.gap[1, j]
             place += 1
         elif watched.unlocked[j]:
-            pairs[place, 0] = seen.contact_force[0, j]
-            pairs[place, 1] = seen.contact_force[1, j]
+            pairs[place, 0], pairs[place, 1] = room_at_rest(j, watched, seen.contact_force)
             place += 1
     for i in range(seen.elongation.shape[1]):
         if watched.kink_low[i] > -np.inf or watched.kink_high[i] < np.inf:

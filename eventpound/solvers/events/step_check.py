@@ -22,14 +22,16 @@ from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.observables import Observed, observe_motion
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.scene.scene import Scene
+from eventpound.scene.spring import Slider
 from eventpound.solvers.base import Energy
 from eventpound.solvers.events.event_bounds import (
     Found,
     Watched,
     inspect_step,
+    room_at_rest,
 )
 from eventpound.solvers.events.run import Dynamics, RunRecord
 from eventpound.tolerances import ENERGY_ERROR, GAP_NOISE, PULLED, SAME_SAMPLE
@@ -186,7 +188,8 @@ def broken_contact(seen: Observed, watched: Watched, length_noise: float) -> int
         if watched.open_contacts[j] and seen.gap[0, j] < -GAP_NOISE * length_noise:
             return j
     for j in range(seen.gap.shape[1]):
-        if watched.unlocked[j] and seen.contact_force[0, j] < -PULLED * watched.force_noise:
+        room = room_at_rest(j, watched, seen.contact_force)[0]
+        if watched.unlocked[j] and room < -PULLED * watched.force_noise:
             return j
     return -1
 
@@ -195,13 +198,18 @@ def contact_error(
     t: float, j: int, seen: Observed, watched: Watched, scene: Scene
 ) -> ComputationError:
     """What to raise of contact j, which `broken_contact` names."""
-    name = scene.contacts[j].name
+    held = [spring.name for spring in scene.springs if isinstance(spring.law, Slider)]
+    name = [*(contact.name for contact in scene.contacts), *held][j]
     if watched.open_contacts[j]:
         depth = -float(seen.gap[0, j])
         return ComputationError(
             f"contact {name!r} penetrates by {depth:.3g} m; try a smaller rtol", t
         )
-    pull = -float(seen.contact_force[0, j])
+    pull = -float(in_python(room_at_rest)(j, watched, seen.contact_force)[0])
+    if j >= len(scene.contacts):
+        return ComputationError(
+            f"slider {name!r} sticks with {pull:.3g} N more than it can; try a smaller rtol", t
+        )
     return ComputationError(
         f"resting contact {name!r} pulls with {pull:.3g} N; try a smaller rtol", t
     )

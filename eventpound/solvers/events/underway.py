@@ -23,7 +23,7 @@ from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.elements import branch_within
-from eventpound.mechanics.model import Model, assemble, with_elements
+from eventpound.mechanics.model import Model, assemble, with_elements, with_sliders
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.observables import Observed, blank
 from eventpound.mechanics.points import unique_forces_of
@@ -154,7 +154,7 @@ class Underway:
 
     def __init__(self, task: Task) -> None:
         self.task = task
-        model = self.model = with_elements(assemble(task.scene))
+        model = self.model = with_elements(with_sliders(assemble(task.scene)))
         self.scales = scene_scales(task.scene, model, task.end - task.start)
         self.table = ModeTable(model, ledger=task.energy, force_noise=FORCE * self.scales.force)
         self.unique_forces = np.ones(model.contacts, np.bool_)
@@ -179,7 +179,8 @@ class Underway:
     def enter_mode(self) -> None:
         """Bring `mode` up to date with who rests and on which branches links are."""
         state, model = self.state, self.model
-        mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed)
+        opening = self.run.instant.opening
+        mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed, opening)
         state.count[STALE] = 0
         self.table.place_ends(mode, state.u, state.z)
         self.take_closing_speeds(mode)
@@ -189,6 +190,8 @@ class Underway:
             else:
                 unique = unique_forces(mode.clusters, model.left, model.right)
             self.unique_forces[mode.clusters.resting] &= unique
+            # Those of sliders are no part of what the history is told.
+            self.unique_forces[model.own_contacts :] = True
 
     def take_closing_speeds(self, mode: Mode) -> None:
         """What the damping of elements that depends on how they closed is in this mode."""
@@ -307,7 +310,9 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
     """The state at the start."""
     gap = model.initial_gaps(scales.length)
     # These take no part in impacts and rests.
-    gap[model.laws] = np.inf
+    gap[model.laws] = gap[model.own_contacts :] = np.inf
+    branch, rates = _first_branches(model, LENGTH * scales.length), model.elongations(model.v0)
+    branch[model.sliders] = np.where(rates[model.sliders] < 0.0, -1, 1)
     clock, count = np.zeros(CLOCK_PLACES), np.zeros(COUNT_SIZE, np.int64)
     clock[T], clock[INTERVAL], clock[SINCE_IMPACT] = task.start, scales.time, scales.time
     clock[RESTED_AT] = clock[SETTLED_AT] = -np.inf
@@ -319,7 +324,7 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
         gap_rate=model.rates(model.v0),
         resting=np.zeros(model.contacts, np.bool_),
         pressed=np.zeros(model.contacts, np.bool_),
-        branch=_first_branches(model, LENGTH * scales.length),
+        branch=branch,
         ledger=np.zeros(model.ledger_entries),
         clock=clock,
         count=count,
@@ -375,7 +380,7 @@ def _instant_of(
         hysteretic=model.hysteretic,
         left=model.left,
         right=model.right,
-        opening=model.gap,
+        opening=model.gap.copy(),
         restitution=model.restitution,
         length=rules.length,
         time=rules.time,

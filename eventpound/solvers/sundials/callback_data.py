@@ -81,12 +81,13 @@ def address_of(
 def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int = 0) -> Roots:
     """`Roots` without functions of a scene with so many of each, on loan."""
     gaps, forces = np.zeros((2, contacts), np.bool_)
-    (low, high), turns = np.zeros((2, links)), np.zeros(links, np.bool_)
+    (least, most), (low, high) = np.zeros((2, contacts)), np.zeros((2, links))
+    turns, at = np.zeros(links, np.bool_), in_python(places_of)(0, 0, 0)
     return on_loan(
         Roots(
             np.zeros(2, np.int64),
             False,
-            Watched(gaps, forces, False, low, high, turns, 0.0, in_python(places_of)(0, 0, 0)),
+            Watched(gaps, forces, False, least, most, low, high, turns, 0.0, at),
             np.zeros(0),
             np.zeros(0),
             np.zeros((0, 2)),

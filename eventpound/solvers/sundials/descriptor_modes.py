@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -89,7 +89,7 @@ class DescriptorModes:
     def _build(self, mode: Mode) -> DescriptorMode:
         model = self.model
         d = descriptor_form(
-            model,
+            replace(model, gap=mode.bodies.gap),
             mode.clusters,
             mode.branch,
             ledger=model.ledger_entries if self.ledger else 0,

@@ -1,0 +1,345 @@
+"""Sliders beside closed forms, Den Hartog's oscillator, and a program in SciPy."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from eventpound import simulate
+from eventpound.errors import InputError
+from eventpound.motion import Harmonic, NoMotion, Sine
+from eventpound.response import Response
+from eventpound.scene import (
+    GROUND,
+    Body,
+    Contact,
+    Dashpot,
+    Linear,
+    Point,
+    Scene,
+    Slider,
+    Spring,
+    Support,
+)
+from tests.solvers.slider_oracle import solved
+
+SOLVERS = [("cvode", "own"), ("cvode", "sundials"), ("ida", "own"), ("ida", "sundials")]
+RTOL = 1e-10
+# Errors of single steps add up over thousands of them.
+CLOSE = 100.0 * RTOL
+g = 9.81
+
+
+def run(scene: Scene, duration: float, solver: str = "cvode", events: str = "own") -> Response:
+    settings = {"events": events}
+    return simulate(
+        scene, solver=solver, settings=settings, duration=duration, rtol=RTOL, energy=True
+    )
+
+
+def on_ground(law: Slider, **body: float) -> tuple[Body, Spring]:
+    return Body("deck", 1000.0, **body), Spring("bearing", (GROUND, "deck"), law)
+
+
+@pytest.mark.parametrize(("solver", "events"), SOLVERS)
+def test_swing_loses_twice_its_dead_zone_each_half_cycle_and_stops(
+    solver: str, events: str
+) -> None:
+    law = Slider.pendulum(0.1, 1000.0 * g, 1000.0 * g / 4.0e5)
+    deck, bearing = on_ground(law, displacement=0.05)
+    response = run(Scene((deck,), (bearing,), motion=NoMotion()), 3.0, solver, events)
+    dead = law.strength / law.stiffness
+    peaks = [0.05 - 2.0 * dead * n for n in range(11)]
+    assert abs(peaks[-1]) < dead < abs(peaks[-2])
+    ends = np.array(peaks) * (-1.0) ** np.arange(11)
+    h = response.recording.history
+    half = math.pi * math.sqrt(1000.0 / law.stiffness)
+    stuck = h.t > 10.5 * half
+    np.testing.assert_allclose(h.u[stuck, 0], ends[-1], rtol=0.0, atol=CLOSE * 0.05)
+    assert np.ptp(h.u[stuck, 0]) == 0.0
+    assert h.v[stuck].max() == h.v[stuck].min() == 0.0
+    np.testing.assert_allclose(h.z[stuck, 0], -ends[-1] / dead, rtol=1e-6)
+    assert response.quantity("springs.bearing.slip_path") == pytest.approx(
+        np.abs(np.diff(ends)).sum(), rel=1e-8
+    )
+    lost = response.quantity("springs.bearing.dissipated_energy")
+    assert lost == pytest.approx(response.energy.hysteretic, rel=1e-8)
+    assert lost == pytest.approx(law.stiffness * (0.05**2 - ends[-1] ** 2) / 2.0, rel=1e-8)
+
+
+def block_on_shaken_plane(a: float, w: float, friction: float, end: float) -> tuple[list, float]:
+    """Times at which a block begins to slip and stops, and where it is; of a ground a sin(w t)."""
+    t, u, times = math.asin(friction / a) / w, 0.0, list[float]()
+    side = -1.0  # The ground moves off to the right.
+    while t < end:
+        times.append(t)
+
+        def speed(s: float, t: float = t, side: float = side) -> float:
+            return a / w * (math.cos(w * s) - math.cos(w * t)) - side * friction * (s - t)
+
+        s = t + 1e-3 / w
+        while side * speed(s) > 0.0 and s < end:
+            s += 1e-3 / w
+        stop = min(end, brentq(speed, s - 1e-3 / w, s, xtol=1e-15)) if side * speed(s) <= 0 else end
+        u += a / w**2 * (math.sin(w * stop) - math.sin(w * t))
+        u -= a / w * math.cos(w * t) * (stop - t) + side * friction * (stop - t) ** 2 / 2.0
+        if stop >= end:
+            break
+        times.append(stop)
+        # It sticks where the plane does not pull harder than friction, and slips on else.
+        pull = -a * math.sin(w * stop)
+        t, side = stop, math.copysign(1.0, pull)
+        if abs(pull) <= friction:
+            turn = [(math.asin(friction / a) + k * math.pi) / w for k in range(200)]
+            k = next(k for k, s in enumerate(turn) if s > stop)
+            t, side = turn[k], -1.0 if k % 2 == 0 else 1.0
+    return times, u
+
+
+@pytest.mark.parametrize(("solver", "events"), SOLVERS)
+@pytest.mark.parametrize("strong", [1.3, 3.0], ids=["sticks", "slips on"])
+def test_block_on_a_shaken_plane_sticks_and_slips_as_in_closed_form(
+    solver: str, events: str, strong: float
+) -> None:
+    friction, w, end = 0.1 * g, 5.0, 9.0
+    deck, bearing = on_ground(Slider(0.1, 1000.0 * g))
+    scene = Scene((deck,), (bearing,), motion=Harmonic(strong * friction, 2.0 * math.pi / w))
+    response = run(scene, end, solver, events)
+    times, u = block_on_shaken_plane(strong * friction, w, friction, end)
+    assert len(times) > 20
+    h = response.recording.history
+    assert response.recording.u[0] == pytest.approx(u, abs=CLOSE * np.abs(h.u).max())
+    seen = h.t[1:][h.t[1:] == h.t[:-1]]
+    # A slip from friction to friction is one of the times twice.
+    np.testing.assert_allclose(np.unique(seen), np.unique(times), rtol=0.0, atol=1e-7)
+    moves = np.abs(h.v[:, 0]) > 1e-6
+    np.testing.assert_array_equal(h.z[moves, 0], np.sign(h.v[moves, 0]))
+    assert np.abs(h.z).max() <= 1.0 + 1e-9
+    assert abs(response.energy.closure) < 1e-7
+
+
+def steady_amplitude(response: Response, period: float) -> float:
+    h = response.recording.history
+    return float(np.abs(h.u[h.t > h.t[-1] - period]).max())
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+@pytest.mark.parametrize("beta", [0.7, 1.3, 2.0])
+def test_oscillator_that_does_not_stop_has_the_amplitude_of_den_hartog(
+    solver: str, beta: float
+) -> None:
+    # Transactions of the ASME 53 (1931), eq. 13: a^2 = V^2 - (F/P)^2 U^2 in P/k.
+    deck, bearing = on_ground(Slider(0.1, 1000.0 * g, 1.0e5))
+    omega = 10.0 * beta
+    pull = bearing.law.strength / 0.4
+    scene = Scene((deck,), (bearing,), motion=Harmonic(pull / 1000.0, 2.0 * math.pi / omega))
+    period = 2.0 * math.pi / omega
+    response = run(scene, 150.0 * period, solver)
+    V = 1.0 / (1.0 - beta**2)
+    U = math.sin(math.pi / beta) / (beta * (1.0 + math.cos(math.pi / beta)))
+    expected = pull / 1.0e5 * math.sqrt(V**2 - (0.4 * U) ** 2)
+    assert steady_amplitude(response, period) == pytest.approx(expected, rel=1e-7)
+
+
+def den_hartog_with_stops(m: float, k: float, F: float, P: float, w: float) -> float:
+    """Amplitude of the steady motion that stops twice a cycle, of a pull P sin(w t)."""
+    w_n = math.sqrt(k / m)
+    force = P / (k - m * w**2)
+
+    def other_end(A: float) -> float:
+        """Where a slip ends that begins at -A."""
+        t_1 = math.asin((F - k * A) / P) / w
+
+        def speed(t: float) -> float:
+            x_0 = -A + F / k - force * math.sin(w * t_1)
+            v_0 = -force * w * math.cos(w * t_1)
+            s = w_n * (t - t_1)
+            return -x_0 * w_n * math.sin(s) + v_0 * math.cos(s) + force * w * math.cos(w * t)
+
+        t = t_1 + 1e-4 / w
+        while speed(t) > 0.0:
+            t += 1e-4 / w
+        t = brentq(speed, t - 1e-4 / w, t, xtol=1e-15)
+        assert t < t_1 + math.pi / w
+        x_0 = -A + F / k - force * math.sin(w * t_1)
+        v_0 = -force * w * math.cos(w * t_1)
+        s = w_n * (t - t_1)
+        rest = x_0 * math.cos(s) + v_0 / w_n * math.sin(s)
+        return rest + force * math.sin(w * t) - F / k
+
+    low = (F - P) / k + 1e-9
+    return float(brentq(lambda A: other_end(A) - A, max(low, 1e-6), 0.9 * P / k, xtol=1e-15))
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_oscillator_that_stops_twice_a_cycle_has_its_steady_amplitude(solver: str) -> None:
+    deck, bearing = on_ground(Slider(0.1, 1000.0 * g, 1.0e5))
+    F = bearing.law.strength
+    pull, omega = F / 0.75, 4.0
+    period = 2.0 * math.pi / omega
+    scene = Scene((deck,), (bearing,), motion=Harmonic(pull / 1000.0, period))
+    response = run(scene, 20.0 * period, solver)
+    expected = den_hartog_with_stops(1000.0, 1.0e5, F, pull, omega)
+    assert steady_amplitude(response, period) == pytest.approx(expected, rel=1e-7)
+    h = response.recording.history
+    assert (np.abs(h.z[h.t > 18.0 * period]) < 0.9).any()
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_impact_breaks_a_stick_where_it_strikes_and_nowhere_else(solver: str) -> None:
+    # Friction cannot pass on the impulse, and the one beside is pulled by less than it can hold.
+    bodies = (
+        Body("ball", 1.0, displacement=-1.0, velocity=1.0),
+        Body("struck", 1.0),
+        Body("beside", 1.0),
+    )
+    springs = (
+        Spring("between", ("struck", "beside"), Slider(0.3, 1.0)),
+        Spring("under", (GROUND, "beside"), Slider(1.0, 1.0)),
+    )
+    contacts = (Contact("face", "ball", "struck", 0.0, 1.0),)
+    scene = Scene(bodies, springs, contacts=contacts, motion=NoMotion())
+    response = run(scene, 6.0, solver)
+    # Equal masses: it takes over 1 m/s at t = 1 s, and friction stops it over 1 / (2 0.3).
+    way = 1.0 / 0.6
+    np.testing.assert_allclose(response.recording.u, [0.0, way, 0.0], atol=1e-8)
+    h = response.recording.history
+    late = h.t > 1.0 + 1.0 / 0.3 + 1e-6
+    assert h.v[late, 1].max() == h.v[late, 1].min() == 0.0
+    assert not h.v[:, 2].any()
+    assert [event.kind for event in response.recording.events] == ["impact"]
+
+
+@pytest.mark.parametrize(("solver", "events"), SOLVERS)
+def test_deck_pressed_on_an_abutment_parts_when_pulled_by_more_than_friction(
+    solver: str, events: str
+) -> None:
+    # At rest on the barrier at its right; the ground's a sin(w t) presses it on, then pulls it off.
+    friction, a, w = 2.0, 3.0, 1.0
+    scene = Scene(
+        (Body("deck", 1.0),),
+        (Spring("bearing", (GROUND, "deck"), Slider(friction, 1.0)),),
+        contacts=(Contact("abutment", "deck", "barrier", 0.0, 0.0),),
+        motion=Harmonic(a, 2.0 * math.pi / w, reverse=True),
+    )
+    response = run(scene, 2.0 * math.pi / w, solver, events)
+    (begin, end) = (e for e in response.recording.events if e.kind in ("rest", "detachment"))
+    assert (begin.kind, begin.t, end.kind) == ("rest", 0.0, "detachment")
+    assert end.t == pytest.approx(math.pi + math.asin(friction / a), abs=1e-9)
+    h = response.recording.history
+    assert np.abs(h.u[h.t < end.t]).max() == 0.0
+    # Balance at every row, whoever carries: m a_g = -f - lambda.
+    still = h.t < end.t
+    np.testing.assert_allclose(
+        h.ground[still], -h.force[still, 0] - h.contact_force[still, 0], atol=1e-12
+    )
+    assert h.contact_force.min() >= -1e-9
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_two_sliders_side_by_side_are_one_of_both_forces(solver: str) -> None:
+    motion = Harmonic(3.0, 1.1)
+    deck, bearing = on_ground(Slider(0.1, 1000.0 * g, 2.0e4))
+    parts = (Slider(0.07, 1000.0 * g, 2.0e4), Slider(0.03, 1000.0 * g))
+    two = tuple(replace(bearing, name=f"part {i}", law=law) for i, law in enumerate(parts))
+    # The other way round the same.
+    two = (two[0], replace(two[1], between=("deck", GROUND)))
+    whole = run(Scene((deck,), (bearing,), motion=motion), 8.0, solver).recording
+    found = run(Scene((deck,), two, motion=motion), 8.0, solver).recording
+    np.testing.assert_allclose(found.u, whole.u, atol=CLOSE * np.abs(whole.history.u).max())
+    rows, among = (r.history for r in (found, whole))
+    total = rows.force[:, 0] - rows.force[:, 1]
+    moving = np.abs(np.interp(rows.t, among.t, among.v[:, 0])) > 1e-3
+    expected = np.interp(rows.t, among.t, among.force[:, 0])
+    np.testing.assert_allclose(total[moving], expected[moving], atol=2e-2 * expected.max())
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_slider_on_a_support_is_that_on_the_ground_which_moves_so(solver: str) -> None:
+    motion = Sine(3.0, 1.1)
+    deck, bearing = on_ground(Slider(0.1, 1000.0 * g, 2.0e4))
+    whole = run(Scene((deck,), (bearing,), motion=motion), 6.0, solver).recording
+    hung = replace(bearing, between=("pier", "deck"))
+    scene = Scene((deck,), (hung,), motion=NoMotion(), supports=(Support("pier", motion=motion),))
+    found = run(scene, 6.0, solver).recording
+    assert found.supports is not None
+    relative = found.u[0] - found.supports.s[-1, 0]
+    assert relative == pytest.approx(whole.u[0], abs=CLOSE * np.abs(whole.history.u).max())
+
+
+def random_scene(seed: int) -> tuple[Scene, float]:
+    """A row of up to three bodies on springs and sliders, contacts between some of them."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 4))
+    names = [f"b{i}" for i in range(n)]
+    speed = 0.5 if rng.random() < 0.3 else 0.0
+    bodies = [Body(name, rng.uniform(0.5, 3.0), velocity=speed * rng.normal()) for name in names]
+    springs = []
+    for i, name in enumerate(names):
+        ends = (GROUND, name) if rng.random() < 0.5 else (name, GROUND)
+        if rng.random() < 0.6:
+            springs.append(Spring(f"k{i}", ends, Linear(rng.uniform(0.2, 3.0))))
+        if rng.random() < 0.7 or i == 0:
+            law = Slider(rng.uniform(0.05, 0.6), rng.uniform(0.5, 2.0), rng.choice([0.0, 0.5]))
+            springs.append(Spring(f"s{i}", ends, law))
+        if i and (kind := rng.random()) < 0.6:
+            law = Slider(rng.uniform(0.05, 0.5), 1.0) if kind < 0.4 else Linear(rng.uniform(0.2, 2))
+            springs.append(Spring(f"c{i}", (names[i - 1], name), law))
+    row = ["barrier", *names, "barrier"]
+    contacts = [
+        Contact(f"g{i}", row[i], row[i + 1], rng.uniform(0.1, 0.6), rng.choice([0.0, 0.5, 1.0]))
+        for i in range(n + 1)
+        if rng.random() < 0.35
+    ]
+    dashpots = [Dashpot((GROUND, "b0"), rng.uniform(0.02, 0.2))] if rng.random() < 0.4 else []
+    kind = Harmonic if rng.random() < 0.5 else Sine
+    motion = kind(rng.uniform(0.3, 1.5), 2.0 * math.pi / rng.uniform(0.5, 2.0))
+    scene = Scene(tuple(bodies), tuple(springs), tuple(dashpots), tuple(contacts), motion)
+    return scene, float(rng.uniform(8.0, 20.0))
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+@pytest.mark.parametrize("seed", [0, 1, 3, 4, 5, 6, 7])
+def test_random_scene_moves_as_in_another_program(seed: int, solver: str) -> None:
+    scene, end = random_scene(seed)
+    response = run(scene, end, solver)
+    size = float(np.abs(response.recording.history.u).max())
+    corners = tuple(piece.end for piece in scene.motion.pieces())
+    answer = solved(scene, end, size, 1.0, corners)
+    np.testing.assert_allclose(response.recording.u, answer.u, rtol=0.0, atol=1e-7 * size)
+    sliders = [s.name for s in scene.springs if isinstance(s.law, Slider)]
+    paths = [response.quantity(f"springs.{name}.slip_path") for name in sliders]
+    np.testing.assert_allclose(paths, answer.path, rtol=0.0, atol=1e-7 * size)
+    assert abs(response.energy.closure) < 1e-7
+
+
+@pytest.mark.parametrize("solver", ["fast", "moreau", "penalty"])
+def test_a_solver_that_does_not_know_sliders_says_so_in_one_message(solver: str) -> None:
+    deck, bearing = on_ground(Slider(0.1, 1.0))
+    with pytest.raises(InputError) as caught:
+        simulate(Scene((deck,), (bearing,), motion=Sine(1.0, 1.0)), solver=solver, duration=1.0)
+    said = f"[solver]: {solver} does not know the laws of springs 'bearing' (slider)"
+    assert str(caught.value) == f"{said}; accepted: cvode, ida"
+
+
+def test_sliders_beside_contacts_at_points_are_refused() -> None:
+    deck, bearing = on_ground(Slider(0.1, 1.0))
+    other = Body("other", 1.0, displacement=1.0)
+    contact = Contact("edge", Point({"deck": 0.5, GROUND: 0.5}), "other", 1.0)
+    scene = Scene((deck, other), (bearing,), contacts=(contact,), motion=Sine(1.0, 1.0))
+    with pytest.raises(InputError, match="found 'slider'; accepted: slider only in a scene"):
+        simulate(scene, duration=1.0)
+
+
+@pytest.mark.parametrize("cut", [0.4, 1.8], ids=["while it slips", "while it sticks"])
+def test_run_goes_on_where_another_ended(cut: float) -> None:
+    deck, bearing = on_ground(Slider(0.1, 1000.0 * g, 4.0e5), displacement=0.05)
+    scene = Scene((deck,), (bearing,), motion=NoMotion())
+    whole, first = run(scene, 2.0), run(scene, cut)
+    later = simulate(scene, duration=2.0 - cut, start=first.final, rtol=RTOL).recording
+    assert later.u[0] == pytest.approx(whole.recording.u[0], abs=CLOSE * 0.05)
+    assert not later.v.any()
