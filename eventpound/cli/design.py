@@ -6,8 +6,8 @@ codes combine from the peaks without contact; opening, seat width used, impulse.
 storeys and bodies. Of a suite the 50 and 84 % fractiles over the records, the largest, and its
 record. What each row is: the page "design" of the documentation.
 
-Files, in CASE/results/design: design.pdf and design.html, a report of two pages of A4 (of a run
-or a suite); design.csv, a row a demand (of a study: for each combination of its axes), which a
+Files, in CASE/results/design: design.pdf and design.html, a report of two pages of A4 (of a study
+one page); design.csv, a row a demand (of a study: for each combination of its axes), which a
 spreadsheet opens; beside it all that the runs gave. Further runs are made for it: one without
 contact, and one for each contact. A suite or a study that was stopped goes on.
 
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from eventpound.case import Case
     from eventpound.study.design import DesignRuns
+    from eventpound.study.plan import Plan
 
 _FOLDER, REPORT, PRINTED = "design", "design.html", "design.pdf"
 
@@ -55,9 +56,11 @@ def _design(options: Options) -> int:
 
     out, report = options.out or options.results / _FOLDER, dict[str, bytes]()
     if "study" in read_document(options.case)[0]:
-        why = "is for a case without a [study]"
-        options.refuse(["--suite", "--no-report"], why)
-        table = _of_study(options, out)
+        options.refuse(["--suite"], "is for a case without a [study]")
+        study = arguments.load_study(options.case).study
+        table = _of_study(study, out)
+        if not options.no_report and len(table):
+            report = _report_of_study(study, table)
         print(f"design    {len(table)} rows: each demand at each combination of the axes")
     else:
         case = arguments.load(options.case, options.suite)
@@ -114,11 +117,22 @@ def _of_suite(case: Case, out: Path) -> DesignRuns:
     return made
 
 
-def _of_study(options: Options, out: Path) -> pd.DataFrame:
+def _report_of_study(study: Plan, table: pd.DataFrame) -> dict[str, bytes]:
+    """One sheet, as HTML and PDF."""
+    from eventpound.report.design_study import study_sheet
+    from eventpound.report.sheets import as_html, as_pdf
+    from eventpound.results.trade import trade_of
+
+    say("draw the report")
+    case = study.bases[0].at_first().case
+    sheet = study_sheet(study, table, trade_of(case.scene, case.run.stated))
+    return {REPORT: as_html(study.title, [sheet]), PRINTED: as_pdf(study.title, [sheet])}
+
+
+def _of_study(plan: Plan, out: Path) -> pd.DataFrame:
     """Make the runs of a study; how many failed is said."""
     from eventpound.study.design import made_of_study
 
-    plan = arguments.load_study(options.case).study
     with _going_on(), StudyProgress(plan.size) as progress:
         made = made_of_study(plan, out, progress)
     assert made.runs is not None

@@ -61,7 +61,7 @@ _TALL = 0.7
 """Height of a sketch over its width."""
 _LEFT_OUT = ("alpha", "mass on it", "F_y/W", "Q (", "height", "offset", "post-yield")
 """Columns of the model that have no room; they begin so."""
-_LIMITS = (
+LIMITS = (
     "Bodies move along one line. Impacts follow Newton's law of restitution, or the law of a "
     "contact that has one; local damage, torsion and vertical motion are not computed.",
     "Separation needed: the least gap at which nothing touches there, other joints as they "
@@ -71,6 +71,7 @@ _LIMITS = (
     "shrinkage, temperature and the motion of the ground between supports are to be added.",
     "Residuals are those at the end of each run, with what still swings then.",
 )
+"""What is not in design numbers."""
 _FEW = 7
 """Records from which on codes take a mean (EN 1998-1:2004, 4.3.3.4.3)."""
 
@@ -263,7 +264,7 @@ def _panels(told: Told) -> list[list[Named]]:
 
 def _limits(told: Told) -> Iterator[str]:
     """What is not in the numbers, and what the case was warned of."""
-    yield from _LIMITS
+    yield from LIMITS
     if told.runs is not None:
         failed = told.runs[told.runs[FAILED] != ""]
         done = len(told.runs) - len(failed)

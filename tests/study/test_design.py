@@ -13,7 +13,7 @@ from eventpound.case.member import member_case
 from eventpound.cli import main
 from eventpound.motion import Record
 from eventpound.quantities.lookup import find
-from eventpound.results.trade import three_digits
+from eventpound.results.trade import Trade, three_digits
 from eventpound.scene import GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.study.design import DEMANDS
 from tests.quantities.test_separation import row
@@ -148,6 +148,12 @@ def test_the_command_takes_a_run_and_a_study(
     assert main(["design", str(suite)]) == 0
     table = pd.read_csv(suite / "results" / "design" / "design.csv")
     assert sorted(set(table["contact.joint.gap"])) == [0.01, 0.02]
+    page = (suite / "results" / "design" / "design.html").read_text(encoding="utf-8")
+    needed = table[table["quantity"] == JOINT + "max_impulse"]["84 %"]
+    for gap, impulse in zip(("1", "2"), needed, strict=True):
+        row = page.partition(f">{gap}</td>")[2].partition("</tr>")[0]
+        assert f">{Trade().number(impulse, 'N s')}</td>" in row
+    assert (suite / "results" / "design" / "design.pdf").read_bytes().startswith(b"%PDF")
     assert main(["design", str(suite), "--suite", "d.txt"]) == 2
     assert "--suite: is for a case without a [study]" in capsys.readouterr().err
 

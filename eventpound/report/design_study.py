@@ -1,0 +1,128 @@
+"""The report of a study: one sheet with its demands over the axes, the largest of all owners."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from eventpound.report import style
+from eventpound.report.design_report import LIMITS
+from eventpound.report.sheets import Block, Head, Picture, Sheet, Words
+from eventpound.report.symbols import axis_label, display_unit, value_label
+from eventpound.results.cells import Cells, headed
+from eventpound.results.trade import Trade
+from eventpound.study.design import FRACTILES
+from eventpound.study.plan import RECORD, Plan
+
+_SHOWN = ("avoiding_gap_alone", "seat_used", "max_impulse", "ductility", "drift_ratio")
+"""Demands, by the last words of their quantities."""
+_MOST_ROWS, _MOST_CURVES, _MOST_PANELS = 40, 6, 3
+_WIDE, _HIGH, _TALL = 7.4, 2.6, 66.0
+"""Inches of the figure, and its height on the sheet (mm)."""
+
+
+def study_sheet(study: Plan, design: pd.DataFrame, trade: Trade) -> Sheet:
+    """The sheet of a study.
+
+    Parameters
+    ----------
+    study : Plan
+        What was run.
+    design : DataFrame
+        Its design numbers, a row a demand at each combination of the axes.
+    trade : Trade
+        Units.
+    """
+    return list(_blocks(study, design, trade))
+
+
+def _blocks(study: Plan, design: pd.DataFrame, trade: Trade) -> Iterator[Block]:
+    axes = [name for name in study.columns if name != RECORD]
+    yield Head(study.title, title=True)
+    records, (_, high) = int(design["records"].max()), FRACTILES
+    column = f"{high:g} %"
+    under = f"the {column} fractile over {records} records" if records > 1 else "one motion"
+    said = f"Each number is the largest of all contacts, springs or bodies, under {under}."
+    yield Words((said,))
+    suffix = design["quantity"].map(lambda name: str(name).rpartition(".")[2])
+    found = {word: design[suffix == word] for word in _SHOWN if (suffix == word).any()}
+    if not found:
+        found = {"abs_max": design[design["quantity"].str.startswith("peaks.")]}
+    values = pd.DataFrame(
+        {
+            word: rows.groupby(axes, sort=False, dropna=False)[column].max()
+            for word, rows in found.items()
+        }
+    ).reset_index()
+    called = {word: rows.iloc[0] for word, rows in found.items()}
+    numeric = [axis for axis in axes if values[axis].dtype.kind == "f"]
+    if numeric:
+        yield Head("Demand over the axes")
+        yield Picture(_figure(values, axes, numeric, called, trade), _TALL)
+    yield Head("Design numbers")
+    yield _table(values, axes, called, trade)
+    yield Head("Limits and origin")
+    by = f"Solver {study.solver}, relative tolerance {study.rtol:g}; study {study.digest[:16]}."
+    yield Words((*(f"• {text}" for text in LIMITS), by))
+
+
+@style.styled()
+def _figure(
+    values: pd.DataFrame,
+    axes: list[str],
+    numeric: list[str],
+    called: dict[str, pd.Series],
+    trade: Trade,
+) -> Figure:
+    """Demands over the axis of most values, a curve for each combination of the others."""
+    x = max(numeric, key=lambda axis: values[axis].nunique())
+    others = [axis for axis in axes if axis != x]
+    unit = display_unit(x, float(values[x].abs().max()))
+    shown = list(called)[:_MOST_PANELS]
+    figure = style.new_figure(_WIDE, _HIGH)
+    panels = np.atleast_1d(figure.subplots(1, len(shown)))
+    groups = list(values.groupby(others, sort=False, dropna=False)) if others else [((), values)]
+    colors = style.colors(min(len(groups), _MOST_CURVES))
+    for panel, word in zip(panels, shown, strict=True):
+        name, size = trade.unit(str(called[word]["unit"]), str(called[word]["quantity"]))
+        for (at, rows), color in zip(groups, colors, strict=False):
+            label = ", ".join(value_label(k, v) for k, v in zip(others, at, strict=True))
+            panel.plot(rows[x] / unit.size, rows[word] / size, "o-", color=color, label=label)
+        panel.set(xlabel=axis_label(x, unit))
+        panel.set_ylim(0.0, 1.05 * panel.get_ylim()[1])
+        panel.set_ylabel(f"{called[word]['demand']} ({name})" if name else called[word]["demand"])
+    if others:
+        panels[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), fontsize=6.5)
+    return figure
+
+
+def _table(
+    values: pd.DataFrame, axes: list[str], called: dict[str, pd.Series], trade: Trade
+) -> Cells:
+    """A row for each combination of the axes."""
+    units = {
+        axis: display_unit(axis, float(values[axis].abs().max()))
+        for axis in axes
+        if values[axis].dtype.kind == "f"
+    }
+    heads = [headed(axis, units[axis].name) if axis in units else axis for axis in axes]
+    rows = []
+    for row in values.head(_MOST_ROWS).to_dict("records"):
+        cells = [_plain(row[a] / units[a].size) if a in units else str(row[a]) for a in axes]
+        for word, first in called.items():
+            cells.append(trade.number(float(row[word]), str(first["unit"]), str(first["quantity"])))
+        rows.append(tuple(cells))
+    for first in called.values():
+        unit = trade.unit(str(first["unit"]), str(first["quantity"]))[0]
+        heads.append(headed(str(first["demand"]), unit))
+    words = (*(axis not in units for axis in axes), *(False for _ in called))
+    return Cells(tuple(heads), tuple(rows), words, max(0, len(values) - _MOST_ROWS))
+
+
+def _plain(value: float) -> str:
+    """A value of an axis without an exponent where it is large."""
+    text = f"{value:.4g}"
+    return f"{value:.0f}" if "e+" in text else text
