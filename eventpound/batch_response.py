@@ -130,7 +130,7 @@ def blank_many(
         return Extremes(room(width), room(width), room(width), room(width))
 
     bodies, springs, contacts = len(scene.bodies), len(scene.springs), len(scene.contacts)
-    hysteretic = len(scene.hysteretic_springs)
+    internal = len(scene.memory)
     return BatchResponse(
         scene,
         parameters,
@@ -139,7 +139,7 @@ def blank_many(
         room(),
         room(bodies),
         room(bodies),
-        room(hysteretic),
+        room(internal),
         extremes(bodies),
         extremes(springs),
         room(contacts),

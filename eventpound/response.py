@@ -265,7 +265,8 @@ class Response:
         warn_unsettled("floor spectrum", apart["floor spectrum"])
         table = floor_table(found["floor spectrum"][0], wanted, period, ratios)
         units = {"body": "", "damping": "", "period": "s", "SD": "m", "PSV": "m/s"}
-        table.attrs["units"] = units | {"PSA": "m/s^2", "PSA_g": "g", "SA": "m/s^2"}
+        units = {name: HISTORY_UNITS.get(name.partition(".")[0], "") for name in table}
+        table.attrs["units"] = units
         return table
 
     @property
@@ -371,7 +372,9 @@ class Response:
         table = pd.DataFrame(self.history_columns())
         if not jumps:
             table = table.drop_duplicates("t", keep="last", ignore_index=True)
-        table.attrs["units"] = {name: HISTORY_UNITS[name.partition(".")[0]] for name in table}
+        table.attrs["units"] = {
+            name: HISTORY_UNITS.get(name.partition(".")[0], "") for name in table
+        }
         return table
 
     @checked
@@ -415,7 +418,7 @@ class Response:
             ("u", h.u, [b.name for b in self.scene.bodies]),
             ("v", h.v, [b.name for b in self.scene.bodies]),
             ("a", h.a, [b.name for b in self.scene.bodies]),
-            ("z", h.z, self.scene.hysteretic_springs),
+            *((name, h.z[:, [i]], [s]) for i, (s, name) in enumerate(self.scene.memory)),
             ("force", h.force, [s.name for s in self.scene.springs]),
             ("gap", h.gap, [c.name for c in self.scene.contacts]),
             ("lambda", h.contact_force, [c.name for c in self.scene.contacts]),
@@ -516,7 +519,6 @@ HISTORY_UNITS = {
     "u": "m",
     "v": "m/s",
     "a": "m/s^2",
-    "z": "",
     "force": "N",
     "gap": "m",
     "lambda": "N",
@@ -524,7 +526,7 @@ HISTORY_UNITS = {
     "sv": "m/s",
     "sf": "N",
 }
-"""Of the columns of a history, by what stands before the name."""
+"""Of the columns of a history, by what stands before the name; a memory's have none."""
 SHEAR_OF_SUPPORTS = "supports.<support>.*_shear"
 """Stands in every summary; beside the motion it costs a few short runs."""
 EVENT_COLUMNS = Event._fields

@@ -78,8 +78,8 @@ def values_of(
     for i, body in enumerate(scene.bodies):
         found[f"{FINAL}.{body.name}.u"] = float(recording.u[i])
         found[f"{FINAL}.{body.name}.v"] = float(recording.v[i])
-    for i, name in enumerate(scene.hysteretic_springs):
-        found[f"{FINAL}.{name}.z"] = float(recording.z[i])
+    for i, (spring, name) in enumerate(scene.memory):
+        found[f"{FINAL}.{spring}.{name}"] = float(recording.z[i])
     for i, body in enumerate(scene.bodies if len(moments) else ()):
         at = np.interp(moments, history.t, history.u[:, i])
         found |= {f"history.{k}.{body.name}": float(u) for k, u in enumerate(at)}
@@ -115,8 +115,8 @@ def quantities_of(
     for i, body in enumerate(scene.bodies):
         found.append((f"{FINAL}.{body.name}.u", "m", scales.u[i]))
         found.append((f"{FINAL}.{body.name}.v", "m/s", scales.v[i]))
-    for i, name in enumerate(scene.hysteretic_springs):
-        found.append((f"{FINAL}.{name}.z", "", scales.z[i]))
+    for i, (spring, name) in enumerate(scene.memory):
+        found.append((f"{FINAL}.{spring}.{name}", "", scales.z[i]))
     for k in range(len(moments)):
         for i, body in enumerate(scene.bodies):
             found.append((f"history.{k}.{body.name}", "m", scales.u[i]))

@@ -13,7 +13,14 @@ import numpy as np
 
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor import Descriptor
-from eventpound.mechanics.elements import link_force, pull_per_z, z_rate, z_slopes
+from eventpound.mechanics.elements import (
+    link_force,
+    number_beside,
+    pull_per_z,
+    slope_beside,
+    z_rate,
+    z_slopes,
+)
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced import Forcing
@@ -95,7 +102,8 @@ def link_states(
         h, k, c = d.z_of_link[link], d.stiffness[link], law.damping[link]
         z = y[2 * N + h] if h >= 0 else 0.0
         if h >= 0:
-            z_rates[h] = z_rate(link, law.memory, x_rate, x_rate, z)
+            beside = y[2 * N + d.z_of_link[number_beside(link, law.memory)]]
+            z_rates[h] = z_rate(link, law.memory, x_rate, x_rate, z, beside)
         elongation[0, link], elongation[1, link] = x, x_rate
         forces[link] = link_force(link, law.memory, k, d.preload[link], c, x, x_rate, z)
 
@@ -336,7 +344,10 @@ def _z_slopes(d: Descriptor, y: Floats, x_rate: Floats, cj: float, J: Floats) ->
         h = d.z_of_link[link]
         if h < 0:
             continue
-        by_rate, by_z = z_slopes(link, d.law.memory, x_rate[link], y[2 * N + h])
+        memory, rate = d.law.memory, x_rate[link]
+        other = 2 * N + d.z_of_link[number_beside(link, memory)]
+        by_rate, by_z = z_slopes(link, memory, rate, y[2 * N + h], y[other])
+        J[2 * N + h, other] = -slope_beside(link, memory, rate, y[2 * N + h], y[other])
         J[2 * N + h, 2 * N + h] = cj - by_z
         for b in range(N):
             J[2 * N + h, N + b] = -by_rate * d.B[link, b]

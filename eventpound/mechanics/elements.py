@@ -33,6 +33,7 @@ import numpy as np
 from eventpound.mechanics.link_law import (
     APART,
     BACKFILL,
+    BESIDE,
     BETA,
     CLOSED,
     EXPONENT,
@@ -104,11 +105,19 @@ def contact_code(a: int, memory: Floats) -> int:
 
 
 @_part
-def z_rate(a: int, memory: Floats, x_rate: float, direction: float, z: float) -> float:
+def number_beside(a: int, memory: Floats) -> int:
+    """The link whose internal variable the rate of that of link a depends on, too; or a itself."""
+    return int(memory[a, BESIDE])
+
+
+@_part
+def z_rate(
+    a: int, memory: Floats, x_rate: float, direction: float, z: float, beside: float
+) -> float:
     """Rate of the internal variable of link a (1/s) at the elongation rate `x_rate` (m/s).
 
-    The sign σ is that of `direction`: x' itself, or what it was before a reversal. In Python x',
-    σ and z may be arrays.
+    The sign σ is that of `direction`: x' itself, or what it was before a reversal. `beside` is the
+    variable of `number_beside`. In Python x', σ and the variables may be arrays.
     """
     same_sign = (direction > 0.0) == (z > 0.0)
     kappa = memory[a, BETA] + memory[a, GAMMA] * (2.0 * same_sign - 1.0)
@@ -120,7 +129,7 @@ def z_rate(a: int, memory: Floats, x_rate: float, direction: float, z: float) ->
 
 
 @_part
-def z_slopes(a: int, memory: Floats, x_rate: float, z: float) -> tuple[float, float]:
+def z_slopes(a: int, memory: Floats, x_rate: float, z: float, beside: float) -> tuple[float, float]:
     """Derivatives of `z_rate` by the elongation rate (1/m) and by z (1/s)."""
     if memory[a, KIND] == YIELDING_SOIL:
         left = 1.0 + z
@@ -135,7 +144,13 @@ def z_slopes(a: int, memory: Floats, x_rate: float, z: float) -> tuple[float, fl
 
 
 @_part
-def z_bend(a: int, memory: Floats, z: float, travel: float) -> float:
+def slope_beside(a: int, memory: Floats, x_rate: float, z: float, beside: float) -> float:
+    """Derivative of `z_rate` by the variable beside (1/s), where that is not z itself."""
+    return 0.0
+
+
+@_part
+def z_bend(a: int, memory: Floats, z: float, beside: float, travel: float) -> float:
     """By how much z departs from a line over a `travel` of the elongation (m), at most."""
     if memory[a, BETA] == memory[a, GAMMA] == 0.0:
         # A branch has one formula.
@@ -145,7 +160,7 @@ def z_bend(a: int, memory: Floats, z: float, travel: float) -> float:
 
 
 @_part
-def reversal_jump(a: int, memory: Floats, z: float) -> float:
+def reversal_jump(a: int, memory: Floats, z: float, beside: float) -> float:
     """By how much dz/dx jumps where the elongation of link a reverses (1/m), z >= 0."""
     return float(2.0 * abs(memory[a, GAMMA]) * z ** memory[a, EXPONENT] / memory[a, YIELD])
 
@@ -244,12 +259,19 @@ def branch_within(a: int, memory: Floats, offset: float, x: float, z: float, noi
 
 @kernel
 def z_coefficient(
-    a: int, k: int, memory: Floats, x_rate: Floats, z: Floats, power: Floats, sigma: float
+    a: int,
+    k: int,
+    memory: Floats,
+    x_rate: Floats,
+    z: Floats,
+    beside: Floats,
+    power: Floats,
+    sigma: float,
 ) -> float:
-    """Taylor coefficient k of z', from those of x' and z up to k; `power` is brought up to k.
+    """Taylor coefficient k of z', from those of x', z and the variable beside up to k.
 
-    `sigma` is the sign of x' just after the start, `power` holds the coefficients of |z|^n, or of
-    -z (2 + z) of soil that yields.
+    `sigma` is the sign of x' just after the start. `power` is brought up to k: coefficients of
+    |z|^n, or of -z (2 + z) of soil that yields.
     """
     sign_z = sign_after(z, k + 1, NO_Z)
     if sign_z == 0.0:

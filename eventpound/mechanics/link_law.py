@@ -6,7 +6,8 @@ so that to check or to export a scene imports no compiler.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,11 +16,12 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.elastic_laws import ElasticLaws, elastic_force
 from eventpound.scene.spring import Backfill, BoucWen, Hysteretic, Law, Slider
 
-CONSTANTS = ("kind", "strength", "yield_displacement", "exponent", "beta", "gamma")
-"""Columns of `LinkLaw.memory`; but for the first, fields of `BoucWen`."""
-KIND, STRENGTH, YIELD, EXPONENT, BETA, GAMMA = range(len(CONSTANTS))
+CONSTANTS = ("kind", "beside", "strength", "yield_displacement", "exponent", "beta", "gamma")
+"""Columns of `LinkLaw.memory`; but for the first two, fields of `BoucWen`."""
+KIND, BESIDE, STRENGTH, YIELD, EXPONENT, BETA, GAMMA = range(len(CONSTANTS))
 ELASTIC, BOUC_WEN, BACKFILL, YIELDING_SOIL, SLIDER = 0.0, 1.0, 2.0, 3.0, 4.0
 """Kinds of links; that of a contact element is its code, which is negative."""
+NONE_FURTHER: Mapping[int, int] = MappingProxyType({})
 APART, CLOSED, YIELDING = 1, -1, -2
 """Branches of a link: above its kink, below it, and below it on the backbone of a memory."""
 
@@ -27,7 +29,8 @@ APART, CLOSED, YIELDING = 1, -1, -2
 class LinkLaw(NamedTuple):
     """Laws of L links beside their elastic parts; arrays of variants have axes before these.
 
-    damping (L,): c (N s/m). memory (L, constants): of z, Q = 0 where there is none.
+    damping (L,): c (N s/m). memory (L, constants): of z, Q = 0 where there is none. A memory of
+    two numbers has a second link, which carries no force.
     """
 
     damping: Floats
@@ -45,19 +48,29 @@ class Yielding(NamedTuple):
     displacement: Floats
 
 
-def link_law(laws: Sequence[Law | Hysteretic], damping: Any) -> LinkLaw:
-    """Laws of links as arrays; those of which `damping` (N s/m) is longer are dashpots alone."""
+def link_law(
+    laws: Sequence[Law | Hysteretic], damping: Any, further: Mapping[int, int] = NONE_FURTHER
+) -> LinkLaw:
+    """Laws of links as arrays; those of which `damping` (N s/m) is longer are dashpots alone.
+
+    But for links with the second number of a memory, which `further` has by the link of the first.
+    """
     rows = np.empty((len(damping), len(CONSTANTS)))
-    rows[:] = (ELASTIC, 0.0, 1.0, 20.0, 0.5, 0.5)
+    rows[:] = (ELASTIC, 0.0, 0.0, 1.0, 20.0, 0.5, 0.5)
+    rows[:, BESIDE] = np.arange(len(damping))
     for row, law in zip(rows, laws, strict=False):
         if isinstance(law, BoucWen):
-            row[:] = (BOUC_WEN, *(getattr(law, name) for name in CONSTANTS[1:]))
+            row[KIND], row[STRENGTH:] = BOUC_WEN, [getattr(law, name) for name in CONSTANTS[2:]]
         elif isinstance(law, Backfill):
             # Off its backbone dz/dx is constant: eq. 3 with β and γ zero.
-            row[:] = (BACKFILL, law.strength, law.yield_displacement, 1.0, 0.0, 0.0)
+            row[KIND] = BACKFILL
+            row[STRENGTH:] = law.strength, law.yield_displacement, 1.0, 0.0, 0.0
         elif isinstance(law, Slider):
             # A z that does not move with x: it is 1, and the sign of Q that of the slip.
-            row[:] = (SLIDER, law.strength, np.inf, 1.0, 0.0, 0.0)
+            row[KIND] = SLIDER
+            row[STRENGTH:] = law.strength, np.inf, 1.0, 0.0, 0.0
+    for first, second in further.items():
+        rows[first, BESIDE], rows[second, BESIDE] = second, first
     return LinkLaw(np.array(damping, np.float64), rows)
 
 

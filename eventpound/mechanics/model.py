@@ -7,7 +7,8 @@ Equation of motion, coordinates u relative to the ground:
 A *link* joins two bodies, or a body and the ground (index -1), and carries a
 spring, a dashpot or both: its elongation is ``x = u_second - u_first`` and its
 force (`eventpound.mechanics.elements`) pulls the ends together. Springs come first,
-in the order of the scene, then dashpots that stand alone.
+in the order of the scene, then dashpots that stand alone, then links without force, each of which
+has the second number of a memory as its z.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ class Model:
     elastic : ElasticLaws
         Elastic parts of the links.
     hysteretic : ndarray of int, shape (H,)
-        Links with a memory; z is numbered in this order.
+        Links with a number of a memory; z is numbered in this order.
     z0 : ndarray, shape (H,)
         Initial z.
     springs : int
@@ -286,12 +287,16 @@ def assemble(scene: Scene) -> Model:
             damping.append(dashpot.coefficient)
         else:
             damping[place] += dashpot.coefficient
+    laws = [spring.law for spring in scene.springs]
+    loops = {i: law for i, law in enumerate(laws) if isinstance(law, Hysteretic)}
+    two = [i for i, law in loops.items() if law.second]
+    further = dict(zip(two, range(len(ends), len(ends) + len(two)), strict=True))
+    ends += [ends[i] for i in two]
+    damping += [0.0] * len(two)
     motion = scene.motion
     if isinstance(motion, LoadedMotion):
         ends += [(load.body, -1) for load in motion.loads]
         damping += [0.0] * len(motion.loads)
-    laws = [spring.law for spring in scene.springs]
-    loops = {i: law for i, law in enumerate(laws) if isinstance(law, Hysteretic)}
 
     def column(values: list[float]) -> Floats:
         return np.array(values, dtype=np.float64)
@@ -306,12 +311,14 @@ def assemble(scene: Scene) -> Model:
         u0=u0,
         v0=column([b.velocity for b in scene.bodies]),
         link_ends=np.array(ends, np.int64).reshape(-1, 2),
-        law=link_law(laws, damping),
+        law=link_law(laws, damping, further),
         elastic=as_arrays(
             [*map(reduced, laws)] + [BilinearElastic(0.0, 0.0)] * (len(ends) - len(laws))
         ),
-        hysteretic=np.array([*loops], np.int64),
-        z0=column([law.z_at(start[i]) for i, law in loops.items()]),
+        hysteretic=np.array([*loops, *further.values()], np.int64),
+        z0=column(
+            [law.z_at(start[i]) for i, law in loops.items()] + [loops[i].second_at for i in further]
+        ),
         springs=len(laws),
         left=left,
         right=right,

@@ -20,7 +20,13 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, is_support
 from eventpound.mechanics.contact_laws import element_pull
-from eventpound.mechanics.elements import contact_code, link_force, pull_per_z, z_rate
+from eventpound.mechanics.elements import (
+    contact_code,
+    link_force,
+    number_beside,
+    pull_per_z,
+    z_rate,
+)
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.points import hold_at
@@ -56,7 +62,8 @@ class Reduced(NamedTuple):
 
     `size` is the length of y; `iq`, `iv` (C,) and `iz` (A,) say where a
     coordinate stands in it (-1: no hysteresis, below: the code of a closed contact element, see
-    `eventpound.mechanics.contact_laws`); `ledger` is the place of the
+    `eventpound.mechanics.contact_laws`); `beside` (A,) is the place of the variable that the rate
+    of a z depends on, too, that of z itself where there is none; `ledger` is the place of the
     first ledger entry or -1. `direction` (A,) is the sign that z' takes x' to have, 0 for its
     own. `z_of` (H,) is the place of each z of the model, -1 where it is frozen. `link` (A,) is
     the model's number of each link. `plain`: the links before contact elements, the last.
@@ -77,6 +84,7 @@ class Reduced(NamedTuple):
     iq: Ints
     iv: Ints
     iz: Ints
+    beside: Ints
     ledger: int
     z_of: Ints
     link: Ints
@@ -169,6 +177,11 @@ def _fields(
         else:
             damping[a] = 0.0
     iq, iv, iz, z_of, size = _layout(clusters.count, ends, z_of_active, hysteretic.size)
+    beside = iz.copy()
+    for a in range(active.size):
+        if iz[a] >= 0:
+            # Both have the same ends, so both are active.
+            beside[a] = z_of[z_of_link[number_beside(active[a], law.memory)]]
     return (
         size + ledger,
         cluster_mass,
@@ -182,6 +195,7 @@ def _fields(
         iq,
         iv,
         iz,
+        beside,
         size if ledger > 0 else -1,
         z_of,
         active,
@@ -277,7 +291,7 @@ def bandwidth(system: Reduced) -> int:
             for place in (int(system.iq[c]), int(system.iv[c]))
         ]
         if system.iz[a] >= 0:
-            places.append(int(system.iz[a]))
+            places += [int(system.iz[a]), int(system.beside[a])]
         reach = max(reach, max(places) - min(places))
     return reach
 
@@ -341,7 +355,7 @@ def rate_on_ground(
         if place >= 0:
             hysteretic += pull_per_z(a, system.memory) * z * x_rate
             way = direction if direction != 0.0 else x_rate
-            rate[place] = z_rate(a, system.memory, x_rate, way, z)
+            rate[place] = z_rate(a, system.memory, x_rate, way, z, y[system.beside[a]])
         if first >= 0:
             rate[iv[first]] += force
         if second >= 0:

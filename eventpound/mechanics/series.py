@@ -150,8 +150,8 @@ def _set_forces(
         elif iz[a] >= 0:
             if sigma[a] == 0.0:
                 sigma[a] = sign_after(x_rate, k + 1, speed_noise)
-            zs, power = Y[:, iz[a]], terms.power[a]
-            rate = z_coefficient(a, k, system.memory, x_rate, zs, power, sigma[a])
+            zs, beside, power = Y[:, iz[a]], Y[:, system.beside[a]], terms.power[a]
+            rate = z_coefficient(a, k, system.memory, x_rate, zs, beside, power, sigma[a])
             Y[k + 1, iz[a]] = rate / (k + 1)
         if first >= 0:
             force[first] += term

@@ -180,7 +180,7 @@ def _frequencies(scene: Scene) -> list[float]:
 def _law(spring: Spring) -> dict[str, float]:
     """A spring as a kinked line and a hysteretic part."""
     law = spring.law
-    if isinstance(law, Hysteretic) and law.has_branches:
+    if isinstance(law, Hysteretic) and law.beyond_bouc_wen:
         raise InputError(f"spring {spring.name}: its law is {law.word.value}; accepted: any other")
     if isinstance(law, BoucWen):
         line = {"compression": law.stiffness, "extension": law.stiffness, "offset": 0.0}

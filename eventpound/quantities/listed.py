@@ -38,7 +38,7 @@ LISTED: tuple[Quantity, ...] = (
     Quantity(_SPRING + "dissipated_energy", "energy dissipated", D.ENERGY,
              "Work done on the Q z part of a Bouc-Wen spring, less Q u_y z^2/2, which it can "
              "give back.", v.close_work(_SPRING + "dissipated_energy"), TakenFrom.BETWEEN,
-             v.is_bouc_wen),
+             v.is_plain_bouc_wen),
     Quantity(_SPRING + "dissipated_energy", "energy dissipated", D.ENERGY,
              "Work that the soil of a backfill does not give back.", v.by_law("dissipated"),
              TakenFrom.LAWS, v.told_by_law("dissipated")),

@@ -25,7 +25,7 @@ def loop_of(
     t: Floats,
     x: Floats,
     rate: Floats,
-    z: Floats | None,
+    *memory: Floats,
 ) -> tuple[Floats, Floats]:
     """Elongation and force of a spring along a motion.
 
@@ -35,8 +35,8 @@ def loop_of(
         Its law.
     t, x, rate : ndarray, shape (n,)
         Times of the rows (s), elongation (m) and the rate of that (m/s).
-    z : ndarray, shape (n,), optional
-        Its hysteretic variable, where it has one.
+    *memory : ndarray, shape (n,)
+        Its internal variables, where it has some, z first.
 
     Returns
     -------
@@ -54,34 +54,45 @@ def loop_of(
         low, high = fine.min(), fine.max()
         ends = np.array([low, np.clip(elastic.offset, low, high), high])
         return ends, elastic_force(elastic, ends)[0]
-    assert z is not None
-    memory = link_law([law], [0.0]).memory
-    along = _along(memory, fine, z)[..., None]
-    force = elastic_force(elastic, fine)[0] + memory_force(memory, along)[..., 0]
+    own, (z, *others) = link_law([law], [0.0]).memory, memory
+    along = _along(own, fine, z, *others)[..., None]
+    force = elastic_force(elastic, fine)[0] + memory_force(own, along)[..., 0]
     # The last of a cell is the first of the next.
     return np.append(fine[:, :-1], fine[-1, -1]), np.append(force[:, :-1], force[-1, -1])
 
 
-def _along(memory: Floats, x: Floats, z: Floats) -> Floats:
-    """The variable z at parts of every cell, of the shape (n - 1, _PARTS + 1) of x."""
-    found = np.empty_like(x)
+def _along(memory: Floats, x: Floats, z: Floats, beside: Floats | None = None) -> Floats:
+    """The variable z at parts of every cell, of the shape (n - 1, _PARTS + 1) of x.
+
+    The one beside it is that of the middle of the cell.
+    """
+    found, w = np.empty_like(x), 0.0 if beside is None else 0.5 * (beside[1:] + beside[:-1])
     found[:, 0] = z[:-1]
     for part, dx in enumerate(np.diff(x).T):
         y = found[:, part]
-        k1 = z_by_x(memory, y, dx)
-        k2 = z_by_x(memory, y + 0.5 * dx * k1, dx)
-        k3 = z_by_x(memory, y + 0.5 * dx * k2, dx)
-        k4 = z_by_x(memory, y + dx * k3, dx)
+        k1 = z_by_x(memory, y, dx, w)
+        k2 = z_by_x(memory, y + 0.5 * dx * k1, dx, w)
+        k3 = z_by_x(memory, y + 0.5 * dx * k2, dx, w)
+        k4 = z_by_x(memory, y + dx * k3, dx, w)
         found[:, part + 1] = y + dx * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
     missed = z[1:] - found[:, -1]
     return found + missed[:, None] * np.linspace(0.0, 1.0, _PARTS + 1)
 
 
-def z_by_x(memory: Floats, z: Floats, way: Floats | float) -> Floats:
-    """Slope dz/dx (1/m) of the one law where x goes a way: grows where that is positive."""
+def z_by_x(
+    memory: Floats,
+    z: Floats | float,
+    way: Floats | float,
+    beside: Floats | float = 0.0,
+    of: int = 0,
+) -> Floats:
+    """Slope dz/dx (1/m) of the one law where x goes a way: grows where that is positive.
+
+    `beside`: second number of its memory, whose own slope is that `of` 1.
+    """
     # Here and not above: to read results imports no compiler.
     from eventpound.mechanics.elements import z_rate
     from eventpound.numerics.compiled import in_python
 
     rate: Any = in_python(z_rate)
-    return np.asarray(rate(0, memory, 1.0, way, z))
+    return np.asarray(rate(of, memory, 1.0, way, z, beside))

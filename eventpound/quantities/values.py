@@ -36,6 +36,12 @@ def is_slider(scene: Scene, i: int) -> bool:
     return isinstance(scene.springs[i].law, Slider)
 
 
+def is_plain_bouc_wen(scene: Scene, i: int) -> bool:
+    """Whether it has one that knows nothing but z."""
+    law = scene.springs[i].law
+    return isinstance(law, BoucWen) and not law.second
+
+
 def told_by_law(name: str) -> Callable[[Scene, int], bool]:
     """Whether the law of spring i has a number of this name for the end of a run."""
     return lambda scene, i: hasattr(scene.springs[i].law, name)
@@ -98,7 +104,7 @@ def z_of(many: Runs, i: int) -> Floats:
 
 
 def by_law(name: str) -> Value:
-    """A number that the law of a spring tells from its elongation (m) and z at the end of a run."""
+    """A number that a law tells from its elongation (m) and internal variables at the end."""
 
     def values(many: Runs, i: int) -> Floats:
         spring, found = many.scene.springs[i], np.full(many.t.shape, np.nan)
@@ -109,8 +115,9 @@ def by_law(name: str) -> Value:
                 own = [support.name for support in many.scene.supports]
                 place |= dict(zip(own, run.supports.s[-1], strict=True))
             first, second = (float(place[end]) for end in spring.between)
-            z = run.z[many.scene.hysteretic_springs.index(spring.name)]
-            found[n] = getattr(_law_of(many, i, n), name)(second - first, float(z))
+            memory = zip(many.scene.memory, run.z, strict=True)
+            numbers = [float(z) for (of, _), z in memory if of == spring.name]
+            found[n] = getattr(_law_of(many, i, n), name)(second - first, *numbers)
         return found
 
     return values

@@ -19,6 +19,8 @@ _MOST = 4
 """Laws in one figure."""
 _REACH, _STEPS = 3.0, 200
 """Of a loop, in yield displacements, and steps a yield displacement."""
+_TIMES = 3
+"""That a loop is gone round which changes."""
 
 
 def laws_of(springs: Iterable[Spring]) -> list[tuple[str, Law]]:
@@ -116,13 +118,16 @@ def _of_loop(axes: Axes, law: BoucWen) -> str:
 
 
 def _loop(law: BoucWen) -> tuple[Floats, Floats]:
-    """Elongations (m) and forces (N) from rest to one end, to the other and back."""
-    step = law.yield_displacement / _STEPS
-    away = round(_REACH * _STEPS)
-    steps = np.repeat([step, -step, step], [away, 2 * away, 2 * away])
-    z, memory = np.zeros(steps.size + 1), link_law([law], [0.0]).memory
+    """Elongations (m) and forces (N) from rest to one end, to the other and back; again if worn."""
+    step, two = law.yield_displacement / _STEPS, bool(law.second)
+    away, times = round(_REACH * _STEPS), _TIMES if two else 1
+    ways, lengths = [step, *[-step, step] * times], [away, *[2 * away] * 2 * times]
+    steps, beside = np.repeat(ways, lengths), 0.0
+    z, memory = np.zeros(steps.size + 1), link_law([law], [0.0, 0.0], {0: 1} if two else {}).memory
     for i, dx in enumerate(steps.tolist()):
-        z[i + 1] = z[i] + dx * z_by_x(memory, z[i], dx)
+        z[i + 1] = z[i] + dx * z_by_x(memory, z[i], dx, beside)
+        if two:
+            beside += dx * float(z_by_x(memory, beside, dx, z[i + 1], of=1))
     x = np.concatenate([[0.0], np.cumsum(steps)])
     return x, law.stiffness * x + law.strength * z
 

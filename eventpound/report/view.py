@@ -185,12 +185,13 @@ class View:
         x, columns = self.elongation(spring), set(self.results.history.columns)
         moving = [end for end in spring.between if end != GROUND]
         wanted = {f"sv.{end}" if end in self.supports else f"v.{end}" for end in moving}
-        z = f"z.{spring.name}" if spring.law.hysteretic else None
-        if self.scene is None or x.size < 2 or not wanted | ({z} - {None}) <= columns:
+        memory = [] if self.scene is None else self.scene.memory
+        own = [f"{name}.{of}" for of, name in memory if of == spring.name]
+        if self.scene is None or x.size < 2 or not wanted.union(own) <= columns:
             return x, self.column(f"force.{spring.name}")
         law = next(each.law for each in self.scene.springs if each.name == spring.name)
         first, second = (self._of_end(end, "v", "sv") for end in spring.between)
-        return loop_of(law, self.column("t"), x, second - first, self.column(z) if z else None)
+        return loop_of(law, self.column("t"), x, second - first, *map(self.column, own))
 
     def impact_times(self, contact: str) -> Floats:
         """Times of the impacts of a contact and of the limits they accumulate at."""

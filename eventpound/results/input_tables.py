@@ -74,6 +74,8 @@ def input_tables(inputs: Mapping[str, Any], chosen: tuple[str, ...] = ()) -> Ite
     for kind, columns in _TABLES.items():
         # Springs with a kink have a table of their own: they share no number with others.
         given = inputs.get(kind, [])
+        if kind == "springs":
+            columns += _own_columns(given, columns)
         kinked = [row for row in given if "compression" in row]
         for rows in ([row for row in given if row not in kinked], kinked):
             if rows:
@@ -81,6 +83,15 @@ def input_tables(inputs: Mapping[str, Any], chosen: tuple[str, ...] = ()) -> Ite
     for structure in inputs["structures"]:
         if "initial" in structure:
             yield _modes(structure)
+
+
+def _own_columns(
+    rows: Sequence[Mapping[str, Any]], known: Sequence[_Column]
+) -> tuple[_Column, ...]:
+    """Columns of numbers without a unit that a law alone has, by their names."""
+    keys = {key for key, _, _ in known}
+    own = dict.fromkeys(key for row in rows for key in row if key not in keys)
+    return tuple((key, key, "") for key in own)
 
 
 def _units(trade: Trade) -> dict[str, Unit]:

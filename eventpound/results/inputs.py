@@ -151,6 +151,7 @@ def _spring(spring: Spring, mass: float | None) -> Row:
         yield_force = k_0 * law.yield_displacement
         row |= {"K_s": k_s, "F_y": yield_force, "Q": law.strength, "u_y": law.yield_displacement}
         row["alpha"] = law.stiffness / k_0 if k_0 else 0.0
+        row |= law.numbers if law.second else {}
     if mass is not None:
         row |= {"mass": mass, "T_initial": _finite(period_of(mass, k_0))}
         if isinstance(law, BoucWen):

@@ -18,7 +18,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene.check import check_scene, starts_of_supports
 from eventpound.scene.contact import BARRIER, opening
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Backfill, BoucWen
+from eventpound.scene.spring import GROUND, Backfill, BoucWen, Hysteretic
 from eventpound.units import Dimension
 
 FinalState = Mapping[str, Mapping[str, float]]
@@ -33,8 +33,8 @@ def state_of(scene: Scene, u: Floats, v: Floats, z: Floats) -> FinalState:
     state: dict[str, dict[str, float]] = {
         body.name: {"u": float(u[i]), "v": float(v[i])} for i, body in enumerate(scene.bodies)
     }
-    for i, name in enumerate(scene.hysteretic_springs):
-        state.setdefault(name, {})["z"] = float(z[i])
+    for i, (spring, name) in enumerate(scene.memory):
+        state.setdefault(spring, {})[name] = float(z[i])
     return state
 
 
@@ -69,6 +69,9 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
             first, second = (places.get(end, 0.0) for end in spring.between)
             gap = law.residual_gap(second - first, state[spring.name]["z"])
             law = replace(law, initial_gap=max(gap, law.gap))
+        if isinstance(law, Hysteretic) and law.second:
+            found = f"{spring.name!r} (law {law.word}), whose memory a scene cannot begin with"
+            raise InputError(f"start: found {found}; accepted: springs without such a law")
         if isinstance(law, BoucWen):
             z = state[spring.name]["z"]
             # What a tolerance leaves beyond the bound is a spring that has yielded.

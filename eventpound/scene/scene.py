@@ -51,7 +51,15 @@ class Scene:
         return [spring.name for spring in self.springs if isinstance(spring.law, Hysteretic)]
 
     @property
-    def branched_springs(self) -> list[str]:
-        """Names of the springs whose memory has branches."""
+    def memory(self) -> list[tuple[str, str]]:
+        """Spring and name of each internal variable, in the order of z."""
+        found = [(name, "z") for name in self.hysteretic_springs]
         laws = [(spring.name, spring.law) for spring in self.springs]
-        return [name for name, law in laws if isinstance(law, Hysteretic) and law.has_branches]
+        seconds = [(s, law.second) for s, law in laws if isinstance(law, Hysteretic)]
+        return found + [(spring, name) for spring, name in seconds if name]
+
+    @property
+    def branched_springs(self) -> list[str]:
+        """Names of the springs whose memory has branches, or a second number."""
+        laws = [(spring.name, spring.law) for spring in self.springs]
+        return [s for s, law in laws if isinstance(law, Hysteretic) and law.beyond_bouc_wen]

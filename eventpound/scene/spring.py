@@ -115,13 +115,25 @@ class Series:
 class Hysteretic:
     """A law with a memory, whose internal variable z adds to its force.
 
-    `has_branches`: whether the memory has branches of its own, which not every solver knows.
+    Not every solver knows one that has branches of its own (`has_branches`), or a `second` number,
+    whose name that is: it starts with `second_at`.
     """
 
     __slots__ = ()
     word: ClassVar[LawName]
     equation: ClassVar[str]
     has_branches: ClassVar[bool] = False
+    second: ClassVar[str] = ""
+
+    @property
+    def beyond_bouc_wen(self) -> bool:
+        """Whether it has more to it than z of eq. 3."""
+        return self.has_branches or bool(self.second)
+
+    @property
+    def second_at(self) -> float:
+        """The second number of the memory at the start."""
+        raise NotImplementedError
 
     @property
     def offset(self) -> float:

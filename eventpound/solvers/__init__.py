@@ -53,7 +53,7 @@ def takes_points(solver: Solver, scene: Scene) -> bool:
 
 
 def takes_branches(solver: Solver, scene: Scene) -> bool:
-    """Whether a solver takes springs whose memories have branches, if there are any."""
+    """Whether a solver takes springs whose memories are not Bouc-Wen's, if there are any."""
     return not scene.branched_springs or getattr(solver, "takes_branches", False)
 
 

@@ -344,7 +344,8 @@ class Solver(Protocol):
     an attribute ``contact_laws``, a collection of `eventpound.scene.contact_law.ContactLaw` kinds;
     scenes with others are refused. One that takes contacts at points between bodies, with more
     than two bodies in a column of W, says so by ``takes_points = True``; one that takes spring laws
-    with branches of a memory (`eventpound.scene.spring.Hysteretic`) by ``takes_branches = True``.
+    whose memory has branches or a second number (`eventpound.scene.spring.Hysteretic`) by
+    ``takes_branches = True``.
     Settings that it had once are in a mapping ``given_up``, each with what to do instead. One that
     can do once what many runs of a scene have in common has a function ``ready(task)``, which
     returns a `ReadyTask`, or None for a scene of which it cannot.

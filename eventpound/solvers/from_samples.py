@@ -83,9 +83,11 @@ def _rows(
     """The rows in the shapes everything expects; z that is not known is NaN."""
     t = np.asarray(t, dtype=np.float64)
     u, v = (np.asarray(x, dtype=np.float64).reshape(t.size, model.bodies) for x in (u, v))
-    count = model.hysteretic.size
-    z = np.full((t.size, count), np.nan) if z is None else np.asarray(z, dtype=np.float64)
-    return t, u, v, z.reshape(t.size, count)
+    found = np.full((t.size, model.hysteretic.size), np.nan)
+    if z is not None:
+        given = np.asarray(z, dtype=np.float64).reshape(t.size, -1)
+        found[:, : given.shape[1]] = given
+    return t, u, v, found
 
 
 def _history(task: Task, model: Model, rows: tuple[Floats, Floats, Floats, Floats]) -> History:

@@ -78,7 +78,7 @@ def test_against_the_rate_law(n: float, beta: float, gamma: float, sign: float) 
     xi = np.sort([backbone_inverse(table, 0, first), backbone_inverse(table, 0, last)])
     ends = np.linspace(xi[0], xi[1], 40)
     path = solve_ivp(
-        lambda _, z: [z_rate(0, memory, 1.0, 1.0, z[0])],
+        lambda _, z: [z_rate(0, memory, 1.0, 1.0, z[0], 0.0)],
         (0.0, (xi[1] - xi[0]) * u_y * bound),
         [first * bound],
         method="DOP853",

@@ -39,7 +39,7 @@ def test_rate_is_the_printed_one() -> None:
         x_rate = rng.choice([0.0, rng.normal()])
         law = BoucWen(0.0, 1.0, u_y, n, beta, gamma)
         terms = abs(x_rate) / u_y * (1.0 + (abs(beta) + gamma) * abs(z) ** n)
-        assert z_rate(0, memory_of(n, beta, gamma, u_y), x_rate, x_rate, z) == pytest.approx(
+        assert z_rate(0, memory_of(n, beta, gamma, u_y), x_rate, x_rate, z, 0.0) == pytest.approx(
             literal_z_rate(law, x_rate, z), abs=32 * EPS * terms
         )
 
@@ -50,10 +50,10 @@ def test_loading_ends_at_the_bound(beta: float, gamma: float, n: float) -> None:
     law = memory_of(n, beta, gamma)
     (bound,) = z_bound(law)
     # Terms of size one cancel there; n of the roundings of |z|^n come on top.
-    assert abs(z_rate(0, law, 1.0, 1.0, bound)) < 8 * (n + 2) * EPS
-    assert z_rate(0, law, 1.0, 1.0, 0.999 * bound) > 0.0
-    assert z_rate(0, law, -1.0, -1.0, -0.999 * bound) < 0.0
-    assert z_rate(0, law, -1.0, -1.0, bound) < 0.0
+    assert abs(z_rate(0, law, 1.0, 1.0, bound, 0.0)) < 8 * (n + 2) * EPS
+    assert z_rate(0, law, 1.0, 1.0, 0.999 * bound, 0.0) > 0.0
+    assert z_rate(0, law, -1.0, -1.0, -0.999 * bound, 0.0) < 0.0
+    assert z_rate(0, law, -1.0, -1.0, bound, 0.0) < 0.0
 
 
 def test_default_bound_is_one() -> None:
@@ -67,7 +67,7 @@ def test_backbone(n: float) -> None:
     ends = np.array([0.2, 0.6, 0.9, 0.99])
     x = u_y * ends * hyp2f1(1.0, 1.0 / n, 1.0 + 1.0 / n, ends**n)
     path = solve_ivp(
-        lambda _, z: [z_rate(0, memory_of(n, 0.5, 0.5, u_y), 1.0, 1.0, z[0])],
+        lambda _, z: [z_rate(0, memory_of(n, 0.5, 0.5, u_y), 1.0, 1.0, z[0], 0.0)],
         (0.0, x[-1]),
         [0.0],
         method="DOP853",
@@ -83,9 +83,9 @@ def test_backbone(n: float) -> None:
 @pytest.mark.parametrize("x_rate", [-0.7, 1.3])
 def test_slopes_are_those_of_the_rate(n: float, z: float, x_rate: float) -> None:
     law, small = memory_of(n, 0.3, 0.6, 0.1), 1e-6
-    by_rate, by_z = z_slopes(0, law, x_rate, z)
-    assert by_rate == pytest.approx(z_rate(0, law, x_rate, x_rate, z) / x_rate, rel=1e-13)
-    ends = [z_rate(0, law, x_rate, x_rate, z + s) for s in (-small, small)]
+    by_rate, by_z = z_slopes(0, law, x_rate, z, 0.0)
+    assert by_rate == pytest.approx(z_rate(0, law, x_rate, x_rate, z, 0.0) / x_rate, rel=1e-13)
+    ends = [z_rate(0, law, x_rate, x_rate, z + s, 0.0) for s in (-small, small)]
     assert by_z == pytest.approx((ends[1] - ends[0]) / (2.0 * small), rel=1e-6, abs=1e-6)
 
 
@@ -95,10 +95,11 @@ def test_soil_yields_along_its_backbone() -> None:
     law = memory_on_branches(law, np.array([YIELDING]))
     u_y, depth, x_rate, small = 0.25, 0.6, -0.3, 1e-6
     z = -depth / (1.0 + depth)
-    assert z_rate(0, law, x_rate, x_rate, z) == pytest.approx(x_rate / u_y / (1.0 + depth) ** 2)
-    by_rate, by_z = z_slopes(0, law, x_rate, z)
-    assert by_rate == pytest.approx(z_rate(0, law, 1.0, -1.0, z))
-    ends = [z_rate(0, law, x_rate, x_rate, z + s) for s in (-small, small)]
+    rate = x_rate / u_y / (1.0 + depth) ** 2
+    assert z_rate(0, law, x_rate, x_rate, z, 0.0) == pytest.approx(rate)
+    by_rate, by_z = z_slopes(0, law, x_rate, z, 0.0)
+    assert by_rate == pytest.approx(z_rate(0, law, 1.0, -1.0, z, 0.0))
+    ends = [z_rate(0, law, x_rate, x_rate, z + s, 0.0) for s in (-small, small)]
     assert by_z == pytest.approx((ends[1] - ends[0]) / (2.0 * small), rel=1e-6)
     x = np.array([-u_y * depth, x_rate, 0.1, -0.05, 0.02] + [0.0] * 12)
     series = _series_of_z(law, x, z, -1.0)
@@ -128,7 +129,7 @@ def _series_of_z(law: np.ndarray, x: np.ndarray, z_0: float, sigma: float) -> np
     z, power = np.zeros(x.size), np.zeros(x.size)
     z[0], rate = z_0, np.arange(1, x.size) * x[1:]
     for k in range(x.size - 1):
-        z[k + 1] = z_coefficient(0, k, law, rate, z, power, sigma) / (k + 1)
+        z[k + 1] = z_coefficient(0, k, law, rate, z, z, power, sigma) / (k + 1)
     return z
 
 
@@ -170,8 +171,8 @@ def test_slider_pulls_with_its_friction_in_the_direction_of_its_slip() -> None:
     for branch, ends in ((1, (0.0, np.inf)), (-1, (-np.inf, 0.0))):
         memory = memory_on_branches(law, np.array([branch, 0]))
         assert pull_per_z(0, memory) == 0.5 * branch
-        assert z_rate(0, memory, 0.3, 0.3, 1.0) == 0.0
-        assert z_slopes(0, memory, 0.3, 1.0) == (0.0, 0.0)
+        assert z_rate(0, memory, 0.3, 0.3, 1.0, 0.0) == 0.0
+        assert z_slopes(0, memory, 0.3, 1.0, 0.0) == (0.0, 0.0)
         assert memory_stiffness(0, memory) == 0.0
         assert branch_ends(0, memory, branch, 0.0, 0.2, 1.0) == ends
         np.testing.assert_array_equal(memory[1], law[1])

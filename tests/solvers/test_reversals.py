@@ -60,9 +60,9 @@ def _crossing(*roots: float) -> Polynomial:
 def test_beyond_a_reversal_the_rate_of_z_goes_on(z: float, sign: float) -> None:
     """With a direction it is linear in x', and that of the law where x' has the direction."""
     law = memory_of(5.0, 0.7, 0.3, 1e-2)
-    rates = [z_rate(0, law, x_rate, sign, z) for x_rate in (-1.0, 1.0, 2.0)]
+    rates = [z_rate(0, law, x_rate, sign, z, 0.0) for x_rate in (-1.0, 1.0, 2.0)]
     np.testing.assert_allclose(rates, rates[1] * np.array([-1.0, 1.0, 2.0]), rtol=1e-14)
-    assert rates[1] * sign == pytest.approx(z_rate(0, law, sign, sign, z))
+    assert rates[1] * sign == pytest.approx(z_rate(0, law, sign, sign, z, 0.0))
 
 
 @pytest.mark.usefixtures("interpreted")

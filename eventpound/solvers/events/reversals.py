@@ -117,7 +117,8 @@ def may_reverse(
             # A dashpot ends or begins.
             return True
         z = max(abs(before[system.iz[a]]), abs(after[system.iz[a]]))
-        if -lowest * h * reversal_jump(a, system.memory, z) > allowed:
+        jump = reversal_jump(a, system.memory, z, after[system.beside[a]])
+        if -lowest * h * jump > allowed:
             # The other directions wait: the step may end before their links reverse.
             return True
     for a in range(direction.size):

@@ -214,7 +214,8 @@ def _knot(Y: Floats, system: Reduced, weight: Floats, limit: float) -> float:
         travel = 0.0
         for k in range(order):
             travel = max(travel, abs(x_rate[k]) * first ** (k + 1))
-        if z_bend(a, system.memory, Y[0, iz], travel) <= SERIES_SHARE * weight[iz]:
+        bend = z_bend(a, system.memory, Y[0, iz], Y[0, system.beside[a]], travel)
+        if bend <= SERIES_SHARE * weight[iz]:
             continue
         first = min(first, _sign_change(x_rate, first))
         if bends_at_zero(a, system.memory):

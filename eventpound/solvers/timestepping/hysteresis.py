@@ -36,13 +36,13 @@ def _stage(
     Above zero the equation is convex, so Newton's method comes down from the
     bound without fail.
     """
-    y = min(known + length * z_slopes(a, memory, 1.0, 0.0)[0], max(bound, known))
+    y = min(known + length * z_slopes(a, memory, 1.0, 0.0, 0.0)[0], max(bound, known))
     for _ in range(MOST_ITERATIONS):
-        g, g_y = z_slopes(a, memory, 1.0, y)
+        g, g_y = z_slopes(a, memory, 1.0, y, 0.0)
         change = (y - known - length * g) / (1.0 - length * g_y)
         y -= change
         if abs(change) <= ITERATED * max(1.0, abs(y)):
-            g, g_y = z_slopes(a, memory, 1.0, y)
+            g, g_y = z_slopes(a, memory, 1.0, y, 0.0)
             return y, g, g_y
     return math.nan, math.nan, math.nan
 
