@@ -114,6 +114,18 @@ def slider() -> None:
     _save(figure, "slider.png")
 
 
+def degrading() -> None:
+    """Loops of a pier that loses strength and stiffness."""
+    case = eventpound.load_case(HERE.parent / "cases" / "pier-that-degrades")
+    response = eventpound.simulate(replace(case, run=replace(case.run, output_step=2e-3)))
+    figure, axis = plt.subplots(figsize=SIZE, dpi=DPI, layout="constrained")
+    history = response.history
+    axis.plot(100 * history["u.deck"], FORCE_IN_MN * history["force.pier"], color="#0072b2")
+    axis.set(xlabel="displacement of the deck (cm)", ylabel="force of the pier (MN)")
+    axis.grid(alpha=0.3)
+    _save(figure, "degrading.png")
+
+
 def _save(figure: plt.Figure, name: str) -> None:
     FOLDER.mkdir(exist_ok=True)
     figure.savefig(FOLDER / name)
@@ -126,3 +138,4 @@ if __name__ == "__main__":
     backfill()
     tornado()
     slider()
+    degrading()

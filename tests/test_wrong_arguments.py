@@ -82,6 +82,10 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
         {"stiffness": 1.0, "strength": 1.0, "yield_displacement": 1.0},
         {NEEDED: "stiffness strength yield_displacement exponent beta gamma initial_z"},
     ),
+    "DegradingBoucWen": (
+        {"stiffness": 1.0, "strength": 1.0, "yield_displacement": 1.0},
+        {NEEDED: "gamma strength_degradation stiffness_degradation initial_loss"},
+    ),
     "BoucWen.from_yield": (
         {"initial_stiffness": 1.0, "yield_force": 1.0},
         {NEEDED: "initial_stiffness yield_force hardening exponent beta gamma"},

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 
 from eventpound.case.elements import read_names
 from eventpound.case.spring_stiffness import Stiffnesses
@@ -18,6 +19,7 @@ from eventpound.scene.spring import (
     Backfill,
     BilinearElastic,
     BoucWen,
+    DegradingBoucWen,
     Law,
     LawName,
     Linear,
@@ -85,6 +87,8 @@ def _read_law(table: Table, between: tuple[str, str], masses: Mapping[str, float
             law = _read_bilinear(table)
         case "bouc-wen":
             law = _read_bouc_wen(table, between, masses)
+        case "degrading-bouc-wen":
+            law = _read_degrading(table, _read_bouc_wen(table, between, masses))
         case "backfill":
             law = _read_backfill(table)
         case "slider":
@@ -176,6 +180,15 @@ def _read_bouc_wen(table: Table, between: tuple[str, str], masses: Mapping[str, 
         beta=table.quantity("beta", Dimension.NUMBER, 0.5),
         gamma=table.quantity("gamma", Dimension.NUMBER, 0.5),
         initial_z=table.quantity("initial_z", Dimension.NUMBER, 0.0),
+    )
+
+
+def _read_degrading(table: Table, law: BoucWen) -> DegradingBoucWen:
+    return DegradingBoucWen(
+        **asdict(law),
+        strength_degradation=table.quantity("strength_degradation", Dimension.NUMBER, 0.0),
+        stiffness_degradation=table.quantity("stiffness_degradation", Dimension.NUMBER, 0.0),
+        initial_loss=table.quantity("initial_loss", Dimension.NUMBER, 0.0),
     )
 
 

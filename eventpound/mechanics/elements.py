@@ -11,6 +11,11 @@ founding paper,
 x: elongation (m), u_y: yield displacement (m), Q: strength (N), z, β, γ, n: dimensionless. Such a
 law does not know time: with x' = 1 and σ = 1 everything below is by the elongation.
 
+One that degrades (Baber and Wen 1981; Foliente 1995) has a second variable beside z, in the row
+of a link of its own, its hysteretic energy in parts of Q u_y:
+
+    z' = (x'/(η u_y)) [1 - ν (β + γ σ s) |z|^n],   ε' = z x'/u_y,   ν = 1 + δ_ν ε,  η = 1 + δ_η ε.
+
 The constants of a law with a memory are a row of `LinkLaw.memory`. What stands in it is known
 here and in `eventpound.mechanics.backbone`, which solves eq. 3 with time eliminated.
 
@@ -36,8 +41,12 @@ from eventpound.mechanics.link_law import (
     BESIDE,
     BETA,
     CLOSED,
+    DEGRADING,
+    DELTA_ETA,
+    DELTA_NU,
     EXPONENT,
     GAMMA,
+    ITS_ENERGY,
     KIND,
     SLIDER,
     STRENGTH,
@@ -121,9 +130,15 @@ def z_rate(
     """
     same_sign = (direction > 0.0) == (z > 0.0)
     kappa = memory[a, BETA] + memory[a, GAMMA] * (2.0 * same_sign - 1.0)
+    if memory[a, KIND] == DEGRADING:
+        kappa = kappa * (1.0 + memory[a, DELTA_NU] * beside)
     slope = 1.0 - kappa * abs(z) ** memory[a, EXPONENT]
     if memory[a, KIND] == YIELDING_SOIL:
         slope = (1.0 + z) * (1.0 + z)
+    elif memory[a, KIND] == DEGRADING:
+        slope = slope / (1.0 + memory[a, DELTA_ETA] * beside)
+    elif memory[a, KIND] == ITS_ENERGY:
+        slope = beside
     rate: float = x_rate / memory[a, YIELD] * slope
     return rate
 
@@ -134,19 +149,41 @@ def z_slopes(a: int, memory: Floats, x_rate: float, z: float, beside: float) -> 
     if memory[a, KIND] == YIELDING_SOIL:
         left = 1.0 + z
         return left * left / memory[a, YIELD], 2.0 * left * x_rate / memory[a, YIELD]
+    if memory[a, KIND] == ITS_ENERGY:
+        return beside / memory[a, YIELD], 0.0
     n, kappa = memory[a, EXPONENT], memory[a, BETA] - memory[a, GAMMA]
     if (x_rate > 0.0) == (z > 0.0):
         kappa = memory[a, BETA] + memory[a, GAMMA]
+    yields = memory[a, YIELD]
+    if memory[a, KIND] == DEGRADING:
+        kappa *= 1.0 + memory[a, DELTA_NU] * beside
+        yields *= 1.0 + memory[a, DELTA_ETA] * beside
     size = abs(z)
     power = size ** (n - 1.0)
-    by_size = -x_rate / memory[a, YIELD] * kappa * n * power
-    return (1.0 - kappa * power * size) / memory[a, YIELD], by_size if z > 0.0 else -by_size
+    by_size = -x_rate / yields * kappa * n * power
+    return (1.0 - kappa * power * size) / yields, by_size if z > 0.0 else -by_size
 
 
 @_part
 def slope_beside(a: int, memory: Floats, x_rate: float, z: float, beside: float) -> float:
     """Derivative of `z_rate` by the variable beside (1/s), where that is not z itself."""
-    return 0.0
+    if memory[a, KIND] == ITS_ENERGY:
+        return float(x_rate / memory[a, YIELD])
+    if memory[a, KIND] != DEGRADING:
+        return 0.0
+    eta = 1.0 + memory[a, DELTA_ETA] * beside
+    here = z_rate(a, memory, x_rate, x_rate, z, beside)
+    fresh = z_rate(a, memory, x_rate, x_rate, z, 0.0)
+    weaker = (fresh - x_rate / memory[a, YIELD]) * memory[a, DELTA_NU]
+    return float((weaker - here * memory[a, DELTA_ETA]) / eta)
+
+
+@_part
+def _knee_worn(a: int, memory: Floats, beside: float) -> float:
+    """ν/η, by which what is nonlinear in the rate of z is larger than at first."""
+    if memory[a, KIND] != DEGRADING:
+        return 1.0
+    return float((1.0 + memory[a, DELTA_NU] * beside) / (1.0 + memory[a, DELTA_ETA] * beside))
 
 
 @_part
@@ -156,13 +193,14 @@ def z_bend(a: int, memory: Floats, z: float, beside: float, travel: float) -> fl
         # A branch has one formula.
         return 0.0
     linear = travel / memory[a, YIELD]
-    return float(linear * (abs(z) + linear) ** memory[a, EXPONENT])
+    return float(linear * (abs(z) + linear) ** memory[a, EXPONENT] * _knee_worn(a, memory, beside))
 
 
 @_part
 def reversal_jump(a: int, memory: Floats, z: float, beside: float) -> float:
     """By how much dz/dx jumps where the elongation of link a reverses (1/m), z >= 0."""
-    return float(2.0 * abs(memory[a, GAMMA]) * z ** memory[a, EXPONENT] / memory[a, YIELD])
+    jump = 2.0 * abs(memory[a, GAMMA]) * z ** memory[a, EXPONENT] / memory[a, YIELD]
+    return float(jump * _knee_worn(a, memory, beside))
 
 
 @_part
@@ -257,6 +295,15 @@ def branch_within(a: int, memory: Floats, offset: float, x: float, z: float, noi
     return APART if z >= 0.0 else CLOSED
 
 
+@_part
+def _convolution(k: int, first: Floats, second: Floats) -> float:
+    """Coefficient k of a product."""
+    found = 0.0
+    for j in range(k + 1):
+        found += first[j] * second[k - j]
+    return found
+
+
 @kernel
 def z_coefficient(
     a: int,
@@ -277,16 +324,23 @@ def z_coefficient(
     if sign_z == 0.0:
         sign_z = sigma
     kappa = memory[a, BETA] + memory[a, GAMMA] * sigma * sign_z
+    if memory[a, KIND] == ITS_ENERGY:
+        return _convolution(k, x_rate, beside) / memory[a, YIELD]
     if memory[a, KIND] == YIELDING_SOIL:
         kappa, power[k] = 1.0, -2.0 * z[k]
         for j in range(k + 1):
             power[k] -= z[j] * z[k - j]
     else:
         power[k] = power_coefficient(z, power, memory[a, EXPONENT], k)
-    product = 0.0
+    product = _convolution(k, x_rate, power)
+    if memory[a, KIND] != DEGRADING:
+        return float((x_rate[k] - kappa * product) / memory[a, YIELD])
     for j in range(k + 1):
-        product += x_rate[j] * power[k - j]
-    return float((x_rate[k] - kappa * product) / memory[a, YIELD])
+        product += memory[a, DELTA_NU] * beside[j] * _convolution(k - j, x_rate, power)
+    rate = (x_rate[k] - kappa * product) / memory[a, YIELD]
+    for j in range(1, k + 1):
+        rate -= memory[a, DELTA_ETA] * beside[j] * (k - j + 1) * z[k - j + 1]
+    return float(rate / (1.0 + memory[a, DELTA_ETA] * beside[0]))
 
 
 @_fused_part

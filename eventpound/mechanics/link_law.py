@@ -16,10 +16,12 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.elastic_laws import ElasticLaws, elastic_force
 from eventpound.scene.spring import Backfill, BoucWen, Hysteretic, Law, Slider
 
-CONSTANTS = ("kind", "beside", "strength", "yield_displacement", "exponent", "beta", "gamma")
-"""Columns of `LinkLaw.memory`; but for the first two, fields of `BoucWen`."""
-KIND, BESIDE, STRENGTH, YIELD, EXPONENT, BETA, GAMMA = range(len(CONSTANTS))
+CONSTANTS = ("kind", "beside", "strength", "yield_displacement", "exponent", "beta", "gamma",
+             "strength_degradation", "stiffness_degradation")  # fmt: skip
+"""Columns of `LinkLaw.memory`; but for the first two, fields of `DegradingBoucWen`."""
+KIND, BESIDE, STRENGTH, YIELD, EXPONENT, BETA, GAMMA, DELTA_NU, DELTA_ETA = range(len(CONSTANTS))
 ELASTIC, BOUC_WEN, BACKFILL, YIELDING_SOIL, SLIDER = 0.0, 1.0, 2.0, 3.0, 4.0
+DEGRADING, ITS_ENERGY = 5.0, 6.0
 """Kinds of links; that of a contact element is its code, which is negative."""
 NONE_FURTHER: Mapping[int, int] = MappingProxyType({})
 APART, CLOSED, YIELDING = 1, -1, -2
@@ -56,21 +58,24 @@ def link_law(
     But for links with the second number of a memory, which `further` has by the link of the first.
     """
     rows = np.empty((len(damping), len(CONSTANTS)))
-    rows[:] = (ELASTIC, 0.0, 0.0, 1.0, 20.0, 0.5, 0.5)
+    rows[:] = (ELASTIC, 0.0, 0.0, 1.0, 20.0, 0.5, 0.5, 0.0, 0.0)
     rows[:, BESIDE] = np.arange(len(damping))
     for row, law in zip(rows, laws, strict=False):
         if isinstance(law, BoucWen):
-            row[KIND], row[STRENGTH:] = BOUC_WEN, [getattr(law, name) for name in CONSTANTS[2:]]
+            row[KIND] = DEGRADING if law.second else BOUC_WEN
+            row[STRENGTH:] = [getattr(law, name, 0.0) for name in CONSTANTS[STRENGTH:]]
         elif isinstance(law, Backfill):
             # Off its backbone dz/dx is constant: eq. 3 with β and γ zero.
             row[KIND] = BACKFILL
-            row[STRENGTH:] = law.strength, law.yield_displacement, 1.0, 0.0, 0.0
+            row[STRENGTH:] = law.strength, law.yield_displacement, 1.0, 0.0, 0.0, 0.0, 0.0
         elif isinstance(law, Slider):
             # A z that does not move with x: it is 1, and the sign of Q that of the slip.
             row[KIND] = SLIDER
-            row[STRENGTH:] = law.strength, np.inf, 1.0, 0.0, 0.0
+            row[STRENGTH:] = law.strength, np.inf, 1.0, 0.0, 0.0, 0.0, 0.0
     for first, second in further.items():
-        rows[first, BESIDE], rows[second, BESIDE] = second, first
+        yields = rows[first, YIELD]
+        rows[first, BESIDE] = second
+        rows[second] = ITS_ENERGY, first, 0.0, yields, 1.0, 0.0, 0.0, 0.0, 0.0
     return LinkLaw(np.array(damping, np.float64), rows)
 
 

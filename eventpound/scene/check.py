@@ -19,7 +19,16 @@ from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import joined
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Backfill, BilinearElastic, BoucWen, Law, Linear, Slider
+from eventpound.scene.spring import (
+    GROUND,
+    Backfill,
+    BilinearElastic,
+    BoucWen,
+    DegradingBoucWen,
+    Law,
+    Linear,
+    Slider,
+)
 from eventpound.tolerances import EPS
 
 _TINY = sys.float_info.min
@@ -204,6 +213,8 @@ def _spring_problems(scene: Scene) -> Iterator[Problem]:
 def _law_problems(element: _Element, law: Law, prefix: str = "") -> Iterator[Problem]:
     if isinstance(law, BoucWen):
         yield from _bouc_wen_problems(element, law)
+        if isinstance(law, DegradingBoucWen):
+            yield from _degradation_problems(element, law)
     elif isinstance(law, Backfill):
         yield from _backfill_problems(element, law)
     elif isinstance(law, Slider):
@@ -247,6 +258,14 @@ def _bouc_wen_problems(element: _Element, law: BoucWen) -> Iterator[Problem]:
             f"a number of at most (beta + gamma)^(-1/exponent) = {bound:.6g} in size",
             lambda z: abs(z) <= bound * (1.0 + 4.0 * math.ulp(1.0)),
         )
+
+
+def _degradation_problems(element: _Element, law: DegradingBoucWen) -> Iterator[Problem]:
+    for key in ("strength_degradation", "stiffness_degradation", "initial_loss"):
+        yield from element.number(key, getattr(law, key), "a number >= 0", _not_negative)
+    # Else epsilon could fall, and nu and eta with it.
+    accepted = "|beta| <= gamma of a law that degrades"
+    yield from element.number("beta", law.beta, accepted, lambda beta: abs(beta) <= law.gamma)
 
 
 def _backfill_problems(element: _Element, law: Backfill) -> Iterator[Problem]:

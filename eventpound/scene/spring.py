@@ -20,6 +20,7 @@ from eventpound.given import (
     OptionalNumber,
     checked,
     converting,
+    converting_base,
     default,
     number,
     read_fields,
@@ -37,6 +38,7 @@ class LawName(StrEnum):
     LINEAR = "linear"
     BILINEAR_ELASTIC = "bilinear-elastic"
     BOUC_WEN = "bouc-wen"
+    DEGRADING_BOUC_WEN = "degrading-bouc-wen"
     BACKFILL = "backfill"
     SLIDER = "slider"
     SERIES = "series"
@@ -44,7 +46,7 @@ class LawName(StrEnum):
     @property
     def hysteretic(self) -> bool:
         """Whether it has a memory."""
-        return self in (LawName.BOUC_WEN, LawName.BACKFILL, LawName.SLIDER)
+        return self not in (LawName.LINEAR, LawName.BILINEAR_ELASTIC, LawName.SERIES)
 
 
 @converting
@@ -154,7 +156,7 @@ class Hysteretic:
         raise NotImplementedError
 
 
-@converting
+@converting_base()
 class BoucWen(Hysteretic):
     """``F = k x + Q z`` with the hysteretic variable z of eq. 3 of the founding paper.
 
@@ -267,6 +269,78 @@ class BoucWen(Hysteretic):
             gamma,
             initial_z,
         )
+
+
+@converting_base()
+class DegradingBoucWen(BoucWen):
+    """Bouc-Wen's law that loses strength and stiffness with the energy that has gone into it.
+
+    ``z' = [x' - nu (gamma |x'| z |z|^(n-1) + beta x' |z|^n)] / (eta u_y)``, with
+    ``nu = 1 + delta_nu epsilon`` and ``eta = 1 + delta_eta epsilon`` (Baber and Wen 1981; Foliente
+    1995, without pinching). The hysteretic energy epsilon, ``epsilon' = z x' / u_y``, is in parts
+    of ``Q u_y``. Of it ``epsilon e^(-a) - (1 - e^(-a)) / delta_eta`` with ``a = delta_eta z^2 / 2``
+    is lost: that does not change while the law is elastic, ``eta u_y z' = x'``.
+
+    Parameters
+    ----------
+    stiffness, strength, yield_displacement, exponent, beta, gamma, initial_z : float
+        As of `BoucWen`, but ``|beta| <= gamma``.
+    strength_degradation, stiffness_degradation : float
+        delta_nu and delta_eta, not negative.
+    initial_loss : float
+        What was lost before the start, in parts of ``Q u_y``.
+    """
+
+    word: ClassVar[LawName] = LawName.DEGRADING_BOUC_WEN
+    equation: ClassVar[str] = (
+        "F = stiffness x + strength z, epsilon' = z x' / yield_displacement,"
+        " nu = 1 + strength_degradation epsilon, eta = 1 + stiffness_degradation epsilon,"
+        " z' = (x' - nu (gamma |x'| z |z|^(exponent-1) + beta x' |z|^exponent))"
+        " / (eta yield_displacement)"
+    )
+    second: ClassVar[str] = "epsilon"
+    strength_degradation: Annotated[Number, Dimension.NUMBER] = default(0.0)
+    stiffness_degradation: Annotated[Number, Dimension.NUMBER] = default(0.0)
+    initial_loss: Annotated[Number, Dimension.NUMBER] = default(0.0)
+
+    def __post_init__(self) -> None:
+        read_fields(self)
+
+    @property
+    def second_at(self) -> float:
+        """The epsilon of a start: what was lost, and what z holds."""
+        a = 0.5 * self.stiffness_degradation * self.initial_z**2
+        return self.initial_loss * math.exp(a) + 0.5 * self.initial_z**2 * _mean_growth(a)
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """What a table of a case shows of it beside Bouc-Wen's (SI)."""
+        return {"delta_nu": self.strength_degradation, "delta_eta": self.stiffness_degradation}
+
+    def epsilon(self, elongation: float, z: float, epsilon: float) -> float:
+        """The hysteretic energy in parts of ``Q u_y``."""
+        return epsilon
+
+    def strength_left(self, elongation: float, z: float, epsilon: float) -> float:
+        """Strength over that at first, nu^(-1/n)."""
+        return float((1.0 + self.strength_degradation * epsilon) ** (-1.0 / self.exponent))
+
+    def stiffness_left(self, elongation: float, z: float, epsilon: float) -> float:
+        """Stiffness at z = 0 over K0 of the start, ``(k + Q/(eta u_y)) / K0``."""
+        eta = 1.0 + self.stiffness_degradation * epsilon
+        own = self.strength / (eta * self.yield_displacement)
+        return (self.stiffness + own) / self.initial_stiffness
+
+    def dissipated(self, elongation: float, z: float, epsilon: float) -> float:
+        """Work that was lost from the start up to here (J)."""
+        a = 0.5 * self.stiffness_degradation * z**2
+        lost = epsilon * math.exp(-a) - 0.5 * z**2 * _mean_growth(-a)
+        return self.strength * self.yield_displacement * (lost - self.initial_loss)
+
+
+def _mean_growth(a: float) -> float:
+    """``(e^a - 1) / a``."""
+    return math.expm1(a) / a if a != 0.0 else 1.0
 
 
 @converting
@@ -439,7 +513,7 @@ class Slider(Hysteretic):
         return [at for at, _ in corners], force
 
 
-Law = Linear | BilinearElastic | Series | BoucWen | Backfill | Slider
+Law = Linear | BilinearElastic | Series | BoucWen | DegradingBoucWen | Backfill | Slider
 """What a spring may have."""
 
 

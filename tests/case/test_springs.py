@@ -11,7 +11,16 @@ import pytest
 from eventpound.case import Case, read_case
 from eventpound.case.template import template
 from eventpound.errors import InputError
-from eventpound.scene import Backfill, BilinearElastic, BoucWen, Dashpot, Linear, Series, Slider
+from eventpound.scene import (
+    Backfill,
+    BilinearElastic,
+    BoucWen,
+    Dashpot,
+    DegradingBoucWen,
+    Linear,
+    Series,
+    Slider,
+)
 from eventpound.scene.modes import modes_of
 
 Table = dict[str, object]
@@ -171,6 +180,18 @@ def test_slider() -> None:
     said = problems(spring=[spring(**{**bearing, "friction": 0.0, "normal_force": -1.0})])
     assert "[[spring]] 1: friction: found 0.0; accepted: a positive number" in said
     assert "[[spring]] 1: normal_force: found -1.0; accepted: a positive force (N)" in said
+
+
+def test_degrading_bouc_wen() -> None:
+    law: Table = {"law": "degrading-bouc-wen", "stiffness": 0.0, "strength": "2 MN", "gamma": 0.6,
+                  "yield_displacement": "1 cm", "strength_degradation": 0.1}  # fmt: skip
+    (read,) = case_with(spring=[spring(**law, initial_loss="3")]).scene.springs
+    assert read.law == DegradingBoucWen(
+        0.0, 2e6, 0.01, gamma=0.6, strength_degradation=0.1, initial_loss=3.0
+    )
+    said = problems(spring=[spring(**law, stiffness_degradation=-1.0, beta=0.7)])
+    assert "[[spring]] 1: stiffness_degradation: found -1.0; accepted: a number >= 0" in said
+    assert "[[spring]] 1: beta: found 0.7; accepted: |beta| <= gamma of a law that degrades" in said
 
 
 def test_names_by_default_are_those_of_the_ends() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -16,12 +18,13 @@ from eventpound.mechanics.elements import (
     next_branch,
     next_z,
     pull_per_z,
+    slope_beside,
     z_coefficient,
     z_rate,
     z_slopes,
 )
 from eventpound.mechanics.link_law import APART, CLOSED, YIELDING, link_law, z_bound
-from eventpound.scene import Backfill, BoucWen, Slider
+from eventpound.scene import Backfill, BoucWen, DegradingBoucWen, Slider
 from eventpound.solvers.fast.single.body import BODY
 from eventpound.solvers.fast.single.series import curved_series
 from tests.mechanics.dense import literal_z_rate, memory_of
@@ -87,6 +90,57 @@ def test_slopes_are_those_of_the_rate(n: float, z: float, x_rate: float) -> None
     assert by_rate == pytest.approx(z_rate(0, law, x_rate, x_rate, z, 0.0) / x_rate, rel=1e-13)
     ends = [z_rate(0, law, x_rate, x_rate, z + s, 0.0) for s in (-small, small)]
     assert by_z == pytest.approx((ends[1] - ends[0]) / (2.0 * small), rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("z", [0.4, -0.7])
+@pytest.mark.parametrize("x_rate", [0.3, -0.3])
+def test_a_law_that_degrades_has_the_rates_slopes_and_series_of_its_equations(
+    z: float, x_rate: float
+) -> None:
+    plain = BoucWen(0.0, 1.0, 0.25, 2.0, 0.2, 0.7)
+    own = DegradingBoucWen(**asdict(plain), strength_degradation=0.3, stiffness_degradation=0.2)
+    memory, energy, small = link_law([own], [0.0, 0.0], {0: 1}).memory, 1.5, 1e-6
+    nu, eta = 1.0 + 0.3 * energy, 1.0 + 0.2 * energy
+    held = x_rate / 0.25 - literal_z_rate(plain, x_rate, z)
+    rate = z_rate(0, memory, x_rate, x_rate, z, energy)
+    assert rate == pytest.approx((x_rate / 0.25 - nu * held) / eta, rel=1e-14)
+    assert z_rate(1, memory, x_rate, x_rate, energy, z) == pytest.approx(z * x_rate / 0.25)
+    for a, mine, other in ((0, z, energy), (1, energy, z)):
+        found = (*z_slopes(a, memory, x_rate, mine, other),
+                 slope_beside(a, memory, x_rate, mine, other))  # fmt: skip
+        at = np.array([x_rate, mine, other])
+        for slope, step in zip(found, small * np.eye(3), strict=True):
+            ends = [z_rate(a, memory, v, v, m, o) for v, m, o in (at - step, at + step)]
+            assert slope == pytest.approx((ends[1] - ends[0]) / (2.0 * small), rel=1e-6, abs=1e-9)
+    x = np.array([0.0, x_rate, 0.1, -0.05, 0.02] + [0.0] * 16)
+    Y, powers = np.zeros((2, x.size)), np.zeros((2, x.size))
+    Y[:, 0], x_1 = (z, energy), np.arange(1, x.size) * x[1:]
+    for k in range(x.size - 1):
+        for a in range(2):
+            Y[a, k + 1] = z_coefficient(
+                a, k, memory, x_1, Y[a], Y[1 - a], powers[a], np.sign(x_rate)
+            ) / (k + 1)
+    t = 0.05
+    exact = solve_ivp(
+        lambda t, y: [
+            z_rate(a, memory, v, v, y[a], y[1 - a])
+            for v in [sum(c * t**k for k, c in enumerate(x_1.tolist()))]
+            for a in range(2)
+        ],
+        (0.0, t), Y[:, 0], "DOP853", rtol=1e-13, atol=1e-15,
+    ).y[:, -1]  # fmt: skip
+    np.testing.assert_allclose(Y @ t ** np.arange(x.size), exact, rtol=1e-12)
+
+
+def test_a_law_that_does_not_degrade_has_bouc_wens_rates_to_the_last_bit() -> None:
+    plain = BoucWen(0.0, 1.0, 0.3, 3.0, 0.2, 0.7)
+    pair = [link_law([law], [0.0]).memory for law in (plain, DegradingBoucWen(**asdict(plain)))]
+    for z, x_rate in ((0.37, 0.1), (-0.9, 0.7), (0.6, -0.2)):
+        first, second = (
+            (z_rate(0, memory, x_rate, x_rate, z, 7.0), *z_slopes(0, memory, x_rate, z, 7.0))
+            for memory in pair
+        )
+        assert first == second
 
 
 def test_soil_yields_along_its_backbone() -> None:
