@@ -43,7 +43,7 @@ from tests.reference.comparison import compare
 from tests.reference.problems import load
 from tests.reference.test_open import UNSEEN
 from tests.solvers.accuracy import allowed
-from tests.solvers.random_scenes import resting_scene
+from tests.solvers.random_scenes import random_scene, resting_scene
 from tests.solvers.scenes import pounding_pair
 
 if library.library() is None:
@@ -363,3 +363,15 @@ def test_a_limit_of_steps_is_kept() -> None:
     recording = caught.value.recording
     assert recording is not None
     assert recording.work.steps == 300
+
+
+@pytest.mark.parametrize("seed", [156, 330, 439])
+def test_rows_of_a_step_with_a_root_at_its_end_are_on_its_polynomial(seed: int) -> None:
+    # The root is the bottom of a dip: the step goes on, but IDA has no more of it to tell.
+    scene, end = random_scene(seed)
+    settings = {"events": "sundials"}
+    found = simulate(scene, "ida", duration=end, rtol=1e-9, settings=settings).recording
+    u, extremes = found.history.u, found.displacement
+    noise = 1e-9 * np.abs(u).max()
+    assert np.all(u <= extremes.maximum + noise)
+    assert np.all(u >= extremes.minimum - noise)

@@ -46,6 +46,7 @@ from eventpound.solvers.sundials.loop import (
     Numbers,
     carry_on,
     root_at,
+    was_told,
     write_samples,
 )
 from eventpound.solvers.sundials.root_values import descriptor_roots
@@ -138,18 +139,28 @@ def _take(
     handles: IdaHandles, start: float, first: int, bounds: Bounds, e: Examination
 ) -> tuple[int, float, bool]:
     """A step from `start` (s), not beyond a sample of a record; see `carry_on`."""
-    stop = last_time(start, True, bounds, e.forcing)
-    ida_set_stop_time(handles.memory, stop)
-    flag = ida_solve(
-        handles.memory,
-        stop,
-        handles.reached.ctypes.data,
-        handles.vector,
-        handles.rate_vector,
-        ONE_STEP,
-    )
+    flag = 0
+    if handles.reached[0] <= start or not _stands_at_end(handles, start):
+        stop = last_time(start, True, bounds, e.forcing)
+        ida_set_stop_time(handles.memory, stop)
+        flag = ida_solve(
+            handles.memory,
+            stop,
+            handles.reached.ctypes.data,
+            handles.vector,
+            handles.rate_vector,
+            ONE_STEP,
+        )
     end = handles.reached[0]
     return flag, end, not (flag < 0 or end <= start or flag == ROOT_RETURN)
+
+
+@kernel
+def _stands_at_end(handles: IdaHandles, start: float) -> bool:
+    """`was_told` of a step from `start` (s) in which IDA has stopped."""
+    whole = np.empty(1)
+    ida_current_time(handles.memory, whole.ctypes.data)
+    return was_told(start, handles.reached[0], whole[0])
 
 
 @kernel

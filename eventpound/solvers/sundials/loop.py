@@ -112,6 +112,15 @@ def write_samples(
 
 
 @scalar_kernel
+def was_told(start: float, reached: float, whole: float) -> bool:
+    """Whether a root that SUNDIALS told of, at `reached`, is the end of its whole step (s).
+
+    It has no more of that step to come back with, and would go on to another.
+    """
+    return abs(whole - reached) <= BRACKET * EPS * (abs(whole) + whole - start)
+
+
+@scalar_kernel
 def before_root(start: float, tau: float) -> float:
     """Start of the bracket of a root at `tau` (s) of a step from `start` (s)."""
     return tau - BRACKET * EPS * (abs(tau) + tau - start)

@@ -35,6 +35,7 @@ from eventpound.solvers.sundials.loop import (
     carry_on,
     reversal_in,
     root_at,
+    was_told,
     write_samples,
 )
 from eventpound.solvers.sundials.root_values import cluster_roots
@@ -112,9 +113,11 @@ def _take(
     if handles.reached[TURNED] == start:
         _begin_anew(handles, start, first, e)
     take_directions(e.y[first], system, handles.rtol, direction)
-    stop = last_time(start, bounds.at_samples, bounds, e.forcing)
-    set_stop_time(handles.memory, stop)
-    flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
+    flag = 0
+    if handles.reached[REACHED] <= start or not _stands_at_end(handles, start):
+        stop = last_time(start, bounds.at_samples, bounds, e.forcing)
+        set_stop_time(handles.memory, stop)
+        flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
     end = handles.reached[REACHED]
     if flag < 0 or end <= start:
         return flag, end, False
@@ -126,6 +129,14 @@ def _take(
         handles.reached[TURNED] = turned
         return 0, turned, True
     return flag, end, flag != ROOT_RETURN
+
+
+@kernel
+def _stands_at_end(handles: CvodeHandles, start: float) -> bool:
+    """`was_told` of a step from `start` (s) in which CVODE has stopped."""
+    whole = np.empty(1)
+    current_time(handles.memory, whole.ctypes.data)
+    return was_told(start, handles.reached[REACHED], whole[0])
 
 
 @kernel
@@ -163,7 +174,7 @@ def _begin_anew(handles: CvodeHandles, tau: float, first: int, e: Examination) -
     _count_jacobians(handles)
     reinit(handles.memory, tau, handles.vector)
     handles.spent[0] = 0
-    handles.reached[TURNED] = NEVER
+    handles.reached[REACHED], handles.reached[TURNED] = tau, NEVER
 
 
 @kernel
