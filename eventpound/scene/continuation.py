@@ -1,8 +1,9 @@
 """A scene that goes on where another run ended, as at an aftershock.
 
-Displacements, velocities and z are all that a run knows of its past. Which contacts rest follows
-from them: those that are closed, whose gaps stand still, and that are pressed. A contact with a law
-of its own is the exception: while it is closed, its law remembers how it was struck.
+Displacements, velocities and internal variables are all that a run knows of its past. Which
+contacts rest follows from them: those that are closed, whose gaps stand still, and that are
+pressed. A contact with a law of its own is the exception: while it is closed, its law remembers how
+it was struck.
 """
 
 from __future__ import annotations
@@ -18,12 +19,12 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene.check import check_scene, starts_of_supports
 from eventpound.scene.contact import BARRIER, opening
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Backfill, BoucWen, Hysteretic
+from eventpound.scene.spring import GROUND, Backfill, BoucWen, DegradingBoucWen
 from eventpound.units import Dimension
 
 FinalState = Mapping[str, Mapping[str, float]]
-"""As `eventpound.Response.final`: u and v of each body (m, m/s), z of each spring that has one."""
-_DIMENSIONS = {"u": Dimension.LENGTH, "v": Dimension.VELOCITY, "z": Dimension.NUMBER}
+"""As `eventpound.Response.final`: u and v of each body (m, m/s), variables of each memory."""
+_DIMENSIONS = {"u": Dimension.LENGTH, "v": Dimension.VELOCITY}
 _BEYOND = 0.1
 """Part of its bound by which z may exceed it at the end of a run of the largest tolerance."""
 
@@ -69,14 +70,14 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
             first, second = (places.get(end, 0.0) for end in spring.between)
             gap = law.residual_gap(second - first, state[spring.name]["z"])
             law = replace(law, initial_gap=max(gap, law.gap))
-        if isinstance(law, Hysteretic) and law.second:
-            found = f"{spring.name!r} (law {law.word}), whose memory a scene cannot begin with"
-            raise InputError(f"start: found {found}; accepted: springs without such a law")
         if isinstance(law, BoucWen):
             z = state[spring.name]["z"]
             # What a tolerance leaves beyond the bound is a spring that has yielded.
             within = float(np.clip(z, -law.bound, law.bound))
             law = replace(law, initial_z=within if abs(z - within) <= _BEYOND * law.bound else z)
+        if isinstance(law, DegradingBoucWen):
+            lost = law.lost(law.initial_z, state[spring.name][law.second])
+            law = replace(law, initial_loss=max(lost, 0.0))
         springs.append(replace(spring, law=law))
     later = replace(scene, bodies=tuple(bodies), springs=tuple(springs))
     check_scene(later, start)
@@ -87,8 +88,8 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
 def _read(scene: Scene, final: FinalState) -> dict[str, dict[str, float]]:
     """The numbers of a state, all of them and no others."""
     keys = {body.name: ["u", "v"] for body in scene.bodies}
-    for name in scene.hysteretic_springs:
-        keys.setdefault(name, []).append("z")
+    for name, key in scene.memory:
+        keys.setdefault(name, []).append(key)
     if others := [repr(name) for name in final if name not in keys]:
         accepted = f"states of {', '.join(keys)}"
         raise InputError(f"start: found a state of {', '.join(others)}; accepted: {accepted}")
@@ -99,7 +100,8 @@ def _read(scene: Scene, final: FinalState) -> dict[str, dict[str, float]]:
             accepted = f"numbers {', '.join(wanted)}"
             raise InputError(f"start: {name}: found {state!r}; accepted: {accepted}")
         found[name] = {
-            key: number(f"start: {name}: {key}", state[key], _DIMENSIONS[key]) for key in wanted
+            key: number(f"start: {name}: {key}", state[key], _DIMENSIONS.get(key, Dimension.NUMBER))
+            for key in wanted
         }
     return found
 

@@ -333,9 +333,13 @@ class DegradingBoucWen(BoucWen):
 
     def dissipated(self, elongation: float, z: float, epsilon: float) -> float:
         """Work that was lost from the start up to here (J)."""
+        lost = self.lost(z, epsilon) - self.initial_loss
+        return self.strength * self.yield_displacement * lost
+
+    def lost(self, z: float, epsilon: float) -> float:
+        """What of epsilon is lost, in parts of ``Q u_y``."""
         a = 0.5 * self.stiffness_degradation * z**2
-        lost = epsilon * math.exp(-a) - 0.5 * z**2 * _mean_growth(-a)
-        return self.strength * self.yield_displacement * (lost - self.initial_loss)
+        return epsilon * math.exp(-a) - 0.5 * z**2 * _mean_growth(-a)
 
 
 def _mean_growth(a: float) -> float:

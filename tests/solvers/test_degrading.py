@@ -244,6 +244,16 @@ def test_its_energy_is_the_hysteretic_work() -> None:
     assert all(0.0 < own < of for own, of in zip(lost, parts, strict=True))
 
 
+def test_damage_goes_on_in_an_aftershock() -> None:
+    thrown = Body("deck", 1.0e6, velocity=3.0)
+    scene = replace(POUNDING, motion=NoMotion(), bodies=(thrown, POUNDING.bodies[1]))
+    whole, first = run(scene, 4.0), run(scene, 2.5)
+    second = run(scene, 1.5, start=first.final)
+    assert second.scene.springs[0].law.initial_loss > 1.0
+    np.testing.assert_allclose(second.recording.u, whole.recording.u, atol=1e-9)
+    np.testing.assert_allclose(second.recording.z, whole.recording.z, rtol=1e-8)
+
+
 @pytest.mark.parametrize("solver", ["fast", "moreau", "penalty"])
 def test_a_solver_that_does_not_know_it_says_so_in_one_message(solver: str) -> None:
     with pytest.raises(InputError) as caught:
