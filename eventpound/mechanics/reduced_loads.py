@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from eventpound.motion.loads import (
     LOADED,
     body_of,
@@ -53,7 +55,7 @@ def add_load_coefficients(
 
     Those of the accelerations of supports in space (m/s²) go into `driven` (order, C).
     """
-    work = force[:, 0].copy()
+    work = np.zeros(order)
     for a in range(system.link.size - 1, -1, -1):
         row, c = row_of_link(system.link[a], forcing.coefficients), system.ends[a, 0]
         if row > 0:

@@ -18,6 +18,7 @@ from eventpound.scene import (
     Body,
     Contact,
     Dashpot,
+    Force,
     Linear,
     Point,
     Scene,
@@ -269,6 +270,24 @@ def test_slider_on_a_support_is_that_on_the_ground_which_moves_so(solver: str) -
     assert found.supports is not None
     relative = found.u[0] - found.supports.s[-1, 0]
     assert relative == pytest.approx(whole.u[0], abs=CLOSE * np.abs(whole.history.u).max())
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+@pytest.mark.parametrize("part", [0.9, 3.0])
+def test_block_that_is_pushed_moves_as_on_a_ground_that_is_shaken_so(
+    solver: str, part: float
+) -> None:
+    deck, bearing = on_ground(Slider(0.2, 1000.0 * g))
+    push = Sine(part * 0.2 * g, 1.0)
+    pushed = Scene((deck,), (bearing,), motion=NoMotion(), forces=(Force("deck", push, True),))
+    shaken = Scene((deck,), (bearing,), motion=replace(push, reverse=True))
+    ours, theirs = (run(scene, 2.0, solver) for scene in (pushed, shaken))
+    u = theirs.recording.history.u
+    assert (np.abs(u).max() == 0.0) == (part < 1.0)
+    size = max(np.abs(u).max(), 1.0)
+    np.testing.assert_allclose(ours.recording.u, theirs.recording.u, rtol=0.0, atol=CLOSE * size)
+    z = [response.recording.history.z[-1, 0] for response in (ours, theirs)]
+    assert z[0] == pytest.approx(z[1], abs=1e-7)
 
 
 def random_scene(seed: int) -> tuple[Scene, float]:
