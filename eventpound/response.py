@@ -265,8 +265,7 @@ class Response:
         warn_unsettled("floor spectrum", apart["floor spectrum"])
         table = floor_table(found["floor spectrum"][0], wanted, period, ratios)
         units = {"body": "", "damping": "", "period": "s", "SD": "m", "PSV": "m/s"}
-        units = {name: HISTORY_UNITS.get(name.partition(".")[0], "") for name in table}
-        table.attrs["units"] = units
+        table.attrs["units"] = units | {"PSA": "m/s^2", "PSA_g": "g", "SA": "m/s^2"}
         return table
 
     @property

@@ -138,7 +138,8 @@ def test_nothing_is_taken_from_the_reduced_equations() -> None:
     """Of the modules with CVODE's right-hand side, only types are imported."""
     types = {
         "eventpound.mechanics.reduced": {"Forcing", "Reduced"},
-        "eventpound.mechanics.observables": {"Bodies", "Observed"},
+        # What friction is of the force that holds a slider is no equation of motion.
+        "eventpound.mechanics.observables": {"Bodies", "Observed", "observe_friction"},
         "eventpound.mechanics.series": set(),
         # What is a support is said of a mass, and no equation.
         "eventpound.mechanics.clusters": {"Clusters", "is_support"},
