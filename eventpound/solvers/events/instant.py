@@ -9,6 +9,8 @@ are followed impact by impact until `eventpound.contact.cascade` calls them over
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from eventpound.contact.cascade import LONGEST_CASCADE, SINCE_IMPACT, STALE, T, is_fleeting
@@ -25,7 +27,7 @@ from eventpound.contact.kinks import lacks_branch, pass_kinks
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import CurrentPiece, next_corner
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import by_python, in_python, kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, look
 from eventpound.solvers.events.law_contacts import gather, turn_elements
@@ -231,6 +233,32 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     if ended == OVER:
         end_cascade(state.resting, count, run.record.events)
     return ended
+
+
+def settle_in_python(run: Run, impacts: Callable[[], int], rests: Callable[[], int]) -> int:
+    """What `_settle` does in its first two phases, by other rules in Python; ends as `proceed`.
+
+    Parameters
+    ----------
+    run : Run
+        The run, at an instant whose phase is DUTIES or RESTS.
+    impacts, rests : callable
+        The impacts of the instant, and who rests after them; DONE, or how they fail.
+    """
+    count = run.state.count
+    with by_python():
+        if count[PHASE] == DUTIES:
+            ended = impacts()
+            if ended != DONE:
+                return ended
+            count[PHASE] = RESTS
+        if in_python(lacks_branch)(run.instant):
+            return FIRST_BRANCHES
+        in_python(turn_elements)(run.laws, run.instant)
+        ended = rests()
+        if ended == DONE:
+            count[PHASE] = ARRIVAL
+        return ended
 
 
 @kernel

@@ -7,6 +7,7 @@ contacts have nothing more to compile. An instant takes some milliseconds.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,6 @@ from eventpound.contact.impacts import (
     next_problem,
 )
 from eventpound.contact.instant import begin_instant, end_instant, take_rests, touching_of
-from eventpound.contact.kinks import lacks_branch
 from eventpound.contact.rest import (
     ORDER,
     Touching,
@@ -39,17 +39,11 @@ from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.compiled import by_python, in_python
+from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lcp import solve_dense
-from eventpound.solvers.events.instant import (
-    ARRIVAL,
-    DUTIES,
-    FIRST_BRANCHES,
-    RESTS,
-)
-from eventpound.solvers.events.law_contacts import turn_elements
+from eventpound.solvers.events.instant import settle_in_python
 from eventpound.solvers.events.present import forcing_now
-from eventpound.solvers.events.run import PHASE, Run
+from eventpound.solvers.events.run import Run
 from eventpound.solvers.events.underway import Underway
 from eventpound.tolerances import (
     ACCELERATION,
@@ -295,31 +289,23 @@ def settle_points(now: Underway, piece: CurrentPiece) -> int:
         The ground motion.
     """
     rows = contact_rows(now.model)
-    with by_python():
-        run = now.run
-        if run.state.count[PHASE] == DUTIES:
-            ended = _do_duties(run, rows)
-            if ended != DONE:
-                return ended
-        if in_python(lacks_branch)(run.instant):
-            return FIRST_BRANCHES
-        in_python(turn_elements)(run.laws, run.instant)
-        touching = in_python(touching_of)(run.state.z, forcing_now(piece, now.t), run.instant)
-        at_points = np.isin(np.arange(now.model.contacts), now.model.points)
-        found = rest_contacts_at_points(touching, rows, at_points)
-        ended = in_python(take_rests)(*found, run.instant)
-        if ended == DONE:
-            run.state.count[PHASE] = ARRIVAL
-        return int(ended)
+    return settle_in_python(
+        now.run, partial(_impacts_of, now.run, rows), partial(_rests, now, piece, rows)
+    )
 
 
-def _do_duties(run: Run, rows: Floats) -> int:
+def _impacts_of(run: Run, rows: Floats) -> int:
     at = run.instant
     in_python(begin_instant)(at)
     ended = settle_closed_at_points(rows, at)
     # No force has vanished that presses bodies which an impact has moved.
     moved = np.abs(rows) @ (at.v != at.before) > 0.0
     at.released[moved] = at.vanished[moved] = False
-    if in_python(end_instant)(ended, at) == DONE:
-        at.count[PHASE] = RESTS
-    return ended
+    return int(in_python(end_instant)(ended, at))
+
+
+def _rests(now: Underway, piece: CurrentPiece, rows: Floats) -> int:
+    at = now.run.instant
+    touching = in_python(touching_of)(now.run.state.z, forcing_now(piece, now.t), at)
+    at_points = np.isin(np.arange(now.model.contacts), now.model.points)
+    return int(in_python(take_rests)(*rest_contacts_at_points(touching, rows, at_points), at))

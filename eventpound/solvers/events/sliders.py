@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from itertools import islice, product
 
 import numpy as np
@@ -28,19 +29,17 @@ import numpy as np
 from eventpound.contact.cascade import STALE
 from eventpound.contact.impacts import DONE, put_as_one
 from eventpound.contact.instant import any_may_rest, settle_impacts, take_rests, touching_of
-from eventpound.contact.kinks import lacks_branch, still_rate
+from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import Touching, rest_contacts
 from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.arrays import Bools, Ints
-from eventpound.numerics.compiled import by_python, in_python
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import LawRecording, Recording
-from eventpound.solvers.events.instant import ARRIVAL, DUTIES, FIRST_BRANCHES, RESTS
-from eventpound.solvers.events.law_contacts import turn_elements
+from eventpound.solvers.events.instant import settle_in_python
 from eventpound.solvers.events.present import forcing_now, make_ready
-from eventpound.solvers.events.run import PHASE
 from eventpound.solvers.events.underway import Underway
 
 MOST_SIDES = 1000
@@ -57,24 +56,23 @@ def settle_sliders(now: Underway, piece: CurrentPiece) -> int:
     piece : CurrentPiece
         The ground motion.
     """
-    run, at, count = now.run, now.run.instant, now.run.state.count
-    with by_python():
-        if count[PHASE] == DUTIES:
-            _end_sticks_and_slips(now)
-            at.gap[now.model.own_contacts :] = np.inf
-            ended = in_python(settle_impacts)(at)
-            if ended != DONE:
-                return int(ended)
-            count[PHASE] = RESTS
-        if in_python(lacks_branch)(at):
-            return FIRST_BRANCHES
-        in_python(turn_elements)(run.laws, at)
-        _offer(now)
-        ended = _decide(now, piece)
-        if ended == DONE:
-            count[STALE] |= bool((at.branch != now.mode.branch).any())
-            count[PHASE] = ARRIVAL
-        return ended
+    return settle_in_python(now.run, partial(_impacts, now), partial(_rests, now, piece))
+
+
+def _impacts(now: Underway) -> int:
+    _end_sticks_and_slips(now)
+    at = now.run.instant
+    at.gap[now.model.own_contacts :] = np.inf
+    return int(in_python(settle_impacts)(at))
+
+
+def _rests(now: Underway, piece: CurrentPiece) -> int:
+    _offer(now)
+    ended = _decide(now, piece)
+    if ended == DONE:
+        run = now.run
+        run.state.count[STALE] |= bool((run.instant.branch != now.mode.branch).any())
+    return ended
 
 
 def _end_sticks_and_slips(now: Underway) -> None:
