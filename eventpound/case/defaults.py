@@ -68,8 +68,7 @@ def default_duration(scene: Scene, start_time: float) -> float:
     if duration <= 0.0:
         raise InputError(
             "duration: missing, and the motion is over before the start of the run at "
-            f"{start_time:.6g} s; "
-            f"accepted: {Dimension.TIME.accepted}"
+            f"{start_time:.6g} s; accepted: {Dimension.TIME.accepted}"
         )
     return duration
 

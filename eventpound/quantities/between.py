@@ -161,7 +161,7 @@ def works_of(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:
     found, motions, h = {}, _motions(scene, run), run.history
     for spring in scene.springs:
         law = spring.law
-        if isinstance(law, BoucWen) and not law.second:
+        if isinstance(law, BoucWen) and not law.beyond_bouc_wen:
             z = h.z[:, scene.hysteretic_springs.index(spring.name)]
             rate, second = _elongating(spring.between, motions)
             own = link_law([law], [0.0]).memory

@@ -39,7 +39,7 @@ def is_slider(scene: Scene, i: int) -> bool:
 def is_plain_bouc_wen(scene: Scene, i: int) -> bool:
     """Whether it has one that knows nothing but z."""
     law = scene.springs[i].law
-    return isinstance(law, BoucWen) and not law.second
+    return isinstance(law, BoucWen) and not law.beyond_bouc_wen
 
 
 def told_by_law(name: str) -> Callable[[Scene, int], bool]:

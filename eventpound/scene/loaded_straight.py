@@ -90,7 +90,7 @@ class Loops(NamedTuple):
 
 def not_convex(law: Hysteretic) -> tuple[str, str] | None:
     """Why a law loaded straight has no convex potential known, and what has; None where it has."""
-    if not isinstance(law, BoucWen) or law.second:
+    if not isinstance(law, BoucWen) or law.beyond_bouc_wen:
         return f"is {law.word.value}", '"initial", or springs of another law'
     if law.gamma >= 0.0:
         return None
