@@ -78,6 +78,7 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
         {"initial_stiffness": 2e7, "ultimate_force": 3e5, "failure_ratio": 0.7},
         {NEEDED: "initial_stiffness ultimate_force failure_ratio gap"},
     ),
+    "Backfill.of_wall": ({"height": 2.0, "width": 9.0}, {NEEDED: "height width gap"}),
     "BoucWen": (
         {"stiffness": 1.0, "strength": 1.0, "yield_displacement": 1.0},
         {NEEDED: "stiffness strength yield_displacement exponent beta gamma initial_z"},

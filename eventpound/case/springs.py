@@ -27,6 +27,7 @@ from eventpound.scene.spring import (
     Slider,
     Spring,
 )
+from eventpound.scene.wall import soil_behind
 from eventpound.units import Dimension
 
 _DIMENSIONS = {
@@ -42,6 +43,12 @@ _YIELDS = dict.fromkeys(
 )
 """Answers to what others call a law that `_LAWS` calls otherwise."""
 _YIELDS_IN_SERIES = dict.fromkeys(_YIELDING, ", but no part of a series yields")
+_WALL = "height", "width"
+_SOIL = (
+    ("initial_stiffness", Dimension.STIFFNESS),
+    ("ultimate_force", Dimension.FORCE),
+    ("failure_ratio", Dimension.NUMBER),
+)
 _UNREAD = Linear(math.nan)
 _TWO_PERIODS = (
     "says not which of the two periods of a bouc-wen spring; write initial_period (at its initial "
@@ -120,13 +127,27 @@ def _read_bilinear(table: Table) -> BilinearElastic:
 
 
 def _read_backfill(table: Table) -> Backfill:
-    return Backfill(
-        table.quantity("initial_stiffness", Dimension.STIFFNESS),
-        table.quantity("ultimate_force", Dimension.FORCE),
-        table.quantity("failure_ratio", Dimension.NUMBER),
-        table.quantity("gap", Dimension.LENGTH, 0.0),
-        table.quantity("initial_gap", Dimension.LENGTH, 0.0),
-    )
+    wall = {key: table.optional_quantity(f"wall_{key}", Dimension.LENGTH) for key in _WALL}
+    of_wall = any(value is not None for value in wall.values())
+    soil = _soil_behind(table, wall) if of_wall else [table.quantity(*key) for key in _SOIL]
+    gaps = (table.quantity(key, Dimension.LENGTH, 0.0) for key in ("gap", "initial_gap"))
+    return Backfill(*soil, *gaps)
+
+
+def _soil_behind(table: Table, wall: Mapping[str, float | None]) -> Sequence[float]:
+    """Numbers of soil that stand by the size of its wall, and by it alone."""
+    for key in (key for key, _ in _SOIL if table.has(key)):
+        table.report(key, "found beside the size of a wall, which says it; accepted: one of both")
+    for key in (key for key, value in wall.items() if value is None):
+        table.report_missing(f"wall_{key}", Dimension.LENGTH.accepted)
+    size = {key: value for key, value in wall.items() if value is not None}
+    if len(size) == len(wall) and not any(map(math.isnan, size.values())):
+        try:
+            return soil_behind(**size)
+        except InputError as error:
+            for problem in error.problems:
+                table.report(f"wall_{problem.partition(': ')[0]}", problem.partition(": ")[2])
+    return [math.nan] * len(_SOIL)
 
 
 def _read_slider(table: Table) -> Slider:

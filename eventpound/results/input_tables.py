@@ -14,6 +14,8 @@ _MOST_ROWS = 40
 """Rows of a table that are shown."""
 _MOST_MODES = 5
 """Modes of a structure that are shown."""
+_APART = "compression", "friction", "F_ult"
+"""Numbers of springs that have a table of their own: they share hardly one with others."""
 _Column = tuple[str, str, str]
 """Key, heading and kind of unit of a column."""
 
@@ -35,7 +37,8 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
         (
             "springs",
             "name=spring; between; law; height:length; K0:stiffness; K_s:stiffness; F_y:force; "
-            "Q:force; u_y:length; alpha; compression:stiffness; extension:stiffness; "
+            "Q:force; u_y:length; alpha; friction; N:force; F_ult:force; R_f; "
+            "y_ult=y at F_ult:length; gap:length; compression:stiffness; extension:stiffness; "
             "offset:length; mass=mass on it:mass; F_y/W; T_initial=T initial:s; "
             "T_post_yield=T post-yield:s; source",
         ),
@@ -72,14 +75,13 @@ def input_tables(inputs: Mapping[str, Any], chosen: tuple[str, ...] = ()) -> Ite
     heavy = max((row["mass"] for row in inputs["bodies"]), default=0.0) >= HEAVY
     units = _units(Trade(heavy, chosen))
     for kind, columns in _TABLES.items():
-        # Springs with a kink have a table of their own: they share no number with others.
         given = inputs.get(kind, [])
         if kind == "springs":
             columns += _own_columns(given, columns)
-        kinked = [row for row in given if "compression" in row]
-        for rows in ([row for row in given if row not in kinked], kinked):
-            if rows:
-                yield _cells(rows, columns, units)
+        tables: dict[str, list[Mapping[str, Any]]] = {own: [] for own in ("", *_APART)}
+        for row in given:
+            tables[next((own for own in _APART if own in row), "")].append(row)
+        yield from (_cells(rows, columns, units) for rows in tables.values() if rows)
     for structure in inputs["structures"]:
         if "initial" in structure:
             yield _modes(structure)

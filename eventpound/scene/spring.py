@@ -385,6 +385,33 @@ class Backfill(Hysteretic):
     def __post_init__(self) -> None:
         read_fields(self)
 
+    @classmethod
+    @checked
+    def of_wall(cls, height: float | str, width: float | str, gap: float | str = 0.0) -> Backfill:
+        """Granular soil behind a wall without skew (Caltrans SDC 2.0, 2019, 6.3.1.2).
+
+        Its hyperbola has the code's stiffness as the secant at half of the code's force, and
+        reaches that at a depth of 0.05 of the height (Shamsabadi, Rollins and Kapuskar 2007).
+
+        Parameters
+        ----------
+        height : float
+            Of the wall (m), from 0.6096 to 3.048.
+        width : float
+            Of the wall (m), positive.
+        gap : float
+            As of the class.
+
+        Raises
+        ------
+        InputError
+            Where a number is none, or out of its range.
+        """
+        from eventpound.scene.wall import soil_behind
+
+        size = (number(w, v, Dimension.LENGTH) for w, v in (("height", height), ("width", width)))
+        return cls(*soil_behind(*size), gap)
+
     @property
     def strength(self) -> float:
         """Q (N), to which the force tends."""
@@ -409,8 +436,12 @@ class Backfill(Hysteretic):
     @property
     def numbers(self) -> dict[str, float]:
         """What a table of a case shows of it (SI)."""
-        names = {"K0": self.initial_stiffness, "Q": self.strength, "u_y": self.yield_displacement}
-        return names | {"offset": self.offset}
+        found = {"K0": self.initial_stiffness, "F_ult": self.ultimate_force}
+        found |= {"R_f": self.failure_ratio, "gap": self.gap}
+        if self.failure_ratio < 1.0:  # Else it only tends to F_ult.
+            elastic = self.ultimate_force / self.initial_stiffness
+            found["y_ult"] = elastic / (1.0 - self.failure_ratio)
+        return found
 
     def drawn(self) -> tuple[list[float], list[float]]:
         """Elongations (m) and forces (N) from rest by u_y into the soil and back."""
@@ -503,7 +534,8 @@ class Slider(Hysteretic):
     @property
     def numbers(self) -> dict[str, float]:
         """What a table of a case shows of it (SI)."""
-        return {"K_s": self.stiffness, "Q": self.strength}
+        friction = {"friction": self.friction, "N": self.normal_force}
+        return {"K_s": self.stiffness, "Q": self.strength} | friction
 
     def z_at(self, elongation: float) -> float:
         """The z of a start: its sign is on the branches of the law."""

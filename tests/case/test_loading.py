@@ -162,15 +162,6 @@ def test_a_large_case_reports_ends_briefly(tmp_path: Path) -> None:
         read_case(document, tmp_path / "case.toml")
 
 
-def test_example_of_the_documentation(tmp_path: Path) -> None:
-    page = Path(__file__).parents[2] / "docs" / "case-format.md"
-    example = page.read_text(encoding="utf-8").split("```toml\n")[1].split("```")[0]
-    (tmp_path / "case.toml").write_text(example, encoding="utf-8")
-    case = load_case(tmp_path)
-    assert [spring.name for spring in case.scene.springs] == ["frame1", "bearing", "abutment"]
-    assert case.warnings == ()
-
-
 def test_a_byte_order_mark_is_passed_over(tmp_path: Path) -> None:
     file = write_template(tmp_path)
     plain = load_case(tmp_path)

@@ -165,6 +165,36 @@ def test_backfill() -> None:
     assert "[[spring]] 1: gap: found -1.0; accepted: a length >= 0 (m)" in said
 
 
+def test_soil_behind_a_wall_is_that_of_caltrans_sdc() -> None:
+    wall: Table = {"law": "backfill", "wall_height": "1.6764 m", "wall_width": "3 m"}
+    (read,) = case_with(spring=[spring(**wall, gap="5 cm")]).scene.springs
+    law = read.law
+    assert isinstance(law, Backfill)
+    assert law == Backfill.of_wall("1.6764 m", 3.0, "5 cm")
+    # SDC 2.0, 6.3.1.2 at 5.5 ft by hand: 50.25 kip/in and 27.803 kip for each foot.
+    stiffness, force = 3.0 * 50.25 * 574.5634e3, 3.0 * 27.803 * 14593.90
+    assert law.ultimate_force == pytest.approx(force, rel=1e-4)
+    assert law.push(0.05 * 1.6764) == pytest.approx(force, rel=1e-4)
+    assert law.push(0.5 * force / stiffness) == pytest.approx(0.5 * force, rel=1e-4)
+    assert law.numbers["y_ult"] == pytest.approx(0.05 * 1.6764)
+    # SDC 1.7, 7.8.1 at this height: 28.7 kN/mm and 239 kPa of each metre.
+    assert force / 3.0 == pytest.approx(239e3 * 1.6764, rel=0.02)
+    assert stiffness / 3.0 == pytest.approx(28.7e6, rel=0.02)
+
+
+def test_size_of_a_wall_that_is_not_a_size_is_told_by_its_key() -> None:
+    wall: Table = {"law": "backfill", "wall_height": 5.0, "wall_width": 0.0}
+    said = problems(spring=[spring(**wall)])
+    heights = "accepted: from 0.6096 to 3.048 m (Caltrans SDC 2.0)"
+    assert f"[[spring]] 1: wall_height: found 5.0; {heights}" in said
+    assert "[[spring]] 1: wall_width: found 0.0; accepted: a positive length (m)" in said
+    assert said.count("\n") == 1
+    said = problems(spring=[spring(law="backfill", wall_height=2.0, failure_ratio=0.7)])
+    assert "[[spring]] 1: wall_width: missing; accepted: " in said
+    assert "[[spring]] 1: failure_ratio: found beside the size of a wall" in said
+    assert said.count("\n") == 1
+
+
 def test_slider() -> None:
     bearing: Table = {"law": "slider", "friction": 0.05, "normal_force": "2 MN"}
     tables = [spring(**bearing), spring(**bearing, radius="4 m"), spring(**bearing, stiffness=3.0)]
