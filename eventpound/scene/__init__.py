@@ -1,42 +1,20 @@
 """What is modelled: bodies, springs, dashpots, contacts and one ground motion."""
 
-from eventpound.scene.body import Body
-from eventpound.scene.contact import BARRIER, Contact
-from eventpound.scene.contact_law import ContactLaw
-from eventpound.scene.dashpot import Dashpot
-from eventpound.scene.force import Force
-from eventpound.scene.point import Point
-from eventpound.scene.scene import Scene
-from eventpound.scene.spring import (
-    GROUND,
-    Backfill,
-    BilinearElastic,
-    BoucWen,
-    DegradingBoucWen,
-    Linear,
-    Series,
-    Slider,
-    Spring,
-)
-from eventpound.scene.support import Support
-
-__all__ = [
-    "BARRIER",
-    "GROUND",
-    "Backfill",
-    "BilinearElastic",
-    "Body",
-    "BoucWen",
-    "Contact",
-    "ContactLaw",
-    "Dashpot",
-    "DegradingBoucWen",
-    "Force",
-    "Linear",
-    "Point",
-    "Scene",
-    "Series",
-    "Slider",
-    "Spring",
-    "Support",
-]
+from eventpound.scene.body import Body as Body
+from eventpound.scene.contact import BARRIER as BARRIER
+from eventpound.scene.contact import Contact as Contact
+from eventpound.scene.contact_law import ContactLaw as ContactLaw
+from eventpound.scene.dashpot import Dashpot as Dashpot
+from eventpound.scene.force import Force as Force
+from eventpound.scene.point import Point as Point
+from eventpound.scene.scene import Scene as Scene
+from eventpound.scene.spring import GROUND as GROUND
+from eventpound.scene.spring import Backfill as Backfill
+from eventpound.scene.spring import BilinearElastic as BilinearElastic
+from eventpound.scene.spring import BoucWen as BoucWen
+from eventpound.scene.spring import DegradingBoucWen as DegradingBoucWen
+from eventpound.scene.spring import Linear as Linear
+from eventpound.scene.spring import Series as Series
+from eventpound.scene.spring import Slider as Slider
+from eventpound.scene.spring import Spring as Spring
+from eventpound.scene.support import Support as Support

@@ -6,35 +6,20 @@ in it (`dialects.py`, `archives.py`). `registry.READERS` lists them; other packa
 by the entry points ``eventpound.readers`` (page "your-format" of the docs).
 """
 
-from eventpound.motion.readers.base import (
-    Channel,
-    Given,
-    Reader,
-    RecordData,
-    Source,
-    UnstatedError,
-)
-from eventpound.motion.readers.header import Header, record_data
-from eventpound.motion.readers.labelled import Dialect, of_length, until_like, while_like
-from eventpound.motion.readers.reading import components_of, read_components, read_record
-from eventpound.motion.readers.registry import READERS, format_names
-
-__all__ = [
-    "READERS",
-    "Channel",
-    "Dialect",
-    "Given",
-    "Header",
-    "Reader",
-    "RecordData",
-    "Source",
-    "UnstatedError",
-    "components_of",
-    "format_names",
-    "of_length",
-    "read_components",
-    "read_record",
-    "record_data",
-    "until_like",
-    "while_like",
-]
+from eventpound.motion.readers.base import Channel as Channel
+from eventpound.motion.readers.base import Given as Given
+from eventpound.motion.readers.base import Reader as Reader
+from eventpound.motion.readers.base import RecordData as RecordData
+from eventpound.motion.readers.base import Source as Source
+from eventpound.motion.readers.base import UnstatedError as UnstatedError
+from eventpound.motion.readers.header import Header as Header
+from eventpound.motion.readers.header import record_data as record_data
+from eventpound.motion.readers.labelled import Dialect as Dialect
+from eventpound.motion.readers.labelled import of_length as of_length
+from eventpound.motion.readers.labelled import until_like as until_like
+from eventpound.motion.readers.labelled import while_like as while_like
+from eventpound.motion.readers.reading import components_of as components_of
+from eventpound.motion.readers.reading import read_components as read_components
+from eventpound.motion.readers.reading import read_record as read_record
+from eventpound.motion.readers.registry import READERS as READERS
+from eventpound.motion.readers.registry import format_names as format_names
