@@ -128,17 +128,19 @@ def z_rate(
     The sign σ is that of `direction`: x' itself, or what it was before a reversal. `beside` is the
     variable of `number_beside`. In Python x', σ and the variables may be arrays.
     """
-    same_sign = (direction > 0.0) == (z > 0.0)
-    kappa = memory[a, BETA] + memory[a, GAMMA] * (2.0 * same_sign - 1.0)
-    if memory[a, KIND] == DEGRADING:
-        kappa = kappa * (1.0 + memory[a, DELTA_NU] * beside)
-    slope = 1.0 - kappa * abs(z) ** memory[a, EXPONENT]
     if memory[a, KIND] == YIELDING_SOIL:
         slope = (1.0 + z) * (1.0 + z)
-    elif memory[a, KIND] == DEGRADING:
-        slope = slope / (1.0 + memory[a, DELTA_ETA] * beside)
     elif memory[a, KIND] == ITS_ENERGY:
         slope = beside
+    else:
+        same_sign = (direction > 0.0) == (z > 0.0)
+        kappa = memory[a, BETA] + memory[a, GAMMA] * (2.0 * same_sign - 1.0)
+        power = abs(z) ** memory[a, EXPONENT]
+        if memory[a, KIND] == DEGRADING:
+            worn = 1.0 + memory[a, DELTA_NU] * beside
+            slope = (1.0 - kappa * worn * power) / (1.0 + memory[a, DELTA_ETA] * beside)
+        else:
+            slope = 1.0 - kappa * power
     rate: float = x_rate / memory[a, YIELD] * slope
     return rate
 
