@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -75,7 +75,8 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
         said = _of_loop(axes, law)
     elif isinstance(law, Hysteretic):
         x, force = map(np.array, law.drawn())
-        said = ", ".join(f"{key} = {value:.4g}" for key, value in law.numbers.items()) + " (SI)"
+        words = [f"{_SAID[key][0]} = {_SAID[key][1](x)}" for key, x in law.numbers.items()]
+        said = "\n".join(", ".join(words[i : i + 2]) for i in range(0, len(words), 2))
     else:
         whole = reduced(law)
         x = whole.offset + np.array([-1.0, 0.0, 1.0]) * max(1.0, 2.0 * abs(whole.offset))
@@ -109,11 +110,9 @@ def _of_loop(axes: Axes, law: BoucWen) -> str:
     ):
         say(axes, text, place, away, fontsize=8.0)
     axes.margins(y=0.14)
-    force, length = force_unit(law.strength), length_unit(law.yield_displacement)
     return (
         f"$K_0$ = {_stiffness(first)}, $K_s$ = {_stiffness(law.stiffness)}\n"
-        f"$Q$ = {law.strength / force.size:.4g} {force.name}, "
-        f"$u_y$ = {law.yield_displacement / length.size:.4g} {length.name}"
+        f"$Q$ = {_force(law.strength)}, $u_y$ = {_length(law.yield_displacement)}"
     )
 
 
@@ -138,3 +137,28 @@ def _stiffness(k: float) -> str:
         if k >= size:
             return f"{k / size:.4g} {unit}"
     return f"{k:.4g} N/m"
+
+
+def _force(force: float) -> str:
+    unit = force_unit(force)
+    return f"{force / unit.size:.4g} {unit.name}"
+
+
+def _length(length: float) -> str:
+    unit = length_unit(length)
+    return f"{length / unit.size:.4g} {unit.name}"
+
+
+_SAID: dict[str, tuple[str, Callable[[float], str]]] = {
+    "K0": ("$K_0$", _stiffness),
+    "K_s": ("$K_s$", _stiffness),
+    "Q": ("$Q$", _force),
+    "friction": (r"$\mu$", "{:.4g}".format),
+    "N": ("$N$", _force),
+    "T_slip": ("$T$", "{:.4g} s".format),
+    "F_ult": ("$F_{ult}$", _force),
+    "R_f": ("$R_f$", "{:.4g}".format),
+    "gap": ("gap", _length),
+    "y_ult": ("$y_{ult}$", _length),
+}
+"""Numbers of laws: their signs, and how they are said."""

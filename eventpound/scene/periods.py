@@ -1,7 +1,7 @@
 """Periods of a scene without damping and contacts, before its springs yield and after.
 
-A hysteretic spring counts with its initial or its post-yield stiffness, one with a kink
-with the smaller of its stiffnesses that are not zero.
+A hysteretic spring counts with its initial or its post-yield stiffness, a slider with that of its
+slip, one with a kink with the smaller of its stiffnesses that are not zero.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
 from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, Linear, Series, Spring
+from eventpound.scene.spring import GROUND, BilinearElastic, Linear, Series, Slider, Spring
 from eventpound.scene.structures import joined_groups
 
 # Squared frequencies this far below the largest are rigid motions: rounding
@@ -162,6 +162,8 @@ def nominal_stiffness(spring: Spring, yielded: bool = False) -> float:
         return 1.0 / sum(1.0 / k for k in stiffnesses) if all(stiffnesses) else 0.0
     if isinstance(law, BilinearElastic):
         return _part_stiffness(law)
+    if isinstance(law, Slider):
+        return law.stiffness
     return (post_yield_stiffness if yielded else initial_stiffness)(law) or 0.0
 
 

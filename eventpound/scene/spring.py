@@ -25,7 +25,7 @@ from eventpound.given import (
     number,
     read_fields,
 )
-from eventpound.units import Dimension
+from eventpound.units import STANDARD_GRAVITY, Dimension
 
 GROUND = "ground"
 DRAWN = 40
@@ -438,16 +438,20 @@ class Backfill(Hysteretic):
         """What a table of a case shows of it (SI)."""
         found = {"K0": self.initial_stiffness, "F_ult": self.ultimate_force}
         found |= {"R_f": self.failure_ratio, "gap": self.gap}
-        if self.failure_ratio < 1.0:  # Else it only tends to F_ult.
-            elastic = self.ultimate_force / self.initial_stiffness
-            found["y_ult"] = elastic / (1.0 - self.failure_ratio)
-        return found
+        return found | ({"y_ult": self.ultimate_depth} if self.failure_ratio < 1.0 else {})
+
+    @property
+    def ultimate_depth(self) -> float:
+        """Depth at which the ultimate force is reached (m), infinite where R_f is 1."""
+        rest = 1.0 - self.failure_ratio
+        return self.ultimate_force / self.initial_stiffness / rest if rest else math.inf
 
     def drawn(self) -> tuple[list[float], list[float]]:
-        """Elongations (m) and forces (N) from rest by u_y into the soil and back."""
-        depths = [self.yield_displacement * k / DRAWN for k in range(DRAWN + 1)]
+        """Elongations (m) and forces (N) from rest into the soil and back."""
+        end = min(self.ultimate_depth, 10.0 * self.yield_displacement)
+        depths = [end * k / DRAWN for k in range(DRAWN + 1)]
         force = [-self.push(y) for y in depths]
-        freed = self.offset - depths[-1] - force[-1] / self.initial_stiffness
+        freed = self.offset - end - force[-1] / self.initial_stiffness
         x = [0.0, *(self.offset - y for y in depths), freed, 0.0]
         return x, [0.0, *force, 0.0, 0.0]
 
@@ -534,8 +538,12 @@ class Slider(Hysteretic):
     @property
     def numbers(self) -> dict[str, float]:
         """What a table of a case shows of it (SI)."""
-        friction = {"friction": self.friction, "N": self.normal_force}
-        return {"K_s": self.stiffness, "Q": self.strength} | friction
+        found = {"K_s": self.stiffness, "Q": self.strength}
+        found |= {"friction": self.friction, "N": self.normal_force}
+        if self.stiffness > 0.0:
+            length = self.normal_force / self.stiffness
+            found["T_slip"] = 2.0 * math.pi * math.sqrt(length / STANDARD_GRAVITY)
+        return found
 
     def z_at(self, elongation: float) -> float:
         """The z of a start: its sign is on the branches of the law."""

@@ -20,10 +20,13 @@ from eventpound.scene import (
     Dashpot,
     Linear,
     Scene,
+    Slider,
     Spring,
 )
 from eventpound.scene.modes import modes_of, stiffness_proportional
+from eventpound.scene.periods import longest_period
 from eventpound.scene.structures import isolated, mass_on, structures_of
+from eventpound.units import STANDARD_GRAVITY
 
 RNG = np.random.default_rng(11)
 COUNT = 5
@@ -60,6 +63,17 @@ def test_modes_are_those_of_scipy(yielded: bool) -> None:
     assert found.share.sum() == pytest.approx(1.0, rel=1e-13)
     for shape, vector in zip(found.shape.T, vectors.T, strict=True):
         assert shape == pytest.approx(vector / vector[np.argmax(np.abs(vector))], abs=1e-10)
+
+
+def test_a_deck_on_friction_pendulums_has_the_period_of_their_radius() -> None:
+    laws = [Slider.pendulum(0.05, weight, 2.0) for weight in (3e6, 7e6)]
+    ends = (GROUND, "deck")
+    springs = tuple(Spring(f"b{i}", ends, law) for i, law in enumerate(laws))
+    scene = Scene((Body("deck", 1e7 / STANDARD_GRAVITY),), springs)
+    slipping = 2.0 * np.pi * np.sqrt(2.0 / STANDARD_GRAVITY)
+    assert modes_of(scene, ["deck"]).period == pytest.approx(slipping, rel=1e-14)
+    assert longest_period(scene) == pytest.approx(slipping, rel=1e-14)
+    assert [law.numbers["T_slip"] for law in laws] == pytest.approx([slipping] * 2, rel=1e-14)
 
 
 def test_rayleigh_damping_of_modes_is_the_ratio_there() -> None:
