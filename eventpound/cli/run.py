@@ -36,6 +36,10 @@ _DEMANDS = {
     "contacts.<>.seat_used": ("seat", "m"),
     "contacts.<>.max_impulse": ("impulse", "N s"),
     "springs.<>.ductility": ("ductility", ""),
+    "springs.<>.stiffness_left": ("stiffness left", ""),
+    "springs.<>.slip_path": ("slip path", "m"),
+    "springs.<>.passive_force": ("passive force", "N"),
+    "springs.<>.residual_gap": ("residual gap", "m"),
 }
 """Quantities of contacts and springs that are printed: words and units (SI)."""
 _MOST_DEMANDS = 12

@@ -51,6 +51,11 @@ LISTED: tuple[Quantity, ...] = (
       for name, text in (
           ("strength_left", "Strength after the run over that of a new degrading Bouc-Wen spring."),
           ("stiffness_left", "Stiffness at z = 0 after the run over that of a new one."))),
+    Quantity(_SPRING + "passive_force", "peak passive force", D.FORCE,
+             "Largest force of the soil of a backfill.", v.passive_force, only=v.is_backfill),
+    Quantity(_SPRING + "passive_depth", "depth pushed in", D.LENGTH,
+             "How far the soil of a backfill was pushed in beyond its gap.", v.passive_depth,
+             only=v.is_backfill),
     Quantity(_SPRING + "residual_gap", "residual gap", D.LENGTH,
              "Compression at which the soil of a backfill would be touched again after the run.",
              v.by_law("residual_gap"), TakenFrom.LAWS, v.told_by_law("residual_gap")),

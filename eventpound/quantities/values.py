@@ -16,7 +16,7 @@ from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.scene.scene import Scene
 from eventpound.scene.separation import absolute_sum, correlation, cqc, srss
-from eventpound.scene.spring import GROUND, BoucWen, Hysteretic, Slider
+from eventpound.scene.spring import GROUND, Backfill, BoucWen, Hysteretic, Slider
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes
 
@@ -34,6 +34,11 @@ def is_bouc_wen(scene: Scene, i: int) -> bool:
 def is_slider(scene: Scene, i: int) -> bool:
     """Whether spring i is a slider."""
     return isinstance(scene.springs[i].law, Slider)
+
+
+def is_backfill(scene: Scene, i: int) -> bool:
+    """Whether spring i is soil behind a wall."""
+    return isinstance(scene.springs[i].law, Backfill)
 
 
 def is_plain_bouc_wen(scene: Scene, i: int) -> bool:
@@ -133,6 +138,19 @@ def _law_of(many: Runs, i: int, n: int) -> Any:
         if (key := f"spring.{spring.name}.{field}") in many.parameters
     }
     return replace(law, **changed)
+
+
+def passive_depth(many: Runs, i: int) -> Floats:
+    """How far the soil of a backfill was pushed in (m)."""
+    laws = (_law_of(many, i, n) for n in range(len(many.t)))
+    return np.maximum([law.offset for law in laws] - many.elongation.minimum[:, i], 0.0)
+
+
+def passive_force(many: Runs, i: int) -> Floats:
+    """Largest force of the soil of a backfill (N), that at its least elongation."""
+    least = many.elongation.minimum[:, i].tolist()
+    laws = ((_law_of(many, i, n), x) for n, x in enumerate(least))
+    return np.array([max(-law.strength * law.z_at(x), 0.0) for law, x in laws])
 
 
 def slip_path(many: Runs, i: int) -> Floats:

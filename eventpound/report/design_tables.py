@@ -12,7 +12,7 @@ from eventpound.results.cells import Cells, headed
 from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact, weights_of
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Hysteretic
+from eventpound.scene.spring import Hysteretic, Slider
 from eventpound.study.design import FRACTILES
 from eventpound.study.records import FAILED
 from eventpound.units import Dimension
@@ -29,7 +29,10 @@ _OTHERS = {"spring": "Springs", "body": "Bodies", "": "Whole"}
 _CONTACT, _SPRING = "contacts.<contact>.", "springs.<spring>."
 NEEDED = _CONTACT + "avoiding_gap_alone"
 """The separation that a contact needs."""
-_NO_OTHERS, _RESIDUAL = _CONTACT + "avoiding_gap", _SPRING + "residual_elongation"
+_NO_OTHERS = _CONTACT + "avoiding_gap"
+_PEAK, _RESIDUAL = _SPRING + "abs_max_elongation", _SPRING + "residual_elongation"
+_OWN: dict[str, type] = {_PEAK: Slider, _RESIDUAL: Hysteretic}
+"""Laws of which a demand is told: others have ductility, drift, or none that stays."""
 _OF_CONTACTS = (
     *(NEEDED, _NO_OTHERS),
     *(_CONTACT + word for word in ("absolute_sum", "srss", "cqc", "seat_used")),
@@ -37,7 +40,10 @@ _OF_CONTACTS = (
     *(_CONTACT + word for word in ("estimated_force", "max_force")),
 )
 _OF_OTHERS = (
-    *(_SPRING + "ductility", _RESIDUAL, _SPRING + "drift_ratio", "max_drift"),
+    *(_SPRING + "ductility", _PEAK, _RESIDUAL, _SPRING + "slip_path"),
+    *(_SPRING + word for word in ("passive_force", "passive_depth", "residual_gap")),
+    *(_SPRING + word for word in ("strength_left", "stiffness_left", "drift_ratio")),
+    "max_drift",
     *("acceleration.<body>.abs_max", "peaks.<body>.abs_max", "base_shear.abs_max"),
 )
 """Demands that stand in a report."""
@@ -158,10 +164,10 @@ def _of_others(scene: Scene, rows: Mapping[str, _Row]) -> list[tuple[_Row, ...]]
     groups: dict[str, list[_Row]] = {path: [] for path in _OF_OTHERS}
     for name, row in rows.items():
         named = _found(scene, name)
-        # An elastic spring has no residual of its own.
-        own = named.quantity.path != _RESIDUAL or isinstance(scene.springs[named.i].law, Hysteretic)
-        if own and named.quantity.path in groups:
-            groups[named.quantity.path].append(row)
+        path = named.quantity.path
+        own = path not in _OWN or isinstance(scene.springs[named.i].law, _OWN[path])
+        if own and path in groups:
+            groups[path].append(row)
     return [tuple(sorted(group, key=_size, reverse=True)) for group in groups.values() if group]
 
 

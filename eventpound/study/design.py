@@ -20,10 +20,12 @@ from eventpound.case.case import Case, Stated
 from eventpound.case.loading import CASE_FILE
 from eventpound.errors import ComputationError, InputError
 from eventpound.given import Count, checked
+from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.lookup import Named, all_of, unstated
 from eventpound.quantities.owners import owners
 from eventpound.response import Response
 from eventpound.scene.scene import Scene
+from eventpound.scene.spring import Backfill
 from eventpound.simulation import simulate
 from eventpound.study.engines.local import engine_of
 from eventpound.study.plan import RECORD, Plan
@@ -43,12 +45,16 @@ FRACTILES = (50.0, 84.0)
 _CONTACT, _SPRING = "contacts.<contact>.", "springs.<spring>."
 _IMPACTS, _FORCE = _CONTACT + "impacts", _CONTACT + "max_force"
 _FASTER = _CONTACT + "impacts_faster"
+_ELONGATIONS = _SPRING + "abs_max_elongation", _SPRING + "residual_elongation"
+_ENERGY = _SPRING + "dissipated_energy"
 DEMANDS = (
     *(_CONTACT + word for word in ("avoiding_gap_alone", "avoiding_gap", "absolute_sum", "srss")),
     *(_CONTACT + word for word in ("cqc", "largest_gap", "seat_used", "impacts")),
     *(_FASTER, _CONTACT + "fastest_closing", _CONTACT + "max_impulse"),
     *(_CONTACT + "estimated_force", _FORCE, _CONTACT + "largest_overlap"),
-    *(_SPRING + word for word in ("ductility", "abs_max_elongation", "residual_elongation")),
+    *(_SPRING + "ductility", *_ELONGATIONS, _SPRING + "slip_path"),
+    *(_SPRING + word for word in ("passive_force", "passive_depth", "residual_gap")),
+    *(_ENERGY, _SPRING + "strength_left", _SPRING + "stiffness_left"),
     *(_SPRING + "drift_ratio", "max_drift", "max_drift_ratio", "base_shear.abs_max"),
     *("peaks.<body>.abs_max", "residual.<body>", "acceleration.<body>.abs_max"),
 )
@@ -61,8 +67,7 @@ def demands_of(scene: Scene, stated: Stated) -> list[Named]:
         named
         for named in all_of(scene)
         if named.quantity.path in DEMANDS and not unstated(named.name, stated)
-        # Without a law of its own a contact has a force at rest only.
-        if named.quantity.path != _FORCE or scene.contacts[named.i].law is not None
+        if _says_something(scene, named)
     ]
     kinds = list(dict.fromkeys(path.partition(".")[0] for path in DEMANDS))
 
@@ -73,6 +78,19 @@ def demands_of(scene: Scene, stated: Stated) -> list[Named]:
         return kind, named.i, DEMANDS.index(path)
 
     return sorted(found, key=place)
+
+
+def _says_something(scene: Scene, named: Named) -> bool:
+    """Whether a number is one of design, of its owner."""
+    path = named.quantity.path
+    if path == _FORCE:
+        # Without a law of its own a contact has a force at rest only.
+        return scene.contacts[named.i].law is not None
+    if path == _ENERGY:
+        # Of others it takes further runs.
+        return named.quantity.source is TakenFrom.LAWS
+    # Soil is away from its wall at the end: of it depth and residual gap are told.
+    return path not in _ELONGATIONS or not isinstance(scene.springs[named.i].law, Backfill)
 
 
 def asking(case: Case) -> Case:

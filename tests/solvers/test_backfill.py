@@ -84,6 +84,10 @@ def test_motion_is_that_of_soil_which_remembers_its_deepest_point(
         assert response.quantity(f"{name}.dissipated_energy") == pytest.approx(lost, rel=1e-7)
         gap = response.quantity(f"{name}.residual_gap")
         assert gap == pytest.approx(soil.law.gap + soil.left, rel=1e-8)
+        depth = response.quantity(f"{name}.passive_depth")
+        assert depth == pytest.approx(soil.deepest, rel=1e-8)
+        force = response.quantity(f"{name}.passive_force")
+        assert force == pytest.approx(soil.backbone(soil.deepest), rel=1e-8)
     assert found.energy is not None
     begun = sum(
         lost_and_stored(replace(soil, deepest=depth), np.zeros(1))[0] + soil.backbone(depth) ** 2

@@ -11,10 +11,21 @@ import pytest
 from eventpound import InputError, Study, design_numbers, load_case, simulate, simulate_many
 from eventpound.case.member import member_case
 from eventpound.cli import main
-from eventpound.motion import Record
+from eventpound.motion import Record, Ricker
 from eventpound.quantities.lookup import find
 from eventpound.results.trade import Trade, three_digits
-from eventpound.scene import GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
+from eventpound.scene import (
+    GROUND,
+    Backfill,
+    Body,
+    Contact,
+    Dashpot,
+    DegradingBoucWen,
+    Linear,
+    Scene,
+    Slider,
+    Spring,
+)
 from eventpound.study.design import DEMANDS
 from tests.quantities.test_separation import row
 from tests.study.test_suite import CASE, time_series
@@ -77,6 +88,27 @@ def test_a_run_has_a_value_of_each_demand(suite: Path) -> None:
     values = [abs(response.quantity(name) or 0.0) for name in table["quantity"]]
     assert table["value"].tolist() == pytest.approx(values, rel=1e-12)
     assert JOINT + "estimated_force" in set(table["quantity"])
+
+
+def test_bearings_and_soil_have_what_they_are_designed_for() -> None:
+    ends = (GROUND, "deck")
+    springs = (
+        Spring("bearing", ends, Slider.pendulum(0.05, 1e6, 2.0)),
+        Spring("soil", ends, Backfill.of_wall(1.0, 1.0, 0.02)),
+        Spring("pier", ends, DegradingBoucWen(0.0, 1e4, 0.01, stiffness_degradation=0.1)),
+    )
+    scene = Scene((Body("deck", 1e5),), springs, motion=Ricker(3.0, 1.0))
+    table = by_name(design_numbers(scene))
+    named = {key.removeprefix("springs.") for key in table.index if key.startswith("springs.")}
+    elongations = "abs_max_elongation", "residual_elongation", "dissipated_energy"
+    soil = "passive_force", "passive_depth", "residual_gap", "dissipated_energy"
+    assert named == {
+        *(f"bearing.{word}" for word in (*elongations, "slip_path")),
+        *(f"soil.{word}" for word in soil),
+        *(f"pier.{word}" for word in (*elongations, "ductility")),
+        *("pier.strength_left", "pier.stiffness_left"),
+    }
+    assert (table.loc[[f"springs.{name}" for name in named], "value"] > 0.0).all()
 
 
 def test_a_scene_of_two_bodies_has_what_codes_combine() -> None:
