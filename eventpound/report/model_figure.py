@@ -19,7 +19,7 @@ from matplotlib.patches import Rectangle
 
 from eventpound.numerics.arrays import Floats
 from eventpound.report.law_panel import draw_law, laws_of
-from eventpound.report.model_layout import HIGH, LEVEL, WIDE, Box, Layout, kinked, layout_of
+from eventpound.report.model_layout import HIGH, LEVEL, WIDE, Box, Layout, layout_of
 from eventpound.report.model_links import WALL, LinkPath, routes_of
 from eventpound.report.style import PALETTE, arrow, literal, new_figure, say, styled
 from eventpound.results.trade import Trade
@@ -29,7 +29,7 @@ from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
 from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Hysteretic, Spring
+from eventpound.scene.spring import GROUND, LawName, Slider, Spring
 from eventpound.units import Dimension
 
 _MARGIN = WALL + 0.85
@@ -39,7 +39,19 @@ _UP = 0.24
 _TEETH, _SWAY = 5, 0.13
 _INK = "#333333"
 _KINKED = "bilinear-elastic or series"
-_LAWS = {"linear": _INK, "bouc-wen": PALETTE[0], _KINKED: PALETTE[1]}
+_SLIDER, _BACKFILL = LawName.SLIDER.value, LawName.BACKFILL.value
+_LAWS = {
+    "linear": _INK,
+    "bouc-wen": PALETTE[0],
+    _KINKED: PALETTE[1],
+    _SLIDER: PALETTE[3],
+    _BACKFILL: PALETTE[4],
+}
+_CALLED = {
+    **dict.fromkeys((LawName.BILINEAR_ELASTIC, LawName.SERIES), _KINKED),
+    LawName.DEGRADING_BOUC_WEN: "bouc-wen",
+}
+"""Laws that are drawn as others."""
 _MOST_NAMES = 40
 """Springs and contacts of a scene in which each is named."""
 
@@ -221,7 +233,9 @@ def _link(axes: Axes, route: LinkPath, names: _Names) -> None:
     color = _color(route.link)
     for part in (corners[:middle], corners[middle:]):
         axes.plot(*part.T, color=color, linewidth=1.2, zorder=2)
-    if isinstance(route.link, Spring):
+    if isinstance(route.link, Spring) and isinstance(route.link.law, Slider):
+        _bearing(axes, a, b, route.upright)
+    elif isinstance(route.link, Spring):
         axes.plot(*_zigzag(a, b).T, color=color, linewidth=1.2, solid_joinstyle="miter", zorder=2)
     else:
         _dashpot(axes, a, b)
@@ -242,9 +256,7 @@ def _color(link: Spring | Dashpot) -> str:
     """By the law of a spring."""
     if isinstance(link, Dashpot):
         return "#777777"
-    return _LAWS[
-        "bouc-wen" if isinstance(link.law, Hysteretic) else _KINKED if kinked(link) else "linear"
-    ]
+    return _LAWS[_CALLED.get(link.law.word, link.law.word)]
 
 
 def _zigzag(a: Floats, b: Floats) -> Floats:
@@ -255,6 +267,17 @@ def _zigzag(a: Floats, b: Floats) -> Floats:
     sway = np.zeros(part.size)
     sway[2:-2] = _SWAY * np.where(np.arange(part.size - 4) % 2 == 0, 1.0, -1.0)
     return np.asarray(a + np.outer(part, along) + np.outer(sway, across))
+
+
+def _bearing(axes: Axes, a: Floats, b: Floats, upright: bool) -> None:
+    """A plate that slides on a longer one, level wherever the bearing stands."""
+    apart = np.array([0.0, -0.05 if a[1] > b[1] else 0.05])
+    for end, half, side in ((a, _SWAY, -1.0), (b, 0.5 * _SWAY, 1.0)):
+        plate = 0.5 * (a + b) + side * apart + np.outer([-half, 0.0, half], [1.0, 0.0])
+        near = 1 if upright else 2 * int(end[0] > plate[1, 0])
+        look: Any = {"color": _LAWS[_SLIDER], "zorder": 2}
+        axes.plot(*np.array([end, plate[near]]).T, linewidth=1.2, **look)
+        axes.plot(*plate.T, linewidth=2.2, **look)
 
 
 def _dashpot(axes: Axes, a: Floats, b: Floats) -> None:

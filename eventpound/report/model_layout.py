@@ -18,7 +18,7 @@ from itertools import pairwise
 from eventpound.report.towers import storey_heights
 from eventpound.scene.contact import weights_of
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, Series, Spring
+from eventpound.scene.spring import GROUND, Backfill, BilinearElastic, Series, Spring
 from eventpound.scene.structures import joined_groups
 
 WIDE, HIGH = 1.7, 0.8
@@ -86,8 +86,9 @@ class Layout:
 
 
 def kinked(member: object) -> bool:
-    """Whether it is a spring with a kink: to the ground it stands beside its body."""
-    return isinstance(member, Spring) and isinstance(member.law, BilinearElastic | Series)
+    """Whether it is a spring with a kink, or soil: to the ground it stands beside its body."""
+    law = member.law if isinstance(member, Spring) else None
+    return isinstance(law, BilinearElastic | Series | Backfill)
 
 
 def layout_of(scene: Scene) -> Layout:

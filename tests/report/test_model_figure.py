@@ -20,6 +20,7 @@ from eventpound.report.style import PALETTE
 from eventpound.scene import (
     BARRIER,
     GROUND,
+    Backfill,
     BilinearElastic,
     Body,
     BoucWen,
@@ -29,6 +30,7 @@ from eventpound.scene import (
     Point,
     Scene,
     Series,
+    Slider,
     Spring,
 )
 
@@ -214,6 +216,8 @@ def everything() -> Scene:
             Spring("pier", (GROUND, "deck $1"), BoucWen(1.0, 1.0, 1.0)),
             Spring("bearing", ("deck $1", "deck2"), Linear(1.0)),
             Spring("abutment", ("deck2", GROUND), Series((Linear(1.0), stop))),
+            Spring("soil", (GROUND, "deck $1"), Backfill(1.0, 1.0, 0.7)),
+            Spring("slides", (GROUND, "deck2"), Slider(0.1, 1.0)),
         ),
         (Dashpot((GROUND, "deck $1"), 1.0), Dashpot(("deck2", "deck $1"), 1.0)),
         (
@@ -235,11 +239,15 @@ def test_everything_is_drawn_once_and_named() -> None:
     texts = "|".join(text.get_text() for text in axes.texts)
     for said in ("deck \\$1\n2 t", "deck2\n1 kg", "pier", "bearing", "abutment", "joint\n12.7 mm"):
         assert texts.count(said) == 1, said
-    # A spring is a line of many corners, in the colour of its law.
+    assert texts.count("soil") == texts.count("slides") == 1
+    # A spring is a line of many corners, in the colour of its law; a slider has two level plates.
     springs = [line for line in axes.lines if len(line.get_xdata()) > 10]
-    assert sorted(to_hex(line.get_color()) for line in springs) == sorted(
-        to_hex(color) for color in _LAWS.values()
-    )
+    own = {name: to_hex(color) for name, color in _LAWS.items()}
+    sliding = own.pop("slider")
+    assert sorted(to_hex(line.get_color()) for line in springs) == sorted(own.values())
+    slides = [line for line in axes.lines if to_hex(line.get_color()) == sliding]
+    assert sum(np.ptp(line.get_ydata()) == 0.0 < np.ptp(line.get_xdata()) for line in slides) == 2
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [*_LAWS]
     assert len(axes.patches) == 2
 
 
@@ -255,6 +263,14 @@ def test_bodies_do_not_overlap_and_stand_within_the_picture(name: str) -> None:
             assert apart
     assert (boxes[:, :2] > 0.0).all()
     assert (boxes[:, 2] < figure.bbox.width).all()
+
+
+def test_soil_stands_beside_its_body_at_a_wall() -> None:
+    scene = everything()
+    layout = layout_of(scene)
+    (route,) = (r for r in routes_of(scene, layout) if r.label == "soil")
+    assert not route.upright
+    assert [x < layout.boxes["deck $1"].left for x, _ in route.corners] == [True, False]
 
 
 def test_laws_that_differ_are_drawn_below_the_scene() -> None:
