@@ -128,6 +128,16 @@ def test_a_run_of_kept_kernels_imports_no_compiler_and_no_tables(
     assert not heavy & modules_after(*words)
 
 
+def test_figures_of_a_run_need_no_tables(tmp_path: Path) -> None:
+    main(["new", str(tmp_path)])
+    words = ["run", str(tmp_path), "--solver", "fast"]
+    main(words)
+    for again in (words, ["plot", str(tmp_path)]):
+        modules = modules_after(*again)
+        assert "matplotlib" in modules
+        assert not {"pandas", "scipy.linalg"} & modules
+
+
 def test_commands_stand_by_their_tasks(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--help"])

@@ -36,7 +36,7 @@ def draw_circles(
     color : Color
         Of the circles; they are smaller, the more events there are.
     """
-    events = len(view.results.events)
+    events = len(view.results.event_columns["t"])
     size = 5.5 if events <= 40 else 4.0 if events <= 200 else 2.6
     impacts, openings = view.impact_times(contact), view.opening_times(contact)
     for times, fill, order in ((impacts, "white", 4), (openings, color, 5)):

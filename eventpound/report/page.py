@@ -102,15 +102,15 @@ def _motion(case: Case) -> Iterator[html.Part]:
 
 
 def _events(results: StoredResults) -> Iterator[html.Part]:
-    events = results.events
+    events = results.event_columns
     if not results.summary["contacts"]:
         return
-    names = tuple(map(str, events.columns))
-    shown = events.head(_MOST_EVENTS).itertuples(index=False)
+    names, listed = tuple(events), len(events["t"])
+    shown = zip(*(cells[:_MOST_EVENTS] for cells in events.values()), strict=True)
     rows = tuple(tuple(map(text_of, row)) for row in shown)
     words = tuple(name in ("kind", "contact") for name in names)
-    table = Cells(names, rows, words, max(0, len(events) - _MOST_EVENTS))
-    yield html.folded(f"{len(events)} events", html.table_of(table))
+    table = Cells(names, rows, words, max(0, listed - _MOST_EVENTS))
+    yield html.folded(f"{listed} events", html.table_of(table))
 
 
 def _quantities(summary: Mapping[str, Any]) -> Iterator[html.Part]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import compress
 from typing import Any
 
 import numpy as np
@@ -79,13 +80,19 @@ class View:
         if xlim is None:
             return self
         low, high = xlim
-        tables = self.results.history, self.results.events
-        rows, events = (table[table["t"].between(low, high)] for table in tables)
-        if len(rows) < 2:
+        rows, events = self.results.history_columns, self.results.event_columns
+        inside = (low <= rows["t"]) & (rows["t"] <= high)
+        if np.count_nonzero(inside) < 2:
             raise InputError(
                 f"xlim: found {low:g} to {high:g} s, in which there are no rows to draw"
             )
-        return replace(self, results=replace(self.results, history=rows, events=events))
+        shown = [low <= t <= high for t in events["t"]]
+        results = replace(
+            self.results,
+            history_columns={name: values[inside] for name, values in rows.items()},
+            event_columns={name: list(compress(cells, shown)) for name, cells in events.items()},
+        )
+        return replace(self, results=results)
 
     @property
     def time_unit(self) -> Unit:
@@ -155,7 +162,7 @@ class View:
 
     def column(self, name: str) -> Floats:
         """A column of the history, shape (n,)."""
-        return np.asarray(self.results.history[name], dtype=np.float64)
+        return self.results.history_columns[name]
 
     def displacement(self, end: End) -> Floats:
         """Displacement of a body, a point or a support, zero of ground and barriers (m), (n,)."""
@@ -167,7 +174,7 @@ class View:
             parts = [w * self._of_end(name, of_body, of_support) for name, w in end.weights]
             return np.sum(parts, axis=0)
         if end in (GROUND, BARRIER):
-            return np.zeros(len(self.results.history))
+            return np.zeros(self.t.size)
         return self.column(f"{of_support if end in self.supports else of_body}.{end}")
 
     @property
@@ -182,7 +189,7 @@ class View:
 
     def loop(self, spring: DrawnSpring) -> tuple[Floats, Floats]:
         """Elongation (m) and force (N) of a spring, between rows too where the scene is known."""
-        x, columns = self.elongation(spring), set(self.results.history.columns)
+        x, columns = self.elongation(spring), set(self.results.history_columns)
         moving = [end for end in spring.between if end != GROUND]
         wanted = {f"sv.{end}" if end in self.supports else f"v.{end}" for end in moving}
         memory = [] if self.scene is None else self.scene.memory
@@ -209,9 +216,10 @@ class View:
         return stretches(t, lasting)
 
     def _event_times(self, contact: str, kinds: tuple[str, ...]) -> Floats:
-        events = self.results.events
-        chosen = (events["contact"] == contact) & events["kind"].isin(kinds)
-        return np.asarray(events.loc[chosen, "t"], dtype=np.float64) / self.time_unit.size
+        events = self.results.event_columns
+        each = zip(events["t"], events["contact"], events["kind"], strict=True)
+        times = [t for t, name, kind in each if name == contact and kind in kinds]
+        return np.array(times, np.float64) / self.time_unit.size
 
 
 def _contact(entry: Mapping[str, Any]) -> Contact:

@@ -1,4 +1,13 @@
-"""Results in memory: gathered from a response, or read back from a directory."""
+"""Results in memory: gathered from a response, or read back from a directory.
+
+``history.csv`` has the motion at the output times and, before and after, at events. Its columns:
+``t`` (s), ``a_g`` (m/s^2); ``u.<body>`` (m) and ``v.<body>`` (m/s) relative to the ground,
+``a.<body>`` (m/s^2) absolute; ``z.<spring>`` (-); ``force.<spring>`` (N); ``gap.<contact>`` (m);
+``lambda.<contact>`` (N); ``s.<support>``, ``sv.<support>`` (m, m/s) relative to the ground,
+``sf.<support>``, the force on it (N). ``events.csv`` has one row for every contact of every event:
+``t`` (s), ``kind``, ``group``, ``contact``, ``gap_velocity_before`` and ``gap_velocity_after``
+(m/s), ``impulse`` (N s), ``energy_lost`` (J), ``count``.
+"""
 
 from __future__ import annotations
 
@@ -9,21 +18,24 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from eventpound.case.case import Case
 from eventpound.case.loading import SUMMARY as SUMMARY
 from eventpound.errors import InputError
-from eventpound.response import Response
-from eventpound.results.events import read_events
-from eventpound.results.history import read_history
+from eventpound.numerics.arrays import Floats
+from eventpound.response import EVENT_COLUMNS, Response
 from eventpound.results.jsontext import read_json
 from eventpound.results.manifest import FORMAT, describe_run, sha256
 from eventpound.results.summary import summarise
+from eventpound.results.tables import read_columns, to_numbers
 
 if TYPE_CHECKING:
     import pandas as pd
 
 HISTORY, EVENTS, SHOCKS = "history.csv", "events.csv", "shocks.csv"
 MANIFEST = "manifest.json"
+_WORDS, _COUNTS = ("kind", "contact"), ("group", "count")
 
 
 @dataclass(frozen=True)
@@ -34,14 +46,31 @@ class StoredResults:
     ----------
     summary, manifest : dict
         Content of ``summary.json`` and ``manifest.json``.
-    history, events : DataFrame
-        Content of ``history.csv`` and ``events.csv``.
+    history_columns : mapping of str to ndarray, shape (n,)
+        Columns of ``history.csv``.
+    event_columns : mapping of str to list of str or ndarray, shape (E,)
+        Columns of ``events.csv``.
     """
 
     summary: dict[str, Any]
-    history: pd.DataFrame
-    events: pd.DataFrame
+    history_columns: Mapping[str, Floats]
+    event_columns: Mapping[str, Any]
     manifest: dict[str, Any]
+
+    # As tables only where they are asked for: figures do without what makes them.
+    @property
+    def history(self) -> pd.DataFrame:
+        """Content of ``history.csv``."""
+        import pandas as pd
+
+        return pd.DataFrame(self.history_columns)
+
+    @property
+    def events(self) -> pd.DataFrame:
+        """Content of ``events.csv``."""
+        import pandas as pd
+
+        return pd.DataFrame(self.event_columns)
 
 
 def gather(
@@ -61,8 +90,8 @@ def gather(
     """
     return StoredResults(
         summary=summarise(response, error_estimate),
-        history=response.history,
-        events=response.events,
+        history_columns=response.history_columns(),
+        event_columns=_in_columns(response.event_rows()),
         manifest=describe_run(response, case, started),
     )
 
@@ -92,10 +121,63 @@ def read(directory: str | os.PathLike[str]) -> StoredResults:
     manifest = read_manifest(folder / MANIFEST, FORMAT, (SUMMARY, HISTORY, EVENTS))
     return StoredResults(
         summary=read_json(folder / SUMMARY),
-        history=read_history(folder / HISTORY),
-        events=read_events(folder / EVENTS),
+        history_columns=read_history(folder / HISTORY),
+        event_columns=read_events(folder / EVENTS),
         manifest=manifest,
     )
+
+
+def _in_columns(rows: list[tuple[Any, ...]]) -> dict[str, Any]:
+    columns = {name: [row[i] for row in rows] for i, name in enumerate(EVENT_COLUMNS)}
+    return {name: _typed(name, cells) for name, cells in columns.items()}
+
+
+def _typed(name: str, cells: Any) -> Any:
+    """A column of events as it is kept."""
+    return cells if name in _WORDS else np.array(cells, int if name in _COUNTS else float)
+
+
+def read_history(path: Path) -> dict[str, Floats]:
+    """Columns of a motion from a CSV file, ours or another program's of the same form.
+
+    Parameters
+    ----------
+    path : Path
+        The file; it needs a column ``t`` and numbers in every cell.
+
+    Raises
+    ------
+    InputError
+        Where the file is missing or not of this form.
+    """
+    columns = read_columns(path)
+    if "t" not in columns:
+        raise InputError(f"{path}: has no column 't'; its columns begin with {list(columns)[:6]}")
+    return {name: to_numbers(path, name, cells) for name, cells in columns.items()}
+
+
+def read_events(path: Path) -> dict[str, Any]:
+    """Columns of events from a CSV file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        Where the file is missing or not of this form.
+    """
+    columns = read_columns(path)
+    if missing := [name for name in EVENT_COLUMNS if name not in columns]:
+        raise InputError(f"{path}: has no column {', '.join(missing)}")
+    return {
+        name: _typed(
+            name, columns[name] if name in _WORDS else to_numbers(path, name, columns[name])
+        )
+        for name in EVENT_COLUMNS
+    }
 
 
 def read_manifest(path: Path, form: str, files: Sequence[str]) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """Results made by hand: bodies that bounce on a barrier and on each other, in closed form."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from eventpound.response import EVENT_COLUMNS
@@ -35,7 +34,7 @@ def _events(scene, bounces):
         rows += [(t, "impact", 0, contact.name, -0.1, 0.07, 1.0, 0.0, 1) for t in times]
         rows.append((REST_FROM, "rest", 0, contact.name, 0.0, 0.0, 0.0, 0.0, 1))
         rows.append((DURATION - 1, "detachment", 0, contact.name, 0.0, 0.0, 0.0, 0.0, 1))
-    return pd.DataFrame(rows, columns=list(EVENT_COLUMNS))
+    return {name: [row[i] for row in rows] for i, name in enumerate(EVENT_COLUMNS)}
 
 
 def _history(scene, bounces, ground, scale):
@@ -50,7 +49,7 @@ def _history(scene, bounces, ground, scale):
     for contact in scene.contacts:
         columns[f"gap.{contact.name}"] = gap
         columns[f"lambda.{contact.name}"] = np.zeros(t.size)
-    return pd.DataFrame(columns)
+    return columns
 
 
 @pytest.fixture
@@ -61,8 +60,8 @@ def make_results():
         scene = _scene(bodies, contacts, hysteretic)
         return StoredResults(
             summary={"scene": describe_scene(scene), "success": True, "message": "done"},
-            history=_history(scene, bounces, ground, scale),
-            events=_events(scene, bounces),
+            history_columns=_history(scene, bounces, ground, scale),
+            event_columns=_events(scene, bounces),
             manifest={"case": {"title": "A row"}},
         )
 

@@ -147,8 +147,9 @@ def test_long_names_are_not_cut_off(make_results):
     scene = results.summary["scene"]
     name = "the expansion joint at the west abutment"
     scene["contacts"][0]["name"] = name
-    history = results.history.rename(columns={"gap.joint0": f"gap.{name}"})
-    assert_nothing_cut_off(displacement_figure(replace(results, history=history)))
+    columns = results.history_columns
+    columns = columns | {f"gap.{name}": columns["gap.joint0"]}
+    assert_nothing_cut_off(displacement_figure(replace(results, history_columns=columns)))
 
 
 def test_incomplete_run_says_so(make_results):
@@ -186,7 +187,11 @@ def test_no_loops_of_linear_springs(make_results):
 
 def test_run_that_failed_at_once(make_results):
     results = make_results(bodies=2)
-    at_start = replace(results, history=results.history[:1], events=results.events[:0])
+    at_start = replace(
+        results,
+        history_columns={name: values[:1] for name, values in results.history_columns.items()},
+        event_columns={name: [] for name in results.event_columns},
+    )
     for figure in figures(at_start).values():
         assert_nothing_cut_off(figure)
 
