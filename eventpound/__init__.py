@@ -91,12 +91,20 @@ _NAMES = {
 """Where each public name stands, from which it comes when it is first used."""
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
 __all__ = sorted(_HOME)
+_RENAMED = {"Many": "BatchResponse"}
+"""Public names of earlier states, which still work, by the names they have now."""
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used, so that importing the package costs little."""
     from importlib import import_module
 
+    if name in _RENAMED:
+        import warnings
+
+        new = _RENAMED[name]
+        warnings.warn(f"eventpound.{name} is eventpound.{new} now", DeprecationWarning, 2)
+        name = new
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

@@ -28,6 +28,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
+from eventpound.cli import former
 from eventpound.cli.arguments import EXAMPLES, Command, Commands, Options
 from eventpound.cli.output import Output
 from eventpound.cli.progress import CompilationLine
@@ -45,7 +46,6 @@ _TASKS = {
     "this installation": ("solvers",),
 }
 """Commands, one a module, by what they are for: the order of the help."""
-_OF_TWO_WORDS = ("problems pack", "problems score", "records synthetic")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -95,13 +95,12 @@ def _run(options: Options) -> int:
 
 
 class _Parser(Command):
-    """Takes a command of two words for one."""
+    """Takes a command of two words for one, and answers names of before."""
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        words = list(sys.argv[1:] if args is None else args)
-        at = next((i for i, word in enumerate(words) if not word.startswith("-")), 0)
-        if (both := " ".join(words[at : at + 2])) in _OF_TWO_WORDS:
-            words[at : at + 2] = [both]
+        words = former.joined(list(sys.argv[1:] if args is None else args))
+        if now := former.now(words):
+            self.exit(InputError.exit_code, f"eventpound: {now}\n")
         return super().parse_known_args(words, namespace)
 
 
