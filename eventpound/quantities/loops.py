@@ -55,8 +55,10 @@ def loop_of(
         ends = np.array([low, np.clip(elastic.offset, low, high), high])
         return ends, elastic_force(elastic, ends)[0]
     own, (z, *others) = link_law([law], [0.0]).memory, memory
-    along = _along(own, fine, z, *others)[..., None]
-    force = elastic_force(elastic, fine)[0] + memory_force(own, along)[..., 0]
+    along = law.z_along(fine, z[:-1])
+    if along is None:
+        along = _along(own, fine, z, *others)
+    force = elastic_force(elastic, fine)[0] + memory_force(own, along[..., None])[..., 0]
     # The last of a cell is the first of the next.
     return np.append(fine[:, :-1], fine[-1, -1]), np.append(force[:, :-1], force[-1, -1])
 

@@ -13,6 +13,8 @@ from dataclasses import asdict
 from enum import StrEnum
 from typing import Annotated, ClassVar
 
+import numpy as np
+
 from eventpound.errors import InputError
 from eventpound.given import (
     Given,
@@ -25,6 +27,7 @@ from eventpound.given import (
     number,
     read_fields,
 )
+from eventpound.numerics.arrays import Floats
 from eventpound.units import STANDARD_GRAVITY, Dimension
 
 GROUND = "ground"
@@ -154,6 +157,10 @@ class Hysteretic:
     def drawn(self) -> tuple[list[float], list[float]]:
         """Elongations (m) and forces (N) of a loop that shows what it does."""
         raise NotImplementedError
+
+    def z_along(self, x: Floats, z: Floats) -> Floats | None:
+        """Give z along elongations x, a row a way from z; None where its rate has to tell."""
+        return None
 
 
 @converting_base()
@@ -454,6 +461,12 @@ class Backfill(Hysteretic):
         freed = self.offset - end - force[-1] / self.initial_stiffness
         x = [0.0, *(self.offset - y for y in depths), freed, 0.0]
         return x, [0.0, *force, 0.0, 0.0]
+
+    def z_along(self, x: Floats, z: Floats) -> Floats:
+        """Give z along elongations x, a row a way from z: the gap widens on the backbone."""
+        u_y, depth = self.yield_displacement, np.maximum(self.offset - x, 0.0)
+        left = np.maximum(-u_y * depth / (u_y + depth) - x, (u_y * z - x[:, 0])[:, None])
+        return np.asarray((x + np.maximum.accumulate(left, axis=1)) / u_y)
 
     def push(self, depth: float) -> float:
         """Force at a depth (m) to which it is pushed for the first time (N)."""

@@ -130,19 +130,23 @@ def far(points: np.ndarray, line: np.ndarray) -> float:
     return worst
 
 
-@pytest.mark.parametrize("spring", [0, 1, 2])
-def test_loops_between_coarse_rows(spring: int) -> None:
-    scene = pounding_pair()
-    coarse = simulate(scene, "fast", 1e-9, duration=5.0, output_step=0.05)
-    fine = simulate(scene, "fast", 1e-9, duration=5.0, output_step=0.001)
+PAIR, SOIL = pounding_pair(), load_case(CASES / "deck-on-backfill").scene
+
+
+@pytest.mark.parametrize(
+    ("scene", "spring", "solver"), [*((PAIR, i, "fast") for i in range(3)), (SOIL, 2, "cvode")]
+)
+def test_loops_between_coarse_rows(scene: Scene, spring: int, solver: str) -> None:
+    coarse = simulate(scene, solver, 1e-9, duration=5.0, output_step=0.05)
+    fine = simulate(scene, solver, 1e-9, duration=5.0, output_step=0.001)
     view, dense = view_of_run(coarse), view_of_run(fine)
     drawn = view.springs[spring]
     true = np.stack([dense.elongation(drawn), dense.column(f"force.{drawn.name}")], axis=1)
     size = np.ptp(true, axis=0)
     loop = np.stack(view.loop(drawn), axis=1)
     polygon = np.stack([view.elongation(drawn), view.column(f"force.{drawn.name}")], axis=1)
-    # A twentieth of a second between rows cuts knees by a hundredth and more of the loop.
-    assert far(true[::7] / size, polygon / size) > 1e-2
+    # A twentieth of a second between rows cuts knees by two hundredths of the loop, soil by one.
+    assert far(true[::7] / size, polygon / size) > 5e-3
     assert far(true[::7] / size, loop / size) < 1e-3
     assert far(loop / size, true / size) < 1e-3
 
