@@ -36,6 +36,7 @@ from eventpound.results.inputs import inputs_of
 from eventpound.results.manifest import sha256, told_of, versions
 from eventpound.results.trade import Trade, three_digits, trade_of
 from eventpound.scene.scene import Scene
+from eventpound.scene.spring import Backfill, Slider
 from eventpound.simulation import simulate
 from eventpound.study.design import FRACTILES, demands_of
 from eventpound.study.records import FAILED
@@ -72,6 +73,11 @@ LIMITS = (
     "Residuals are those at the end of each run, with what still swings then.",
 )
 """What is not in design numbers."""
+_OF_LAWS: dict[type, str] = {
+    Slider: "Friction bearings keep their vertical load and their coefficient of friction.",
+    Backfill: "Soil resists by its force alone; the wall, its mass and its strength, is left out.",
+}
+"""And where springs have such a law."""
 _FEW = 7
 """Records from which on codes take a mean (EN 1998-1:2004, 4.3.3.4.3)."""
 
@@ -265,6 +271,8 @@ def _panels(told: Told) -> list[list[Named]]:
 def _limits(told: Told) -> Iterator[str]:
     """What is not in the numbers, and what the case was warned of."""
     yield from LIMITS
+    laws = {type(spring.law) for spring in told.scene.springs}
+    yield from (text for law, text in _OF_LAWS.items() if law in laws)
     if told.runs is not None:
         failed = told.runs[told.runs[FAILED] != ""]
         done = len(told.runs) - len(failed)
