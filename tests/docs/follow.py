@@ -33,7 +33,7 @@ _STEP = re.compile(
     r"|^```sh\n(?P<commands>.*?)```",
     re.DOTALL | re.MULTILINE,
 )
-_UNITS = {"cm": 100.0, "kN s": 1e-3, "%": 100.0}
+_UNITS = {"cm": 100.0, "MN": 1e-6, "kN s": 1e-3, "%": 100.0}
 """Factors from SI to units that pages use."""
 
 
