@@ -322,7 +322,8 @@ class DegradingBoucWen(BoucWen):
     @property
     def numbers(self) -> dict[str, float]:
         """What a table of a case shows of it beside Bouc-Wen's (SI)."""
-        return {"delta_nu": self.strength_degradation, "delta_eta": self.stiffness_degradation}
+        found = {"delta_nu": self.strength_degradation, "delta_eta": self.stiffness_degradation}
+        return found | {"n": self.exponent}
 
     def epsilon(self, elongation: float, z: float, epsilon: float) -> float:
         """The hysteretic energy in parts of ``Q u_y``."""
