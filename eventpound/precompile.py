@@ -27,12 +27,14 @@ from eventpound.motion.ricker import Ricker
 from eventpound.scene import (
     BARRIER,
     GROUND,
+    Backfill,
     BilinearElastic,
     Body,
     BoucWen,
     Contact,
     ContactLaw,
     Dashpot,
+    DegradingBoucWen,
     Force,
     Linear,
     Point,
@@ -40,6 +42,7 @@ from eventpound.scene import (
     Spring,
     Support,
 )
+from eventpound.scene.spring import Law
 from eventpound.simulation import simulate
 from eventpound.solvers import knows_laws, solver_named, takes_loads, takes_points
 from eventpound.solvers.events.roots import EVENTS
@@ -120,6 +123,16 @@ def _moved(motion: GroundMotion) -> Scene:
         supports=(Support("left", delay=0.3), own),
         forces=(Force("b", Constant(0.2)),),
     )
+
+
+def _remembering(scene: Scene) -> Scene:
+    """The scene with springs whose memory is more than Bouc-Wen's in the place of two."""
+    laws: dict[str, Law] = {
+        "sa": Backfill(2.0, 0.3, 0.7, 0.01),
+        "sb": DegradingBoucWen(1.0, 0.3, 0.05),
+    }
+    springs = (replace(s, law=laws.get(s.name, s.law)) for s in scene.springs)
+    return replace(scene, springs=tuple(springs))
 
 
 def _with_laws(scene: Scene) -> Scene:
@@ -204,6 +217,7 @@ def _fast_of_several(solver: str) -> None:
     _several(solver)
     for motion in _motions():
         _run(solver, _apart(motion))
+    _run(solver, _remembering(_row(_record(), 0.0, 0.02)), energy=True)
     _many(_row(_record(), 0.5, 0.02))
 
 

@@ -27,11 +27,12 @@ from eventpound.scene.scene import Scene
 from eventpound.solvers import (
     available,
     knows_laws,
+    knows_springs,
     name_of,
     solver_named,
-    takes_branches,
     takes_loads,
     takes_points,
+    unknown_springs,
 )
 from eventpound.solvers.base import ReadyTask, Recording, Solver, Task
 from eventpound.units import Dimension
@@ -276,15 +277,15 @@ def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[st
 def _scene_problems(solver: Solver, scene: Scene) -> list[str]:
     """What of a scene a solver cannot take, with the solvers that take all of it."""
     laws = ", ".join(f"{c.name!r} ({c.law.kind})" for c in scene.contacts if c.law is not None)
-    own = {spring.name: spring.law.word for spring in scene.springs}
-    branched = ", ".join(f"{spring!r} ({own[spring]})" for spring in scene.branched_springs)
+    unknown = unknown_springs(solver, scene).items()
+    springs = ", ".join(f"{spring!r} ({law})" for spring, law in unknown)
     points = ", ".join(repr(c.name) for c in scene.contacts if c.at_point)
     kinds = (("supports", scene.supports), ("forces", scene.forces))
     loads = " and ".join(word for word, given in kinds if given)
     name = solver.name
     asked = (
         (knows_laws, f"{name} does not know the laws of contacts {laws}"),
-        (takes_branches, f"{name} does not know the laws of springs {branched}"),
+        (knows_springs, f"{name} does not know the laws of springs {springs}"),
         (takes_points, f"{name} does not take contacts at a point between bodies ({points})"),
         (takes_loads, f"name: the solver {name!r} cannot take {loads}"),
     )

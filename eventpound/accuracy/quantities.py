@@ -25,7 +25,7 @@ from eventpound.mechanics.supported import lowered
 from eventpound.scene.scene import Scene
 from eventpound.score import Difference, MotionScales, ScaledValue, Truth, difference
 from eventpound.solvers.base import ENDS_OF_REST, EventKind, History, Recording, Task
-from eventpound.solvers.events.scales import SceneScales, scene_scales
+from eventpound.solvers.events.scales import SceneScales, scene_scales, z_size
 
 PEAKS, FINAL = "peaks", "final"
 """First part of the name of a quantity."""
@@ -49,7 +49,7 @@ def motion_scales(task: Task, recording: Recording) -> MotionScales:
     u = np.maximum(np.abs(x.maximum), np.abs(x.minimum))
     v = np.abs(recording.history.v).max(axis=0)
     u, v = np.where(u > 0.0, u, scene.length), np.where(v > 0.0, v, scene.length / scene.time)
-    return MotionScales(scene.time, u, v, scene.z_size)
+    return MotionScales(scene.time, u, v, z_size(scene.z_bound))
 
 
 def values_of(

@@ -82,7 +82,7 @@ class RouteFailure:
     message: str
 
 
-TAYLOR = "Taylor series, hysteresis eliminated"
+TAYLOR = "Taylor series, plain Bouc-Wen laws eliminated"
 MULTISTEP = "linear multistep methods, hysteresis in rate form"
 ALGEBRAIC = "differential-algebraic system, contact forces unknown"
 LOCAL = "Taylor series after events, hysteresis in rate form"

@@ -20,10 +20,13 @@ from eventpound.given import number
 from eventpound.motion.base import LARGEST, SMALLEST
 from eventpound.scene.contact_law import Element
 from eventpound.scene.scene import Scene
+from eventpound.scene.spring import LawName
 from eventpound.units import TOLD, USUAL, Dimension
 
 REFERENCE, FAST = "cvode", "fast"
 """The solver of one run, and that of many, where none is named."""
+FAST_KNOWS = frozenset((LawName.BACKFILL, LawName.DEGRADING_BOUC_WEN))
+"""Laws of springs with a memory, beside Bouc-Wen's, that the second one knows."""
 OWN_SOLVERS = (REFERENCE, "ida", FAST, "moreau", "penalty")
 """Solvers that need no other package, by their names."""
 EQUILIBRIUM = "equilibrium"
@@ -141,14 +144,14 @@ def default_solver(scenes: Iterable[Scene], many: bool) -> str:
         What is run.
     many : bool
         Whether they are run many times, as in a suite or a study. Contacts that are not plain and
-        memories with branches, which the fast solver does not take, are left to the reference
-        then, too.
+        springs that the fast solver does not know are left to the reference then, too.
     """
-    plain = all(
-        not scene.branched_springs and all(contact.plain for contact in scene.contacts)
+    known = all(
+        FAST_KNOWS.issuperset(scene.branched_springs.values())
+        and all(contact.plain for contact in scene.contacts)
         for scene in scenes
     )
-    return FAST if many and plain else REFERENCE
+    return FAST if many and known else REFERENCE
 
 
 def read_solver(table: Table, default: str = REFERENCE) -> SolverOptions:

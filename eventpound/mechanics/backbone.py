@@ -23,7 +23,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.link_law import BETA, EXPONENT, GAMMA, YIELD, z_bound
+from eventpound.mechanics.link_law import (
+    BETA,
+    EXPONENT,
+    GAMMA,
+    YIELD,
+    has_backbone,
+    z_bound,
+)
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python, scalar_kernel
 from eventpound.numerics.power_series import integer_power, power_coefficient
@@ -44,6 +51,8 @@ _EXPONENT, _RHO, _BOUND, _NEAR_UP, _SCALE_UP, _CELLS_UP, _END_UP = 0, 1, 2, 3, 4
 _NEAR_DOWN, _SCALE_DOWN, _CELLS_DOWN = 7, 8, 9
 _WIDTH_UP, _WIDTH_DOWN = 10, 11
 _HEADER = 12
+_NO_BACKBONE = ((YIELD, np.inf), (EXPONENT, 1.0), (BETA, 1.0), (GAMMA, 0.0))
+"""Constants with which the z of a law that is not solved here stands still."""
 
 
 class Hysteresis(NamedTuple):
@@ -51,6 +60,9 @@ class Hysteresis(NamedTuple):
 
     `core`: |ξ| up to which Φ is a line both ways. `down`: ξ < 0 down to which
     it is a line. `saturated`: ξ from which Φ is 1. `scale`: ``u_y b`` (m).
+
+    `followed` (F,): numbers h of those whose law is another, and has no backbone. Their `scale`
+    and `core` are inf and their `bound` is 1: by ξ their z stands still.
     """
 
     link: Ints
@@ -61,6 +73,7 @@ class Hysteresis(NamedTuple):
     saturated: Floats
     scale: Floats
     bound: Floats
+    followed: Ints
 
 
 def _near_series(n: float, g: Floats, h: Floats) -> None:
@@ -286,10 +299,15 @@ def hysteresis_of(memory: Floats, link: Ints, small: Floats | float) -> Hysteres
         The difference of Φ that does not count.
     """
     memory = memory.take(link, axis=-2)
+    other = ~has_backbone(memory)
+    if other.any():
+        for column, value in _NO_BACKBONE:
+            memory[..., column][other] = value
     n, beta, gamma = (memory[..., i] for i in (EXPONENT, BETA, GAMMA))
     table, places = _tables_of(n, beta, gamma)
     share = np.asarray(small)[..., None] + np.zeros(n.shape)
     core, down = backbone_borders(n, beta, gamma, share)
+    core[other] = np.inf
     bound, saturated = z_bound(memory), np.empty(n.shape)
     _saturations(table, places.reshape(-1), share.reshape(-1), saturated.reshape(-1))
     return Hysteresis(
@@ -301,6 +319,7 @@ def hysteresis_of(memory: Floats, link: Ints, small: Floats | float) -> Hysteres
         saturated,
         memory[..., YIELD] * bound,
         bound,
+        np.flatnonzero(other[(0,) * (other.ndim - 1)]),
     )
 
 

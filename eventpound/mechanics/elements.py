@@ -280,7 +280,7 @@ def next_branch(
         return CLOSED if knee > noise else YIELDING
     if branch == YIELDING:
         return CLOSED if knee > noise else APART
-    return APART if -z * memory[a, YIELD] < 0.5 * knee else YIELDING
+    return APART if knee <= noise or -z * memory[a, YIELD] < 0.5 * knee else YIELDING
 
 
 @scalar_kernel

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.scene.elastic_laws import ElasticLaws, elastic_force
 from eventpound.scene.spring import Backfill, BoucWen, Hysteretic, Law, Slider
 
@@ -90,6 +90,11 @@ def yielding(memory: Floats) -> Yielding:
     """What memory adds to links; `memory` of shape (..., L, constants)."""
     strength, yields = memory[..., STRENGTH], memory[..., YIELD]
     return Yielding(strength / yields, strength, np.where(np.isinf(yields), 0.0, yields))
+
+
+def has_backbone(memory: Floats) -> Bools:
+    """Which laws are eq. 3 alone, whose time can be eliminated; of constants (..., L, ·)."""
+    return np.asarray(memory[..., KIND] == BOUC_WEN)
 
 
 def z_bound(memory: Floats) -> Floats:

@@ -340,7 +340,8 @@ def shape_of(model: Model) -> tuple[object, ...]:
     Of scenes whose contacts follow Newton's law and lie between whole bodies.
     """
     sizes = model.bodies, model.springs, model.supports, model.loads
-    ends = model.link_ends, model.hysteretic, model.left, model.right
+    kinds = model.law.memory[:, KIND]
+    ends = model.link_ends, model.hysteretic, kinds, model.left, model.right
     return (*sizes, *((each.size, each.tobytes()) for each in ends))
 
 

@@ -1,7 +1,8 @@
 """Numbers of a scene in its arrays: which entry each of them is.
 
 The arrays have a leading axis of variants. A spring in series and a sum of dashpots are made
-anew for every value that they have.
+anew for every value that they have, and so is all of a scene with a spring whose law is more than
+Bouc-Wen's: the start of its memory follows from several numbers, those of bodies among them.
 """
 
 from __future__ import annotations
@@ -13,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from eventpound.mechanics.link_law import CONSTANTS, LinkLaw
-from eventpound.mechanics.model import Model
+from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.elastic_laws import ElasticLaws, reduced
-from eventpound.scene.parameters import Place
+from eventpound.scene.parameters import Place, with_values
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Series
 
@@ -54,6 +55,9 @@ def put_numbers(
     rows : mapping of str to ndarray, shape (n, ...)
         Those of `numbers_of`, with a leading axis.
     """
+    if scene.branched_springs:
+        _put_all(scene, values, rows)
+        return
     for place, column in values.items():
         for key in _keys(place):
             index = place.index
@@ -79,6 +83,15 @@ def _keys(place: Place) -> tuple[str, ...]:
                 return ("compression", "extension")
             return ("z0" if place.field == "initial_z" else place.field,)
     return ()
+
+
+def _put_all(scene: Scene, values: Mapping[Place, Floats], rows: Mapping[str, Floats]) -> None:
+    """All numbers of scenes, variant by variant."""
+    own = {place: column for place, column in values.items() if place.kind != "excitation"}
+    for i in range(rows["mass"].shape[0] if own else 0):
+        variant = with_values(scene, {place: float(column[i]) for place, column in own.items()})
+        for key, array in numbers_of(assemble(variant)).items():
+            rows[key][i] = array
 
 
 def _put_series(scene: Scene, values: Mapping[Place, Floats], rows: Mapping[str, Floats]) -> None:

@@ -12,7 +12,7 @@ from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.force import Force
-from eventpound.scene.spring import Hysteretic, Spring
+from eventpound.scene.spring import Hysteretic, LawName, Spring
 from eventpound.scene.support import Support
 
 
@@ -59,7 +59,7 @@ class Scene:
         return found + [(spring, name) for spring, name in seconds if name]
 
     @property
-    def branched_springs(self) -> list[str]:
-        """Names of the springs whose memory has branches, or a second number."""
-        laws = [(spring.name, spring.law) for spring in self.springs]
-        return [s for s, law in laws if isinstance(law, Hysteretic) and law.beyond_bouc_wen]
+    def branched_springs(self) -> dict[str, LawName]:
+        """Laws of the springs whose memory has branches, or a second number, by their names."""
+        loops = {s.name: s.law for s in self.springs if isinstance(s.law, Hysteretic)}
+        return {name: law.word for name, law in loops.items() if law.beyond_bouc_wen}

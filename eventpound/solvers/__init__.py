@@ -9,6 +9,7 @@ from pkgutil import resolve_name
 from eventpound.errors import InputError
 from eventpound.plugins import Plugins
 from eventpound.scene.scene import Scene
+from eventpound.scene.spring import LawName
 from eventpound.solvers.base import Solver
 from eventpound.solvers.opensees import installed
 from eventpound.solvers.plugins import solvers_plugged_in, trouble_of
@@ -52,14 +53,20 @@ def takes_points(solver: Solver, scene: Scene) -> bool:
     return not at_points or getattr(solver, "takes_points", False)
 
 
-def takes_branches(solver: Solver, scene: Scene) -> bool:
-    """Whether a solver takes springs whose memories are not Bouc-Wen's, if there are any."""
-    return not scene.branched_springs or getattr(solver, "takes_branches", False)
+def unknown_springs(solver: Solver, scene: Scene) -> dict[str, LawName]:
+    """Laws that a solver does not know, by their springs."""
+    known: Collection[str] = getattr(solver, "memories", ())
+    return {s: law for s, law in scene.branched_springs.items() if law not in known}
+
+
+def knows_springs(solver: Solver, scene: Scene) -> bool:
+    """Whether a solver knows the law of every spring of a scene."""
+    return not unknown_springs(solver, scene)
 
 
 def knows_scene(solver: Solver, scene: Scene) -> bool:
     """Whether a solver takes every spring and contact of a scene."""
-    return all(can(solver, scene) for can in (knows_laws, takes_points, takes_branches))
+    return all(can(solver, scene) for can in (knows_laws, takes_points, knows_springs))
 
 
 def _own_names() -> list[str]:

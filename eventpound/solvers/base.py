@@ -343,9 +343,9 @@ class Solver(Protocol):
     ``takes_supports = True``. One that knows laws of contacts besides Newton's names them in
     an attribute ``contact_laws``, a collection of `eventpound.scene.contact_law.ContactLaw` kinds;
     scenes with others are refused. One that takes contacts at points between bodies, with more
-    than two bodies in a column of W, says so by ``takes_points = True``; one that takes spring laws
-    whose memory has branches or a second number (`eventpound.scene.spring.Hysteretic`) by
-    ``takes_branches = True``.
+    than two bodies in a column of W, says so by ``takes_points = True``. One that knows spring laws
+    whose memory has branches or a second number (`eventpound.scene.spring.Hysteretic`) has their
+    words in an attribute ``memories``.
     Settings that it had once are in a mapping ``given_up``, each with what to do instead. One that
     can do once what many runs of a scene have in common has a function ``ready(task)``, which
     returns a `ReadyTask`, or None for a scene of which it cannot.

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from eventpound.scene.contact_law import BY_WORD
+from eventpound.scene.spring import LawName
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.loop import EventLoop
@@ -58,7 +59,7 @@ class Cvode:
     counts_steps = True
     takes_supports = True
     takes_points = True
-    takes_branches = True
+    memories = frozenset(LawName)
     contact_laws = tuple(BY_WORD)
 
     def check_settings(self, settings: Settings) -> None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble, with_sliders
+from eventpound.scene.spring import LawName
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import SUNDIALS, finders, sundials_finds
@@ -36,7 +37,7 @@ class Ida:
     settings: Mapping[str, str] = {"events": finders(SUNDIALS)}
     counts_steps = True
     takes_supports = True
-    takes_branches = True
+    memories = frozenset(LawName)
     finest_rtol = FINEST_RTOL / LOCAL_SHARE
     """Below it the steps get no finer."""
 

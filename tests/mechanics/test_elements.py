@@ -176,6 +176,8 @@ def test_branches_of_soil_end_where_it_was_left_and_where_it_comes_apart() -> No
         assert next_branch(0, law, branch, 0.0, x, z, 1e-13) == expected
     # Soil that was never pushed in has nothing to be inside of.
     assert next_branch(0, law, APART, 0.0, 0.0, 0.0, 1e-13) == YIELDING
+    # Touched for the first time and left at once: nothing was pushed in.
+    assert next_branch(0, law, CLOSED, 0.0, -1e-15, -1e-15, 1e-13) == APART
 
 
 def _series_of_z(law: np.ndarray, x: np.ndarray, z_0: float, sigma: float) -> np.ndarray:

@@ -39,6 +39,16 @@ duration = 3.0
 """
 AT_POINT = CASE.replace('["floor", "low"]', '["floor", { low = 0.5, high = 0.5 }]')
 WITH_LAW = CASE.replace("restitution = 0.5", 'law = "hertz", stiffness = 1e5')
+
+
+def _with_spring(law: str) -> str:
+    return CASE.replace("]\ncontact", f'  {{ between = ["ground", "high"], {law} }},\n]\ncontact')
+
+
+SOIL = _with_spring(
+    'law = "backfill", initial_stiffness = 9.0, ultimate_force = 1.0, failure_ratio = 0.7'
+)
+SLIDER = _with_spring('law = "slider", friction = 0.1, normal_force = 1.0')
 STUDY = '[study]\nquantities = ["impacts"]\n[[study.axis]]\nkey = "contact.joint.gap"\n'
 GAPS = {"contact.joint.gap": [0.01, 0.02]}
 
@@ -50,7 +60,8 @@ def written(folder: Path, text: str) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("text", "many"), [(CASE, "fast"), (AT_POINT, "cvode"), (WITH_LAW, "cvode")]
+    ("text", "many"),
+    [(CASE, "fast"), (SOIL, "fast"), (AT_POINT, "cvode"), (WITH_LAW, "cvode"), (SLIDER, "cvode")],
 )
 def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
     tmp_path: Path, text: str, many: str

@@ -198,11 +198,6 @@ class SceneScales:
     own_speed: Floats
 
     @property
-    def z_size(self) -> Floats:
-        """Bounds of z, 1 of those that have none."""
-        return np.where(np.isinf(self.z_bound), 1.0, self.z_bound)
-
-    @property
     def speed(self) -> float:
         """L/T (m/s)."""
         return self.length / self.time
@@ -311,14 +306,23 @@ def body_tolerance(task: Task, kind: str, own: Floats) -> Floats:
     return np.full(own.shape, task.atol[kind]) if kind in task.atol else task.rtol * own
 
 
+def z_size(bound: Floats) -> Floats:
+    """Scales of z (..., H): their bounds, 1 of those that have none."""
+    return np.where(np.isinf(bound), 1.0, bound)
+
+
+def z_tolerance(task: Task, bound: Floats) -> Floats:
+    """Absolute tolerances of z with such bounds (..., H)."""
+    if "z" in task.atol:
+        return np.full(bound.shape, task.atol["z"])
+    return np.asarray(task.rtol * z_size(bound))
+
+
 def tolerances(task: Task, scales: SceneScales) -> dict[str, Floats | float]:
     """Absolute tolerances: of displacement (m) and velocity (m/s) of each body, z, energy (J)."""
-    atol = task.atol
     return {
         "displacement": body_tolerance(task, "displacement", scales.own_length),
         "velocity": body_tolerance(task, "velocity", scales.own_speed),
-        "z": (
-            np.full(scales.z_bound.size, atol["z"]) if "z" in atol else task.rtol * scales.z_size
-        ),
+        "z": z_tolerance(task, scales.z_bound),
         "energy": task.rtol * scales.energy,
     }

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from eventpound.contact.cascade import T
 from eventpound.contact.impacts import DONE, FULL
-from eventpound.contact.kinks import choose_branches, lacks_branch
+from eventpound.contact.kinks import (
+    choose_branches,
+    choose_clear_branches,
+    lacks_branch,
+    pass_kinks,
+)
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.monitored import update_settled
 from eventpound.mechanics.reduced import Forcing
@@ -16,6 +21,7 @@ from eventpound.solvers.fast.apart.steps import forget_each, go_apart, may_go_ap
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import take_instant
+from eventpound.solvers.fast.followed import follows, put_on_branches
 from eventpound.solvers.fast.instant import instant_of, settle, start
 from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.record import has_room, hold, write_row
@@ -150,7 +156,12 @@ def _settle_instant(run: FastRun) -> int:
     if count[DUE] == 1:
         forcing = lend(Forcing(piece.family, piece.coefficients, piece.samples, t))
         at = lend(instant_of(run))
+        pass_kinks(run.happened.kinked, seen.z, at)
+        run.happened.kinked[:] = False
         if lacks_branch(at):
+            choose_clear_branches(at)
+            if follows(run):
+                put_on_branches(run)
             look_apart(0.0, order, g, run)
             onset = ground_onset(piece, t, order, series.ground)
             choose_branches(seen.a, g, onset, at)

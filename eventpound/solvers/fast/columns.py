@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.mechanics.backbone import hysteresis_of
-from eventpound.mechanics.link_law import LinkLaw
+from eventpound.mechanics.link_law import LinkLaw, z_bound
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.monitored import blank_extremes, places_in
 from eventpound.mechanics.numbers import numbers_of, put_numbers, with_numbers
@@ -32,6 +32,7 @@ from eventpound.solvers.events.scales import (
     own_scales,
     push_of,
     scales_without,
+    z_tolerance,
 )
 from eventpound.solvers.fast.constants import (
     blank_state,
@@ -135,6 +136,7 @@ def rows_of(variants: Variants, low: int, high: int) -> VariantArrays:
         order_for(task.rtol),
         small,
         False,
+        z_tolerance(task, z_bound(law.memory.take(model.hysteretic, -2))),
     )
     hysteresis = hysteresis_of(law.memory, model.hysteretic, small)
     plan = FastPlan(

@@ -38,6 +38,7 @@ from eventpound.solvers.fast.run import (
     FastPlan,
     FastSeries,
     FastState,
+    Followed,
     Ground,
     Limits,
     Links,
@@ -164,6 +165,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_ane
             order=order_for(task.rtol),
             hysteresis=small,
             ledger=task.energy,
+            atol_z=np.asarray(atol["z"]),
         ),
         output_times=task.output_times,
         oscillator=oscillator_of(model, scales.length, links, energy=task.energy),
@@ -241,10 +243,11 @@ def _blank_each(plan: FastPlan, loaded: bool) -> Each:
 
     They may under a formula, each on springs to the ground, one of them hysteretic at most, where
     no power or force is followed. Where none is hysteretic, nothing would be
-    gained: no body ends the steps of others. Which springs have a kink, a run tells.
+    gained: no body ends the steps of others. No z is followed. Which springs have a kink, a run
+    tells.
     """
     n, contacts, ends = plan.mass.shape[-1], plan.contacts.left.size, plan.links.ends
-    if n < 2 or plan.hysteresis.link.size == 0 or loaded:
+    if n < 2 or plan.hysteresis.link.size == 0 or plan.hysteresis.followed.size > 0 or loaded:
         return _NOBODY
     yielding = ends[plan.hysteresis.link].max(axis=1)
     fits = (
@@ -285,6 +288,7 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
     """Scratch arrays of a run, or of many one after the other; `loaded`: with loads on bodies."""
     bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
     hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
+    followed = plan.hysteresis.followed.size
     size = plan.limits.order + 3
     most = max(size + MORE_TERMS, REST_TERMS)
     work, turns = in_python(root_work)(most), np.zeros(MOST_TURNS)
@@ -296,6 +300,7 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         speed=np.zeros((hysteretic, size)),
         weighted=np.zeros((hysteretic, size)),
         curve=np.zeros((hysteretic, CURVE_PLACES)),
+        memory=np.zeros(plan.links.law.memory.shape[-2:]),
         weights=np.zeros((2, bodies)),
         ground=np.zeros(size),
         x=np.zeros(links),
@@ -325,7 +330,9 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         elimination=np.zeros((contacts, 4), np.int64),
         single=Single(np.zeros(1, BODY), np.zeros(most), turns, work),
         each=_blank_each(plan, loaded),
-        tables=blank_tables(bodies, links),
+        followed=Followed(np.zeros(followed), np.zeros(followed), np.zeros(1)),
+        # Steps from sample to sample follow no z.
+        tables=blank_tables(bodies if followed == 0 else 0, links),
         held=np.zeros((4, in_python(places_of)(bodies, plan.links.springs, contacts).end)),
     )
 

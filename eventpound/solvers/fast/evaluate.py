@@ -11,6 +11,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.expansion import change_at
+from eventpound.solvers.fast.followed import follows, see_followed
 from eventpound.solvers.fast.links import (
     elongation,
     gap_of,
@@ -18,6 +19,7 @@ from eventpound.solvers.fast.links import (
 )
 from eventpound.solvers.fast.run import (
     EDGES,
+    FURTHER,
     PIECE,
     RESTING,
     FastPlan,
@@ -62,8 +64,8 @@ def look(tau: float, order: int, ground: float, run: FastRun) -> None:
             change, seen.v[b], series.expected[c] = change_at(c, tau, order, series.X)
             seen.u[b] += change
     see_forces(ground, run)
-    if series.load.shape[0] > 0:
-        _add_loads(state.clock[T] + tau, run)
+    if state.count[FURTHER] > 0:
+        _add_further(tau, order, run)
     _accelerations(run)
     _gaps(tau, order, run)
     if state.count[RESTING] > 0:
@@ -100,13 +102,16 @@ def see_forces(ground: float, run: FastRun) -> None:
 
 
 @compiled_deferred
-def _add_loads(t: float, run: FastRun) -> None:
-    """Add the loads at t (s), on the present piece of the ground motion, to `body_force`.
+def _add_further(tau: float, order: int, run: FastRun) -> None:
+    """Add what z have changed by, and the loads of the present piece, to `body_force`.
 
     The accelerations of supports are put into `a`.
     """
-    piece = lend(piece_of(run.state.count[PIECE], run.plan.ground))
-    add_body_loads(piece, t, run.seen.body_force, run.seen.a)
+    if tau > 0.0 and follows(run):
+        see_followed(tau, order, run)
+    if run.series.load.shape[0] > 0:
+        piece = lend(piece_of(run.state.count[PIECE], run.plan.ground))
+        add_body_loads(piece, run.state.clock[T] + tau, run.seen.body_force, run.seen.a)
 
 
 @compiled

@@ -32,6 +32,7 @@ from eventpound.solvers.fast.alone import (
     on_curve,
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.followed import follow, follows, last_of_followed
 from eventpound.solvers.fast.links import (
     CORE,
     reverse,
@@ -39,7 +40,9 @@ from eventpound.solvers.fast.links import (
 )
 from eventpound.solvers.fast.run import (
     CLUSTERS,
+    FURTHER,
     GUESS,
+    LOCAL_SHARE,
     RESTING,
     TIED,
     TIED_LINKS,
@@ -49,14 +52,14 @@ from eventpound.solvers.fast.run import (
 from eventpound.solvers.fast.search import distance_coefficient
 from eventpound.tolerances import LONGEST_STEP, NO_ERROR, RETRIED
 
-LOCAL_SHARE = 0.1
-"""Part of the tolerance given to one step."""
 
-
-@compiled_apart
-def load_clusters(k: int, mass: Floats, series: FastSeries) -> None:
-    """Add coefficient k of the loads on bodies to the forces on clusters."""
-    for b in range(mass.size):
+@compiled_deferred
+def _add_further(k: int, run: FastRun) -> None:
+    """Add coefficient k of the loads on bodies to the forces on clusters, and of followed z."""
+    series, mass = run.series, run.plan.mass
+    if follows(run):
+        follow(k, run)
+    for b in range(mass.size if series.load.shape[0] > 0 else 0):
         if series.of_body[b] >= 0 and not is_support(b, mass):
             series.force[series.of_body[b]] += series.load[k, b]
 
@@ -100,7 +103,8 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
 def _expand_together(h: float, most: int, run: FastRun) -> tuple[int, float]:
     """Terms of all clusters that do not go by themselves."""
     plan, state, series = run.plan, run.state, run.series
-    links, law, resting = plan.links, plan.links.law, state.count[RESTING] > 0
+    links, law, further = plan.links, plan.links.law, state.count[FURTHER] > 0
+    others = further or state.count[RESTING] > 0
     X, F, acceleration = series.X, series.F, series.force
     clusters, active = state.count[CLUSTERS], state.count[TIED_LINKS]
     for i in range(active):
@@ -126,21 +130,21 @@ def _expand_together(h: float, most: int, run: FastRun) -> tuple[int, float]:
                 acceleration[first] += F[a, k]
             if second >= 0:
                 acceleration[second] -= F[a, k]
-        if series.load.shape[0] > 0:
-            load_clusters(k, plan.mass, series)
+        if further:
+            _add_further(k, run)
         scale = INVERSE[k + 1] * INVERSE[k + 2]
         for c in range(clusters):
             if series.apart.hysteretic[c] == TIED:
                 X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
-        if series.load.shape[0] > 0:
+        if further:
             drive_clusters(k, plan.mass, series)
         power *= h
         if k + 2 < FEWEST:
             continue
         order = k + 2
         error = last_terms(order, power, over, clusters, series)
-        if resting and (error <= CONVERGED or order == most):
-            error = max(error, _last_of_resting(order, power * over, over, run))
+        if others and (error <= CONVERGED or order == most):
+            error = max(error, _last_of_others(order, power * over, over, run))
         if error <= CONVERGED:
             break
     return order, error
@@ -158,14 +162,18 @@ def last_terms(order: int, power: float, over: float, clusters: int, series: Fas
 
 
 @compiled_apart
-def _last_of_resting(order: int, power: float, over: float, run: FastRun) -> float:
-    """The same of what contacts at rest balance: the ground, loads, and links of their bodies.
+def _last_of_others(order: int, power: float, over: float, run: FastRun) -> float:
+    """The same of z that are followed, and of what contacts at rest balance.
 
     `power` is h^(order - 1). The force of a contact follows them itself, so each counts by the mass
     of the body alone: by that of the cluster it would not count beside a heavy one, and on a
     support, which no force moves, not at all.
     """
-    plan, series = run.plan, run.series
+    plan, series, of_z = run.plan, run.series, 0.0
+    if follows(run):
+        of_z = last_of_followed(order, power, over, run)
+    if run.state.count[RESTING] == 0:
+        return of_z
     ground, limits, links = series.ground, plan.limits, plan.links
     last = power * max(abs(ground[order - 1]), over * abs(ground[order - 2]))
     for b in range(plan.mass.size if series.load.shape[0] > 0 else 0):
@@ -178,7 +186,7 @@ def _last_of_resting(order: int, power: float, over: float, run: FastRun) -> flo
             b = links.ends[a, side]
             if b >= 0 and _moves_with_others(b, plan.mass, series):
                 last = max(last, power * over * of_link / plan.mass[b])
-    return last * limits.time**2 / (LOCAL_SHARE * limits.rtol * limits.length)
+    return max(of_z, last * limits.time**2 / (LOCAL_SHARE * limits.rtol * limits.length))
 
 
 @compiled
@@ -274,10 +282,10 @@ def defect_error(tau: float, order: int, ground: float, a: Floats, series: FastS
     """Error of a step in units of its tolerance, from the defect of the equations at its end.
 
     By the forces there the absolute accelerations are a (N,). A defect that grows like τ^(p-1)
-    leaves τ/p of itself in v and τ²/p² in u.
+    leaves τ/p of itself in v and τ²/p² in u. That of z which are followed is known by then.
     """
     of_u, of_v = series.weights[0], series.weights[1]
-    worst = 0.0
+    worst = series.followed.defect[0]
     for b in range(series.of_body.size):
         c = series.of_body[b]
         if c < 0:

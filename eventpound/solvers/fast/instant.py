@@ -24,11 +24,20 @@ from eventpound.solvers.fast.compiled import (
     compiled_deferred,
     compiled_with_arrays,
 )
-from eventpound.solvers.fast.links import all_variables, elongations, reverse, set_curve, turns_back
+from eventpound.solvers.fast.followed import find_branches, follows, put_on_branches
+from eventpound.solvers.fast.links import (
+    all_variables,
+    elongations,
+    has_curve,
+    reverse,
+    set_curve,
+    turns_back,
+)
 from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
     EDGES,
+    FURTHER,
     LINEAR,
     RESTING,
     TIED,
@@ -66,11 +75,11 @@ def enter_mode(run: FastRun) -> None:
 def _find_apart(run: FastRun) -> None:
     """Clusters that go by themselves: on links to the ground only, one of them hysteretic at most.
 
-    There are none where the forces of contacts or of loads are followed.
+    There are none where the forces of contacts or of loads are followed, or a z is.
     """
     series, links, count = run.series, run.plan.links, run.state.count
     hysteretic = series.apart.hysteretic
-    none = count[RESTING] > 0 or series.load.shape[0] > 0
+    none = count[RESTING] > 0 or count[FURTHER] > 0
     hysteretic[:] = TIED if none else LINEAR
     for a in range(0 if none else links.offset.size):
         first, second = series.ends[a, 0], series.ends[a, 1]
@@ -226,6 +235,8 @@ def settle(forcing: Forcing, z: Floats, at: Instant, run: FastRun) -> int:
     ended = settle_impacts(at)
     if ended != DONE:
         return ended
+    if follows(run):
+        put_on_branches(run)
     choose_directions(run)
     if any_may_rest(at):
         all_variables(series.x, plan.hysteresis, state, z)
@@ -239,6 +250,10 @@ def settle(forcing: Forcing, z: Floats, at: Instant, run: FastRun) -> int:
 def start(run: FastRun) -> None:
     """The first mode of a run, and its hysteretic links on their curves."""
     plan, state, series = run.plan, run.state, run.series
+    for a in range(plan.links.offset.size):
+        copy_numbers(plan.links.law.memory[a], series.memory[a])
+    further = series.load.shape[0] > 0 or follows(run)
+    state.count[FURTHER] = 1 if further else 0
     enter_mode(run)
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     hysteresis = plan.hysteresis
@@ -246,4 +261,7 @@ def start(run: FastRun) -> None:
         a = hysteresis.link[h]
         y = state.xi_r[h]
         sigma = -1.0 if series.x_rate[a] < 0.0 else 1.0
-        set_curve(h, series.x[a], sigma, sigma * y, hysteresis, state)
+        if has_curve(h, hysteresis):
+            set_curve(h, series.x[a], sigma, sigma * y, hysteresis, state)
+    if follows(run):
+        find_branches(run)

@@ -16,6 +16,8 @@ both directions are the same line, so a link that only swings there costs no eve
 
 from __future__ import annotations
 
+import numpy as np
+
 from eventpound.mechanics.backbone import Hysteresis, backbone, backbone_inverse
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
 from eventpound.mechanics.observables import difference
@@ -63,6 +65,12 @@ def place(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
 
 
 @compiled
+def has_curve(h: int, hysteresis: Hysteresis) -> bool:
+    """Whether a hysteretic link has a backbone, and no z that is followed."""
+    return bool(hysteresis.scale[h] < np.inf)
+
+
+@compiled
 def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
     """Z of a hysteretic link at the elongation x (m), reached without reversal."""
     if state.part[h] == SATURATED:
@@ -82,7 +90,7 @@ def link_force(a: int, x: float, run: FastRun) -> tuple[float, float]:
     h = links.z_of_link[a]
     if h >= 0:
         z = hysteretic_variable(h, x, run.plan.hysteresis, run.state)
-        force += pull_per_z(a, links.law.memory) * z
+        force += pull_per_z(a, run.series.memory) * z
     return force, z
 
 

@@ -11,8 +11,17 @@ import numpy as np
 
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.modes import force_vanishes
+from eventpound.mechanics.elements import (
+    branch_ends,
+    has_branches,
+    number_beside,
+    reversal_jump,
+)
+from eventpound.mechanics.link_law import YIELDING
 from eventpound.numerics.polynomial import first_root, value_and_slope
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.numerics.power_series import sign_after
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.followed import follows
 from eventpound.solvers.fast.links import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.run import (
     ACTIVE,
@@ -40,6 +49,7 @@ from eventpound.solvers.fast.search import (
 from eventpound.tolerances import (
     GAP_COEFFICIENT,
     LENGTH,
+    NO_Z,
     OF_BACKBONE,
     SAME_INSTANT,
 )
@@ -73,6 +83,8 @@ def first_happening(order: int, h: float, run: FastRun) -> float:
     first = _closings(order, h, run)
     first = _hysteretic(order, min(h, first), first, run)
     first = _kinks(order, min(h, first), first, run)
+    if follows(run):
+        first = _of_followed(order, h, first, run)
     if state.count[RESTING] > 0:
         first = _releases(order, min(h, first), first, run)
     return first
@@ -116,7 +128,7 @@ def _hysteretic(order: int, h: float, first: float, run: FastRun) -> float:
         travel = bound_of_pair(head, tail, series.reach)
         # A link that all but stands still reverses at the level of rounding.
         if state.part[i] != CORE and travel > plan.limits.hysteresis * hysteresis.scale[i]:
-            tau = _reversal(order, h, i, run)
+            tau = _reversal(order, h, a, state.sigma[i], run)
             taken, first = _take(tau, first, happened)
             if taken and tau < np.inf:
                 happened.turned[i] = True
@@ -129,10 +141,9 @@ def _hysteretic(order: int, h: float, first: float, run: FastRun) -> float:
 
 
 @compiled
-def _reversal(order: int, h: float, i: int, run: FastRun) -> float:
-    """When σ x' of a hysteretic link falls below zero, or inf."""
-    plan, state, series = run.plan, run.state, run.series
-    a, sigma = plan.hysteresis.link[i], state.sigma[i]
+def _reversal(order: int, h: float, a: int, sigma: float, run: FastRun) -> float:
+    """When σ x' of a link falls below zero, or inf."""
+    plan, series = run.plan, run.series
     head, tail = series.ends[a, 0], series.ends[a, 1]
     rate = sigma * series.x_rate[a]
     slope = 2.0 * sigma * distance_coefficient(head, tail, 2, series)
@@ -187,32 +198,40 @@ def _kinks(order: int, h: float, first: float, run: FastRun) -> float:
     links: Links = plan.links
     for i in range(state.count[ACTIVE]):
         a = series.active[i]
-        if state.branch[a] == 0:
+        if links.compression[a] == links.extension[a]:
             continue
-        head, tail = series.ends[a, 0], series.ends[a, 1]
-        away = state.branch[a] * (series.x[a] - links.offset[a])
         side = float(state.branch[a])
-        slope, bend = (
-            side * distance_coefficient(head, tail, 1, series),
-            side * distance_coefficient(head, tail, 2, series),
-        )
-        if stays_above(away, slope, bend, bound_of_pair(head, tail, series.travel), h):
-            continue
-        c = series.c
-        relative(head, tail, order, series, c)
-        for k in range(1, order + 1):
-            c[k] *= state.branch[a]
-        c[0] = away
-        kept = state.count[STALLED] > 0
-        tau = _leaves_branch(order, min(h, first), kept, head, tail, plan.limits, series)
+        away = side * (series.x[a] - links.offset[a])
+        tau = _leaves_branch(order, h, min(h, first), a, side, away, run)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.kinked[a] = True
     return first
 
 
-@compiled_apart
+@compiled
 def _leaves_branch(
+    order: int, h: float, limit: float, a: int, side: float, away: float, run: FastRun
+) -> float:
+    """When a link has gone a distance `away` against a side (m) within h, up to `limit` (s)."""
+    series, c = run.series, run.series.c
+    head, tail = series.ends[a, 0], series.ends[a, 1]
+    slope, bend = (
+        side * distance_coefficient(head, tail, 1, series),
+        side * distance_coefficient(head, tail, 2, series),
+    )
+    if stays_above(away, slope, bend, bound_of_pair(head, tail, series.travel), h):
+        return np.inf
+    relative(head, tail, order, series, c)
+    for k in range(1, order + 1):
+        c[k] *= side
+    c[0] = away
+    kept = run.state.count[STALLED] > 0
+    return _passes_end(order, limit, kept, head, tail, run.plan.limits, series)
+
+
+@compiled_apart
+def _passes_end(
     order: int, limit: float, kept: bool, head: int, tail: int, limits: Limits, series: FastSeries
 ) -> float:
     """When the distance to a kink, in `series.c`, falls below zero, or inf.
@@ -236,6 +255,70 @@ def _leaves_branch(
         c[k] = 0.0
         level = still if k == 0 else level / (k * limits.time)
     return first_fall(c, order + 1, limit, 0.0, 0.0, series.work)
+
+
+@compiled_deferred
+def _of_followed(order: int, h: float, first: float, run: FastRun) -> float:
+    """The first of these: a link leaves its branch, or the formula of a z that is followed."""
+    plan, state, series, happened = run.plan, run.state, run.series, run.happened
+    for i in range(plan.hysteresis.followed.size):
+        z = plan.hysteresis.followed[i]
+        a = plan.hysteresis.link[z]
+        if series.ends[a, 0] == series.ends[a, 1]:
+            continue
+        if has_branches(a, plan.links.law.memory) and state.branch[a] != 0:
+            tau = _end_of_branch(order, h, min(h, first), a, z, run)
+            taken, first = _take(tau, first, happened)
+            happened.kinked[a] = taken and tau < np.inf
+        if _bends(h, a, z, order, run):
+            # Nothing is to be done there but to begin another series.
+            tau = _reversal(order, min(h, first), a, series.followed.sigma[i], run)
+            _, first = _take(tau, first, happened)
+            tau = _zero_of_z(order, min(h, first), z, run)
+            taken, first = _take(tau, first, happened)
+            happened.crossed[z] = taken and tau < np.inf
+    return first
+
+
+@compiled_apart
+def _end_of_branch(order: int, h: float, limit: float, a: int, z: int, run: FastRun) -> float:
+    """When a link comes to an end of its branch within h, up to `limit` (s), or inf."""
+    links, series, branch = run.plan.links, run.series, run.state.branch[a]
+    if branch == YIELDING:
+        return _reversal(order, limit, a, -1.0, run)
+    x, memory = series.x[a], links.law.memory
+    low, high = branch_ends(a, memory, branch, links.offset[a], x, series.z[z, 0])
+    first = np.inf
+    if low > -np.inf:
+        first = _leaves_branch(order, h, limit, a, 1.0, x - low, run)
+    if high < np.inf:
+        first = min(first, _leaves_branch(order, h, limit, a, -1.0, high - x, run))
+    return first
+
+
+@compiled
+def _bends(h: float, a: int, z: int, order: int, run: FastRun) -> bool:
+    """Whether the rate of a z may have another formula within h (s), so that it matters.
+
+    It has where x' or z changes its sign. By then z errs, with the rate it had before, by no more
+    than the jump of dz/dx for the largest z times all of the travel.
+    """
+    plan, series, size = run.plan, run.series, 0.0
+    for k in range(order - 1, -1, -1):
+        size = size * h + abs(series.z[z, k])
+    memory, ends = series.memory, series.ends
+    beside = series.z[plan.links.z_of_link[number_beside(a, memory)], 0]
+    travel = bound_of_pair(ends[a, 0], ends[a, 1], series.reach)
+    return bool(reversal_jump(a, memory, size, beside) * travel > plan.limits.hysteresis)
+
+
+@compiled_apart
+def _zero_of_z(order: int, limit: float, z: int, run: FastRun) -> float:
+    """When a z passes zero up to `limit` (s), or inf."""
+    c, sign = run.series.c, sign_after(run.series.z[z], order, NO_Z)
+    for k in range(order):
+        c[k] = sign * run.series.z[z, k]
+    return first_fall(c, order, limit, NO_Z, 0.0, run.series.work)
 
 
 @compiled

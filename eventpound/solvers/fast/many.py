@@ -70,7 +70,8 @@ def _ground_of(i: int, motions: Motions) -> Ground:
 _SHARED = frozenset(
     (
         *("links.ends", "links.z_of_link", "links.springs", "links.grounded"),
-        *("hysteresis.link", "hysteresis.tables", "contacts.left", "contacts.right"),
+        *("hysteresis.link", "hysteresis.tables", "hysteresis.followed"),
+        *("contacts.left", "contacts.right"),
         *("limits.rtol", "limits.order", "limits.ledger", "output_times"),
         *("oscillator.right", "oscillator.left"),
     )

@@ -143,7 +143,7 @@ def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
             state.ledger[1] += weight * law.damping[a] * x_rate * x_rate
             h = links.z_of_link[a]
             if h >= 0:
-                state.ledger[2] += weight * pull_per_z(a, law.memory) * seen.z[h] * x_rate
+                state.ledger[2] += weight * pull_per_z(a, run.series.memory) * seen.z[h] * x_rate
 
 
 @compiled_apart

@@ -37,6 +37,8 @@ MESSAGES = {
     NO_STEP: "no step is short enough for the equations of motion; try a larger rtol",
 }
 """What each end of a run means."""
+LOCAL_SHARE = 0.1
+"""Part of the tolerance given to one step."""
 MOST_STALLS = 100
 """Events in a row without progress of time after which a run gives up."""
 MOST_HALVINGS = 60
@@ -82,7 +84,10 @@ class Ground(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Of a run: times (s), tolerances, those of bodies (N,), scales (SI), highest order."""
+    """Of a run: times (s), tolerances, those of bodies (N,), scales (SI), highest order.
+
+    atol_z (H,): used where a z is followed. hysteresis: what of z does not count.
+    """
 
     end: float
     rtol: float
@@ -94,6 +99,7 @@ class Limits(NamedTuple):
     order: int
     hysteresis: float
     ledger: bool
+    atol_z: Floats
 
 
 class Oscillator(NamedTuple):
@@ -199,13 +205,27 @@ class Each(NamedTuple):
     since: Floats
 
 
+class Followed(NamedTuple):
+    """Of z that go by series of their own (F,), `eventpound.solvers.fast.followed`.
+
+    sigma: sign of x' just after the start of the step, 0 where it is not known yet. weight: what
+    errors of z are multiplied by. defect (1,): the largest error of z of a step, in units of its
+    tolerance, from where it has been looked at last.
+    """
+
+    sigma: Floats
+    weight: Floats
+    defect: Floats
+
+
 class FastSeries(NamedTuple):
     """Taylor coefficients in local time and what belongs to them.
 
     X (N, p + 3): clusters' displacement, `X[:, 0]` unused. F (L, p + 3): link
     forces. z, power, speed, weighted (H, p + 3): z, |z|^n, the rate of x/u_y and (n + 1) k z_k;
-    curve (H, CURVE_PLACES): constants of a curved part. weights (2, N): what
-    errors of u and v of each cluster are multiplied by. ground (p + 3,). x, x_rate (L,):
+    curve (H, CURVE_PLACES): constants of a curved part. memory (L, constants): that of the links
+    on their present branches. weights (2, N): what errors of u and v of each cluster are
+    multiplied by. ground (p + 3,). x, x_rate (L,):
     elongations at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
     (L,): links that move, those of clusters that go together first. apart: of clusters that go by
@@ -216,8 +236,8 @@ class FastSeries(NamedTuple):
     (p + 3, N): of the loads on bodies, empty without any.
     Where contacts rest: contact_force (K, p + 3), rests (K,) and elimination (K, 4) as in
     `eventpound.mechanics.clusters`, the first rows. single: of a single body. each: of
-    bodies that go apart. tables: exact steps from sample to sample. held (4, M): extremes
-    before a mode that may be none.
+    bodies that go apart. followed: of z that have series of their own, whose `speed` is x'.
+    tables: exact steps from sample to sample. held (4, M): extremes before a mode that may be none.
     """
 
     X: Floats
@@ -227,6 +247,7 @@ class FastSeries(NamedTuple):
     speed: Floats
     weighted: Floats
     curve: Floats
+    memory: Floats
     weights: Floats
     ground: Floats
     x: Floats
@@ -254,6 +275,7 @@ class FastSeries(NamedTuple):
     elimination: Ints
     single: Single
     each: Each
+    followed: Followed
     tables: SampleTables
     held: Floats
 
@@ -334,10 +356,12 @@ CLOCK_SIZE = CLOCK_PLACES + 2
 (PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, DUE) = range(COUNT_PLACES, COUNT_PLACES + 6)
 """Behind those in `FastState.count`: piece of the ground motion, steps, expansions, rows of the
 history, next output time, and whether an instant has duties."""
-(ACTIVE, TIED_LINKS, CLUSTERS, STALLED, RESTING, EDGES, HELD, STARTED) = range(DUE + 1, DUE + 9)
+(ACTIVE, TIED_LINKS, CLUSTERS, STALLED, RESTING, EDGES, HELD, FURTHER, STARTED) = range(
+    DUE + 1, DUE + 10
+)
 """Active links, those among them of clusters that go together, clusters, events without progress
 of time, resting contacts, rows of the elimination, rows of the history before a mode that may be
-none, and whether the run has begun."""
+none, whether loads or followed z add to what links make, and whether the run has begun."""
 COUNT_SIZE = STARTED + 1
 LINEAR, TIED = -1, -2
 """In `Apart.hysteretic`: no such link, and not by itself."""

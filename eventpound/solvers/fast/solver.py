@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.case.options import FAST_KNOWS
 from eventpound.contact.cascade import (
     EVENTS,
     GROUPS,
@@ -56,6 +57,7 @@ from eventpound.solvers.fast.constants import (
     plan_of,
 )
 from eventpound.solvers.fast.evaluate import blank_seen
+from eventpound.solvers.fast.followed import follow
 from eventpound.solvers.fast.links import all_variables
 from eventpound.solvers.fast.record import rows_wanted
 from eventpound.solvers.fast.run import (
@@ -98,6 +100,7 @@ class Fast:
     settings: Mapping[str, str] = {}
     counts_steps = True
     takes_supports = True
+    memories = FAST_KNOWS
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
@@ -386,8 +389,10 @@ def kernels_kept(task: Task) -> bool:
 
     Nothing is compiled to tell: types do not depend on numbers, so the scene stands here with
     linear springs in the place of hysteretic ones, for which no backbone is made, and a kernel
-    that has run in this process serves every scene.
+    that has run in this process serves every scene. So do those that follow a z.
     """
+    if task.scene.branched_springs and not getattr(follow, "overloads", ()):
+        return False
     curved = [isinstance(spring.law, Hysteretic) for spring in task.scene.springs]
     springs = tuple(
         replace(spring, law=Linear(1.0)) if bends else spring

@@ -25,7 +25,6 @@ from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import contact_force_series, look, look_apart
 from eventpound.solvers.fast.expansion import (
-    LOCAL_SHARE,
     begin_series,
     choose_length,
     defect_error,
@@ -34,6 +33,7 @@ from eventpound.solvers.fast.expansion import (
     wrong_way,
 )
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step, take_instant
+from eventpound.solvers.fast.followed import follows, keep_followed
 from eventpound.solvers.fast.links import cross_border, elongations, reverse
 from eventpound.solvers.fast.locate import first_happening
 from eventpound.solvers.fast.record import (
@@ -48,6 +48,7 @@ from eventpound.solvers.fast.run import (
     DUE,
     EXPANSIONS,
     GUESS,
+    LOCAL_SHARE,
     MOST_HALVINGS,
     MOST_STALLS,
     NO_STEP,
@@ -105,6 +106,8 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
         look_apart(tau, order, g_end, run)
     take_instant(t_end, run)
     _move(t_end, tau, state, seen)
+    if follows(run):
+        keep_followed(first <= tau, run)
     count[STEPS] += 1
     if first <= tau:
         # What happens soon after the last event may be followed as soon by the next.
@@ -272,9 +275,7 @@ def _apply(tau: float, run: FastRun) -> None:
             state.gap[j] = 0.0
         due = due or happened.closing[j] or happened.released[j]
     for a in range(state.branch.size):
-        if happened.kinked[a]:
-            state.branch[a] = -state.branch[a]
-            due = True
+        due = due or happened.kinked[a]
     if due:
         write_row(state.clock[T], run)
         state.count[DUE] = 1

@@ -20,13 +20,14 @@ from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import acceleration_noise
 from eventpound.mechanics.backbone import backbone, backbone_inverse, shape_of
 from eventpound.mechanics.elements import pull_per_z
+from eventpound.mechanics.link_law import has_backbone
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import (
+    LOCAL_SHARE,
     Contacts,
     FastPlan,
     FastState,
@@ -420,6 +421,7 @@ def oscillators_of(
         and model.loads == 0
         and not energy
         and model.hysteretic.size <= 1
+        and has_backbone(model.law.memory[model.hysteretic]).all()
         and max(len(to_right), len(to_left)) <= 1
     )
     alone: Any = np.logical_not(links.kinked) & fits

@@ -1,0 +1,187 @@
+"""Series of z where time cannot be eliminated: of laws that are more than Bouc-Wen's.
+
+The table of laws (`eventpound.mechanics.elements`) tells the Taylor coefficients of z' one by one,
+as those of the motion become known, and which constants a law has on its present branch. To
+everyone else such a z stands still in a step (`Hysteresis.followed`): here it, and the forces, get
+what it changes by. Where the formula of its rate changes a step ends
+(`eventpound.solvers.fast.locate`).
+
+What a step of length h leaves is judged by the last two terms of z, and at its end by the defect
+of z', which leaves h/p of itself in z.
+"""
+
+from __future__ import annotations
+
+from eventpound.contact.kinks import still_rate
+from eventpound.mechanics.elements import (
+    branch_within,
+    memory_on_branches,
+    number_beside,
+    pull_per_z,
+    z_coefficient,
+    z_rate,
+)
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.solvers.fast.compiled import (
+    compiled,
+    compiled_apart,
+    compiled_deferred,
+    compiled_with_arrays,
+)
+from eventpound.solvers.fast.links import elongation
+from eventpound.solvers.fast.run import LOCAL_SHARE, FastRun
+from eventpound.solvers.fast.search import distance_coefficient
+from eventpound.tolerances import LENGTH
+
+
+@compiled
+def follows(run: FastRun) -> bool:
+    """Whether a z has a series of its own."""
+    return bool(run.plan.hysteresis.followed.size > 0)
+
+
+@compiled_deferred
+def find_branches(run: FastRun) -> None:
+    """Branches that z alone decides, as a run begins."""
+    plan, state, series = run.plan, run.state, run.series
+    links, noise = plan.links, LENGTH * plan.limits.length
+    for h in plan.hysteresis.followed:
+        a, z = plan.hysteresis.link[h], state.xi_r[h]
+        state.sigma[h] = 1.0
+        state.branch[a] = branch_within(a, links.law.memory, links.offset[a], series.x[a], z, noise)
+
+
+@compiled_deferred
+def put_on_branches(run: FastRun) -> None:
+    """Give links the constants of their present branches."""
+    _put_on_branches(run.plan.links.law.memory, run.state.branch, run.series.memory)
+
+
+@compiled_with_arrays
+def _put_on_branches(own: Floats, branch: Ints, out: Floats) -> None:
+    out[:] = memory_on_branches(own, branch)
+
+
+@compiled_apart
+def _begin(run: FastRun) -> None:
+    """Make ready what `follow` needs; the start of every link is known."""
+    plan, state, series = run.plan, run.state, run.series
+    links, limits, of = plan.links, plan.limits, run.series.followed
+    of.defect[0] = 0.0
+    for i in range(of.sigma.size):
+        h = plan.hysteresis.followed[i]
+        a = plan.hysteresis.link[h]
+        k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
+        series.stiffness[a] = k
+        error = limits.atol_z[h] + limits.rtol * abs(series.z[h, 0])
+        of.sigma[i], of.weight[i] = 0.0, 1.0 / (LOCAL_SHARE * error)
+
+
+@compiled_deferred
+def follow(k: int, run: FastRun) -> None:
+    """Add coefficient k of the forces of memories to links and clusters; k + 1 of every z follows.
+
+    Those of displacements are known up to k + 1.
+    """
+    plan, series, limits = run.plan, run.series, run.plan.limits
+    memory, of, noise = series.memory, series.followed, still_rate(limits.length, limits.time)
+    if k == 0:
+        _begin(run)
+    for i in range(of.sigma.size):
+        h = plan.hysteresis.followed[i]
+        a = plan.hysteresis.link[h]
+        first, second = series.ends[a, 0], series.ends[a, 1]
+        if first == second:
+            continue
+        z, x_rate = series.z[h], series.speed[h]
+        if k > 0:
+            # The force at the start has all of it.
+            force = pull_per_z(a, memory) * z[k]
+            series.F[a, k] += force
+            if first >= 0:
+                series.force[first] += force
+            if second >= 0:
+                series.force[second] -= force
+        x_rate[k] = (k + 1) * distance_coefficient(first, second, k + 1, series)
+        level = noise if k == 0 else noise / limits.time if k == 1 else 0.0
+        if of.sigma[i] == 0.0 and abs(x_rate[k]) > level:
+            of.sigma[i] = 1.0 if x_rate[k] > 0.0 else -1.0
+        beside = series.z[plan.links.z_of_link[number_beside(a, memory)]]
+        rate = z_coefficient(a, k, memory, x_rate, z, beside, series.power[h], of.sigma[i])
+        z[k + 1] = rate / (k + 1)
+
+
+@compiled_deferred
+def last_of_followed(order: int, power: float, over: float, run: FastRun) -> float:
+    """The last two terms of z in units of their tolerance; `power` is h^(order-1), `over` 1/h."""
+    plan, series, worst = run.plan, run.series, 0.0
+    of = series.followed
+    for i in range(of.sigma.size):
+        h = plan.hysteresis.followed[i]
+        a, z = plan.hysteresis.link[h], series.z[h]
+        if series.ends[a, 0] != series.ends[a, 1]:
+            last = power * max(abs(z[order - 1]), over * abs(z[order - 2]))
+            worst = max(worst, last * of.weight[i])
+    return worst
+
+
+@compiled_deferred
+def see_followed(tau: float, order: int, run: FastRun) -> None:
+    """Add to what is `seen` what z have changed by after tau (s); how well they hold there."""
+    plan, series, seen = run.plan, run.series, run.seen
+    links, of = plan.links, run.series.followed
+    for i in range(of.sigma.size):
+        h = plan.hysteresis.followed[i]
+        a = plan.hysteresis.link[h]
+        if series.ends[a, 0] == series.ends[a, 1]:
+            continue
+        change, _ = _change(tau, order, series.z[h])
+        seen.z[h] += change
+        force = pull_per_z(a, series.memory) * change
+        seen.force[a] += force
+        first, second = links.ends[a, 0], links.ends[a, 1]
+        if first >= 0:
+            seen.body_force[first] += force
+        else:
+            seen.base[1] += force
+        if second >= 0:
+            seen.body_force[second] -= force
+        else:
+            seen.base[1] -= force
+    of.defect[0] = 0.0
+    for i in range(of.sigma.size):
+        of.defect[0] = max(of.defect[0], _defect(i, tau, order, run))
+
+
+@compiled
+def _change(tau: float, order: int, z: Floats) -> tuple[float, float]:
+    """What z changes by in tau (s), and its rate then."""
+    change, rate = 0.0, 0.0
+    for k in range(order - 1, 0, -1):
+        rate = rate * tau + change
+        change = change * tau + z[k]
+    return change * tau, rate * tau + change
+
+
+@compiled_apart
+def _defect(i: int, tau: float, order: int, run: FastRun) -> float:
+    """What the defect of z' after tau (s) leaves in z, in units of its tolerance."""
+    plan, series, seen, of = run.plan, run.series, run.seen, run.series.followed
+    h = plan.hysteresis.followed[i]
+    a = plan.hysteresis.link[h]
+    if series.ends[a, 0] == series.ends[a, 1]:
+        return 0.0
+    _, x_rate = elongation(plan.links.ends[a, 0], plan.links.ends[a, 1], seen.u, seen.v)
+    beside = seen.z[plan.links.z_of_link[number_beside(a, series.memory)]]
+    _, slope = _change(tau, order, series.z[h])
+    rate = z_rate(a, series.memory, x_rate, of.sigma[i], seen.z[h], beside)
+    return abs(rate - slope) * tau / order * of.weight[i]
+
+
+@compiled_deferred
+def keep_followed(ended: bool, run: FastRun) -> None:
+    """Make z at the end of a step the present ones; exactly zero where one `ended` it there."""
+    for h in run.plan.hysteresis.followed:
+        at_zero = ended and run.happened.crossed[h]
+        run.state.xi_r[h] = 0.0 if at_zero else run.seen.z[h]
+        run.happened.crossed[h] = False
