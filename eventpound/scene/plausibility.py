@@ -13,8 +13,8 @@ from eventpound.scene.damping import ratio_coefficient
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import local_periods, longest_period, nominal_stiffness
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BoucWen
-from eventpound.scene.structures import isolated, structures_of
+from eventpound.scene.spring import GROUND, Backfill, BoucWen, Slider
+from eventpound.scene.structures import isolated, joined_groups, structures_of
 from eventpound.units import STANDARD_GRAVITY
 
 LARGEST_RATIO = 0.3
@@ -29,6 +29,8 @@ LARGEST_YIELD_FORCE = 2.0
 """As a part of the weight of everything that springs join to it."""
 LARGEST_STRENGTH = 5.0
 """Q over mass and peak ground acceleration, Pi_Q."""
+LEAST_LOAD, LARGEST_LOAD = 0.5, 5.0
+"""Normal forces of sliders over the weight that nothing else holds: it may carry more."""
 LARGEST_YIELD_DISPLACEMENT, LARGEST_GAP = 0.5, 1.0
 """(m)"""
 ROWS_A_PERIOD = 10.0
@@ -70,6 +72,7 @@ def doubts(
         *_unit_doubts(bare),
         *_motion_doubts(scene),
         *_spring_doubts(scene),
+        *_load_doubts(scene),
         *(_ratio_doubts(ratios) or _damping_doubts(scene)),
         *_isolation_doubts(scene),
         *_period_doubts(scene, output_step),
@@ -134,6 +137,27 @@ def _spring_doubts(scene: Scene) -> Iterator[Doubt]:
                 f"spring '{spring.name}': a yield displacement of {law.yield_displacement:.4g} m; "
                 f"usual is up to {LARGEST_YIELD_DISPLACEMENT:g} m",
             )
+
+
+def _load_doubts(scene: Scene) -> Iterator[Doubt]:
+    """Loads of sliders, where bodies stand on them and on nothing else."""
+    names = [GROUND, *(body.name for body in scene.bodies)]
+    bearings = [
+        ({*spring.between}, law.normal_force)
+        for spring in scene.springs
+        if isinstance(law := spring.law, Slider)
+    ]
+    beside = [s.between for s in scene.springs if not isinstance(s.law, Slider | Backfill)]
+    for group in joined_groups(names, beside):
+        under = [force for ends, force in bearings if len(ends.intersection(group)) == 1]
+        if GROUND in group or not under:
+            continue
+        mass = sum(body.mass for body in scene.bodies if body.name in group)
+        part = sum(under) / (mass * STANDARD_GRAVITY)
+        if not LEAST_LOAD <= part <= LARGEST_LOAD:
+            usual = f"usual are {LEAST_LOAD:g} to {LARGEST_LOAD:g}"
+            carried = f"on sliders with normal forces of {part:.3g} times its weight"
+            yield "normal force", f"body '{group[0]}': stands {carried}; {usual}"
 
 
 def _ratio_doubts(ratios: Sequence[tuple[str, float]]) -> list[Doubt]:

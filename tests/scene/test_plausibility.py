@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 
 from eventpound.motion import Cosine, Record
-from eventpound.scene import GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
+from eventpound.scene import (
+    GROUND,
+    Backfill,
+    Body,
+    BoucWen,
+    Contact,
+    Dashpot,
+    Linear,
+    Scene,
+    Slider,
+    Spring,
+)
 from eventpound.scene.plausibility import doubts
 
 USUAL = Scene(
@@ -51,6 +62,21 @@ def test_a_usual_scene_is_silent() -> None:
 def test_what_is_unlikely(changes: dict[str, object], said: str) -> None:
     scene = replace(USUAL, **changes)  # type: ignore[arg-type]
     assert any(said in text for text in doubts(scene)), doubts(scene)
+
+
+@pytest.mark.parametrize(("force", "silent"), [(3e3, False), (2e6, True), (3e9, False)])
+def test_a_deck_on_sliders_that_do_not_carry_it(force: float, silent: bool) -> None:
+    # Soil holds nothing up; a pier below does, and a joint slider beside it is no bearing.
+    deck, pier = Body("deck", 4e5), Body("pier", 1e5)
+    springs = (
+        Spring("pier", (GROUND, "pier"), Linear(2e7)),
+        *(Spring(f"on {end}", (end, "deck"), Slider(0.05, force, 1e6)) for end in (GROUND, "pier")),
+        Spring("soil", (GROUND, "deck"), Backfill.of_wall(2.0, 10.0, 0.05)),
+    )
+    found = doubts(Scene((deck, pier), springs, motion=Cosine(4.0, 0.8)))
+    assert any(text.startswith("body 'deck': stands on sliders") for text in found) != silent
+    held = (*springs, Spring("spring", (GROUND, "deck"), Linear(1e7)))
+    assert doubts(Scene((deck, pier), held, motion=Cosine(4.0, 0.8))) == []
 
 
 def test_a_chosen_step_that_is_too_coarse() -> None:
