@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound import simulate
+from eventpound import simulate, simulate_many
 from eventpound.errors import InputError
 from eventpound.motion import MavroeidisPapageorgiou, NoMotion
 from eventpound.response import Response
@@ -103,6 +103,20 @@ def test_motion_is_that_of_soil_which_remembers_its_deepest_point(
         if (depth := soil.depth(np.array([b.displacement for b in scene.bodies]))) > 0.0
     )  # fmt: skip
     assert found.energy.hysteretic == pytest.approx(stored - begun, rel=1e-7)
+
+
+def test_each_of_many_runs_has_the_push_on_its_own_soil() -> None:
+    gaps, forces = np.array([0.01, 0.03]), np.array([4e6, 6e6])
+    names = ["springs.left.passive_force", "springs.left.passive_depth"]
+    varied = {"spring.left.gap": gaps, "spring.left.ultimate_force": forces}
+    many = simulate_many(BETWEEN_TWO, varied, quantities=names, duration=3.0)
+    for i, (gap, force) in enumerate(zip(gaps, forces, strict=True)):
+        left = replace(LEFT, law=replace(SOIL, gap=gap, ultimate_force=force))
+        history = simulate(replace(BETWEEN_TWO, springs=(HELD, left, RIGHT)), duration=3.0).history
+        found = many.table[names].iloc[i]
+        # A row stands at each turn.
+        assert found.iloc[0] == pytest.approx(-history["force.left"].min(), rel=1e-6)
+        assert found.iloc[1] == pytest.approx(-history["u.deck"].min() - gap, rel=1e-6)
 
 
 def test_soil_under_a_slow_push_goes_along_its_loop_by_hand() -> None:
