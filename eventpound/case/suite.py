@@ -232,7 +232,9 @@ def read_suite(table: Table, options: RecordOptions | None) -> Suite | None:
     pattern: str | None = None
     synthetic: tuple[tuple[int, int], ...] = ()
     if table.has("suite"):
-        pattern = table.text("suite", 'a pattern of files, "folder/*.AT2", or a list of them')
+        pattern = table.text(
+            "suite", 'a pattern of files, "folder/*.AT2", or a file that lists them, "records.csv"'
+        )
         if table.has("synthetic"):
             table.reject("synthetic", "one of suite and synthetic")
             return None
