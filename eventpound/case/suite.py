@@ -27,6 +27,8 @@ KEPT = 128
 """Records that are kept when they have been read."""
 LARGEST_SEED = 2**63 - 1
 """Of a synthetic motion, and the largest number of one."""
+RECORDS = 'a pattern of files, "folder/*.AT2", or a file that lists them, "records.csv"'
+"""What names the records of a suite."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,9 +234,7 @@ def read_suite(table: Table, options: RecordOptions | None) -> Suite | None:
     pattern: str | None = None
     synthetic: tuple[tuple[int, int], ...] = ()
     if table.has("suite"):
-        pattern = table.text(
-            "suite", 'a pattern of files, "folder/*.AT2", or a file that lists them, "records.csv"'
-        )
+        pattern = table.text("suite", RECORDS)
         if table.has("synthetic"):
             table.reject("synthetic", "one of suite and synthetic")
             return None

@@ -22,7 +22,7 @@ from pathlib import Path
 
 from eventpound.case.loading import read_case, read_document
 from eventpound.case.options import default_solver, read_solver
-from eventpound.case.suite import with_suite
+from eventpound.case.suite import RECORDS, with_suite
 from eventpound.case.table import CaseProblem, Table
 from eventpound.errors import InputError
 from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
@@ -167,7 +167,7 @@ def _table(document: _Document, key: str) -> _Document:
 
 def _under_records(study: Table, excitation: object) -> _Document:
     """``[excitation]`` with the records of ``[study]``, which are relative to the case, too."""
-    pattern = study.text("records", 'a pattern of files, "folder/*.AT2", or a list of them')
+    pattern = study.text("records", RECORDS)
     given = excitation if isinstance(excitation, dict) else {"kind": "record"}
     if given.get("kind") != "record":
         study.reject("records", 'no records, where [excitation] is not of kind = "record"')
