@@ -110,10 +110,12 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
         period = 2.0 * np.pi / omega
     # Relative to the largest, because the sum of masses may be no double.
     relative = mass / mass.max()
+    share = (relative @ (shape * root.max())) ** 2 / relative.sum()
     return Modes(
         tuple(bodies),
         period,
-        (relative @ (shape * root.max())) ** 2 / relative.sum(),
+        # What rounding leaves of a mode in which the masses balance is nothing, too.
+        np.where(share > RIGID, share, 0.0),
         np.where(omega > 0.0, ratio, np.nan),
         shape / largest,
     )

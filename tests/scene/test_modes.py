@@ -237,3 +237,13 @@ def test_what_stands_on_isolators() -> None:
     # Held beside the isolators by an elastic spring elsewhere.
     held = (*scene.springs, Spring("tie", (GROUND, "f1"), Linear(1e6)))
     assert isolated(Scene(scene.bodies, held)) == set()
+
+
+def test_a_mode_in_which_masses_balance_has_none_of_them() -> None:
+    bodies = tuple(Body(name, 3.0e5) for name in "abc")
+    springs = [Spring(f"k{i}", ("ground", name), Linear(1.0e7)) for i, name in enumerate("abc")]
+    joined = [
+        Spring(f"j{i}", ends, Linear(7.0e6)) for i, ends in enumerate((("a", "b"), ("b", "c")))
+    ]
+    share = modes_of(Scene(bodies, (*springs, *joined)), ["a", "b", "c"]).share
+    assert share.tolist() == [pytest.approx(1.0), 0.0, 0.0]
