@@ -171,7 +171,7 @@ SHARED_BY_METHODS = {
     f"{_MECHANICS}.reduced": "the equations of motion",
     f"{_MECHANICS}.observables": "forces and accelerations of a state",
     f"{_EVENTS}.reversals": "reversals at which steps end",
-    "eventpound.solvers.sundials.stepping": "how a step of CVODE is taken",
+    "eventpound.solvers.sundials.compiled_cvode": "how a step of CVODE is taken",
 }
 """What the methods of one solver share besides."""
 

@@ -39,7 +39,7 @@ from eventpound.solvers.sundials.descriptor_modes import DescriptorModes
 from eventpound.solvers.sundials.memory import IdaMemory
 
 ROOT = Path(eventpound.__file__).parent
-OWN = [*ROOT.glob("mechanics/descriptor*.py"), *ROOT.glob("solvers/sundials/ida_*.py")]
+OWN = [*ROOT.glob("mechanics/descriptor*.py"), ROOT / "solvers/sundials/compiled_ida.py"]
 OWN += [*ROOT.glob("solvers/sundials/descriptor_*.py"), ROOT / "solvers/ida.py"]
 
 

@@ -6,6 +6,7 @@ out of reach (`Wrapped`); what they ask in return is in `eventpound.solvers.even
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,9 @@ from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, Descrip
 from eventpound.solvers.sundials.descriptor_steps import Followed, look_at_start
 from eventpound.solvers.sundials.loop import (
     ROOT_RETURN,
+    AtRoot,
     Numbers,
+    Steps,
     carry_on,
     root_at,
     steps_to_roots,
@@ -43,9 +46,16 @@ class _Duties:
     ----------
     name : str
         What SUNDIALS calls the solver.
+    _begin, _meaning, _steps, _at_root : callable
+        `start` in the present mode; what a negative flag of the library means; `carry_on`;
+        `root_at`.
     """
 
     name: str
+    _begin: Callable[[float, Floats, Floats], None]
+    _meaning: Callable[[int], str]
+    _steps: Steps
+    _at_root: AtRoot
 
     def __init__(self) -> None:
         self.starts = 0
@@ -77,10 +87,6 @@ class _Duties:
         self._begin(tau, y, atol)
         self.starts += 1
 
-    def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
-        """`start`, in the present mode."""
-        raise NotImplementedError
-
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> StepsTaken:
@@ -102,25 +108,19 @@ class _Duties:
             )
         return stretch
 
-    def _meaning(self, flag: int) -> str:
-        """What a negative flag of the library means."""
-        raise NotImplementedError
-
-    def _steps(
-        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
-    ) -> Numbers:
-        """`carry_on`."""
-        raise NotImplementedError
-
-    def _at_root(
-        self, start: float, tau: float, bound: Floats, allowed: float, y: Floats
-    ) -> tuple[int, float]:
-        """`root_at`."""
-        raise NotImplementedError
-
 
 class Direct(_Duties):
-    """What compiled calls of CVODE and IDA have in common."""
+    """What compiled calls of CVODE and IDA have in common.
+
+    Attributes
+    ----------
+    _kernels : tuple of callable
+        Of the handles: `carry_on`, `root_at`, and the coefficients of SUNDIALS' polynomial of the
+        last step about a local time (s).
+    """
+
+    _kernels: tuple[Callable[..., Numbers], Callable[..., tuple[int, float]], Callable[..., Floats]]
+    _handles: Any
 
     def __init__(self) -> None:
         super().__init__()
@@ -151,11 +151,14 @@ class Direct(_Duties):
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on SUNDIALS' own polynomial, as the loop knows it."""
-        return Dense(self._derivatives(end), end, start, end, self._frame, False, NO_GAPS)
+        coefficients = self._kernels[2](self._handles, end)
+        return Dense(coefficients, end, start, end, self._frame, False, NO_GAPS)
 
-    def _derivatives(self, t: float) -> Floats:
-        """Coefficients of that about the local time t (s)."""
-        raise NotImplementedError
+    def _steps(self, *of: Any) -> Numbers:
+        return self._kernels[0](self._handles, *of)
+
+    def _at_root(self, *of: Any) -> tuple[int, float]:
+        return self._kernels[1](self._handles, *of)
 
 
 class Wrapped(_Duties):
@@ -163,7 +166,23 @@ class Wrapped(_Duties):
 
     Where its own root finder finds events, each start is one of a new object: scikit-sundae keeps
     the log of roots on the function that it is given, for good.
+
+    Attributes
+    ----------
+    _values : callable
+        Fills an array with the root functions of unknowns, which are overwritten.
+    _relative, _clusters, _in_frame : callable
+        Of a local time (s) and unknowns there: the same relative to the ground, in their place; the
+        state of the clusters, both relative to the ground; the same, both in the moving frame.
+    _z_of : callable
+        Every z, (H,), of unknowns; zero for those that they leave out.
     """
+
+    _values: Callable[[float, Floats, Floats], None]
+    _relative: Callable[[float, Floats], Floats]
+    _clusters: Callable[[float, Floats], Floats]
+    _in_frame: Callable[[float, Floats], Floats]
+    _z_of: Callable[[Floats], Floats]
 
     def __init__(self) -> None:
         super().__init__()
@@ -210,14 +229,6 @@ class Wrapped(_Duties):
         self._values(tau, y.copy(), out)
         if tau > self._whole[0]:
             self._whole = tau, y.copy()
-
-    def _values(self, tau: float, y: Floats, out: Floats) -> None:
-        """Fill `out` with the root functions of unknowns, which are overwritten."""
-        raise NotImplementedError
-
-    def _relative(self, tau: float, y: Floats) -> Floats:
-        """The unknowns relative to the ground, in their place."""
-        raise NotImplementedError
 
     def _interpolated(self, tau: float) -> Floats:
         """The unknowns at the local time `tau` (s) of the last step."""
@@ -293,23 +304,11 @@ class Wrapped(_Duties):
         """Of `root_at`."""
         y[:] = self._clusters(tau, self._relative(tau, self._interpolated(tau)))
 
-    def _z_of(self, y: Floats) -> Floats:
-        """Every z, (H,), of unknowns; zero for those that they leave out."""
-        raise NotImplementedError
-
-    def _clusters(self, tau: float, y: Floats) -> Floats:
-        """The state of the clusters of unknowns, both relative to the ground."""
-        raise NotImplementedError
-
     def dense(self, start: float, end: float) -> Dense:
         """The last step on SUNDIALS' own polynomial, from its values."""
         times = end - (end - start) * NODES
         values = np.array([self._in_frame(tau, self._interpolated(tau)) for tau in times])
         return from_values(values, start, end, self._frame)
-
-    def _in_frame(self, tau: float, y: Floats) -> Floats:
-        """The state of the clusters of unknowns, both in the moving frame."""
-        raise NotImplementedError
 
 
 class InDescriptorForm(_Duties):
