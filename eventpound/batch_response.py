@@ -11,15 +11,15 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.contacts import (
+from eventpound.quantities.lookup import tabled, values_of
+from eventpound.quantities.runs import (
     Impacts,
+    Runs,
     blank_numbers,
     impacts_of,
     numbers_of,
     of_recordings,
 )
-from eventpound.quantities.lookup import tabled, values_of
-from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import EventKind, Extremes, Recording
 

@@ -1,18 +1,24 @@
-"""Several solvers on one case, each at several tolerances or steps, and other programs' results."""
+"""Several solvers on one case, each at several tolerances or steps, and other programs' results.
+
+A run of a scene with contact laws is held against that scene, which tells what its steps
+do, and against the same scene under Newton's law, which tells what they and the springs do. The
+reference of the one held against that of the other is what the springs alone do.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from eventpound.accuracy.foreign_history import judge_history, read_foreign
-from eventpound.accuracy.reference import Reference, reference_of
-from eventpound.accuracy.rigid_law import check_restitution, error_of_laws, with_rigid
-from eventpound.accuracy.stated_bounds import stated_bounds
+from eventpound.accuracy.quantities import errors_of
+from eventpound.accuracy.reference import Reference, reference_of, stated_bounds
 from eventpound.accuracy.work_precision import Judged, SolverChoice, is_stepped, judge
-from eventpound.case.case import Case
-from eventpound.errors import InputError
+from eventpound.case.case import Case, RunOptions
+from eventpound.errors import ComputationError, InputError
+from eventpound.scene.check import check_scene
+from eventpound.scene.rigid import rigid
 from eventpound.score import Difference
 from eventpound.simulation import check_case, check_solver, refuse_suite
 from eventpound.solvers import solver_named
@@ -128,7 +134,7 @@ def compare(
     repeats : int
         Runs whose median time is taken.
     restitution : float, optional
-        ε of the rigid law beside contact laws (`eventpound.accuracy.rigid_law`).
+        ε of the rigid law beside contact laws.
     progress : callable, optional
         Told what is being done.
 
@@ -147,14 +153,14 @@ def compare(
     if not asked and not against:
         raise InputError("compare: found nothing to judge; accepted: a solver, or a history")
     warn_left_out(case, Way.COMPARE)
-    check_restitution(case, restitution)
+    _check_restitution(case, restitution)
     for entry in asked:
         entry.task(case)
     histories = [read_foreign(case, path, columns or {}) for path in against]
     progress("reference")
     reference = reference_of(case, case.run, stated_bounds(case))
-    reference = with_rigid(case, case.run, reference, restitution)
-    laws = error_of_laws(case, reference)
+    reference = _with_rigid(case, case.run, reference, restitution)
+    laws = _error_of_laws(case, reference)
     runs: list[Judged] = []
     try:
         for entry in asked:
@@ -171,3 +177,59 @@ def compare(
             raise
         raise ComparisonInterrupted(Comparison(case, reference, tuple(runs), laws)) from None
     return Comparison(case, reference, tuple(runs), laws)
+
+
+def _check_restitution(case: Case, restitution: float | None) -> None:
+    """Refuse a restitution that no contact of a case can be held against.
+
+    Raises
+    ------
+    InputError
+        Where no contact has a law, or it is not from 0 to 1.
+    """
+    if restitution is None:
+        return
+    if all(contact.law is None for contact in case.scene.contacts):
+        raise InputError("--restitution: no contact of the case has a law of its own")
+    if not 0.0 <= restitution <= 1.0:
+        raise InputError(f"--restitution: found {restitution!r}; accepted: a number from 0 to 1")
+
+
+def _with_rigid(
+    case: Case, run: RunOptions, reference: Reference, restitution: float | None = None
+) -> Reference:
+    """A reference with that of the rigid law beside it, where contacts have laws.
+
+    Parameters
+    ----------
+    case : Case
+        What is run.
+    run : RunOptions
+        The stretch of time.
+    reference : Reference
+        Of the case over that.
+    restitution : float, optional
+        ε in the place of every law; without, what each stands for. `_check_restitution` has it.
+    """
+    laws = [contact for contact in case.scene.contacts if contact.law is not None]
+    if not laws:
+        return reference
+    scene = rigid(case.scene, restitution)
+    try:
+        check_scene(scene)
+        beside = reference_of(replace(case, scene=scene), run, None)
+    except (InputError, ComputationError) as error:
+        return replace(reference, rigid_words=f"not to be had: {error}")
+    names = {contact.name for contact in laws}
+    said = [f"{c.name} {c.restitution:.3g}" for c in scene.contacts if c.name in names]
+    words = f"Newton's with a restitution of {', '.join(said)}; {beside.words}"
+    return replace(reference, rigid=beside, rigid_words=words)
+
+
+def _error_of_laws(case: Case, reference: Reference) -> Difference | None:
+    """What the contact laws alone do to the motion; None where no rigid law is beside it."""
+    beside = reference.rigid
+    if beside is None:
+        return None
+    rows = beside.rows(reference.task.output_times)
+    return errors_of(case.scene, reference.recording, beside.truth, rows, rests=False)

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from eventpound.case.record_file import find_record
-from eventpound.case.record_processing import read_processing
 from eventpound.case.record_scaling import RecordScaling, read_scaling
 from eventpound.case.table import Table
+from eventpound.errors import InputError
 from eventpound.motion import Record, RecordData, read_record
 from eventpound.motion.processing import Processing
 from eventpound.units import Dimension
@@ -137,7 +137,7 @@ def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
         return None
     if "" in texts.values():
         return None
-    processing = read_processing(table.table("processing"))
+    processing = _read_processing(table.table("processing"))
     if processing is None or size is None:
         return None
     response = texts["response"]
@@ -153,3 +153,47 @@ def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
         processing,
         size,
     )
+
+
+def _read_processing(table: Table) -> Processing | None:
+    """Read ``processing = { baseline, highpass, lowpass, order }``.
+
+    Parameters
+    ----------
+    table : Table
+        The table; empty where it is not given.
+
+    Returns
+    -------
+    Processing or None
+        None where there are problems; they are noted.
+    """
+    whole = {key: _whole_number(table, key) for key in ("baseline", "order")}
+    corners = {
+        key: table.optional_quantity(key, Dimension.FREQUENCY) for key in ("highpass", "lowpass")
+    }
+    table.close()
+    if any(x is not None and math.isnan(x) for x in (*whole.values(), *corners.values())):
+        return None
+    baseline, order = whole["baseline"], whole["order"]
+    try:
+        return Processing(
+            None if baseline is None else int(baseline),
+            corners["highpass"],
+            corners["lowpass"],
+            4 if order is None else int(order),
+        )
+    except InputError as error:
+        table.report("", str(error))
+        return None
+
+
+def _whole_number(table: Table, key: str) -> float | None:
+    """A whole number; None where it is not given, NaN where it is wrong."""
+    if not table.has(key):
+        return None
+    value = table.data[key]
+    if isinstance(value, bool) or not isinstance(value, int):
+        table.reject(key, "a whole number")
+        return math.nan
+    return value

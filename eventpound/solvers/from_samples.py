@@ -3,7 +3,9 @@
 A stepper that advances u, v (and z) from one time to the next hands its rows over and
 gets the `Recording` that a solver must return. Extremes are those of the rows, so they
 are as good as the rows are dense; impacts, where the stepper does not list them, are read
-off the rows; contact forces, impulses and resting times are not known (NaN).
+off the rows (`eventpound.score.turns`): a near miss that coarse rows do not show to be one has a
+rate of the acceleration times a step there, and counts as a very slow impact. Contact forces,
+impulses and resting times are not known (NaN).
 """
 
 from __future__ import annotations
@@ -15,8 +17,8 @@ import numpy as np
 
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.solvers.base import Event, Extremes, History, Recording, Task, Work
-from eventpound.solvers.inferred_impacts import inferred_impacts
+from eventpound.score import turns
+from eventpound.solvers.base import Event, EventKind, Extremes, History, Recording, Task, Work
 from eventpound.tolerances import SAME_SAMPLE
 
 
@@ -74,6 +76,36 @@ def sampled_recording(
         np.ones(model.contacts, np.bool_),
         work or Work(steps=t.size - 1),
         largest_gap=full.gap.max(axis=0, initial=-np.inf),
+    )
+
+
+def inferred_impacts(model: Model, t: Floats, u: Floats, v: Floats) -> tuple[Event, ...]:
+    """Impacts of a sampled motion, in order of time.
+
+    Parameters
+    ----------
+    model : Model
+        The scene.
+    t : ndarray, shape (n,)
+        Times (s), not decreasing; two rows of one time are before and after a jump.
+    u, v : ndarray, shape (n, N)
+        Displacements (m) and velocities (m/s).
+
+    Returns
+    -------
+    tuple of Event
+        Impulses and lost energies are not known (NaN); every impact is a group of its own.
+    """
+    gaps, rates = model.gaps(u), model.rates(v)
+    length = float(np.abs(u).max(initial=0.0))
+    found = [
+        (time, j, before, after)
+        for j in range(model.contacts)
+        for time, before, after in turns(t, gaps[:, j], rates[:, j], length)
+    ]
+    return tuple(
+        Event(time, EventKind.IMPACT, group, j, before, after, np.nan, np.nan)
+        for group, (time, j, before, after) in enumerate(sorted(found))
     )
 
 

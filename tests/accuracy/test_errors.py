@@ -106,7 +106,7 @@ def test_loose_runs_have_larger_errors(pair):
 
 
 def test_a_certificate_that_contradicts_the_case(pair, tmp_path):
-    from eventpound.accuracy.stated_bounds import StatedBounds
+    from eventpound.accuracy.reference import StatedBounds
 
     case, truth = pair
     (value,) = (q.value for q in truth.truth.quantities if q.name == "final.stiff.u")

@@ -12,7 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from eventpound import load_case
 from eventpound.accuracy.compare import compare, entries
 from eventpound.accuracy.comparison_tables import run_table
-from eventpound.accuracy.stated_bounds import StatedBounds
+from eventpound.accuracy.reference import StatedBounds
 from eventpound.report.work_precision import (
     graph_measure,
     peak_measure,

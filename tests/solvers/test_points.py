@@ -33,7 +33,7 @@ from eventpound.scene import (
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
-from eventpound.solvers.inferred_impacts import inferred_impacts
+from eventpound.solvers.from_samples import inferred_impacts
 from tests.properties.restored import restored
 from tests.properties.transforms import mirrored, scaled
 from tests.solvers.random_scenes import random_scene

@@ -13,8 +13,7 @@ from eventpound.mechanics.model import assemble
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind
-from eventpound.solvers.from_samples import sampled_recording
-from eventpound.solvers.inferred_impacts import inferred_impacts
+from eventpound.solvers.from_samples import inferred_impacts, sampled_recording
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -48,19 +48,21 @@ from eventpound.solvers.timestepping.equations import (
     predict,
     take_steps,
 )
-from eventpound.solvers.timestepping.record import (
+from eventpound.solvers.timestepping.stepping import (
     CONTACT,
     DONE,
     NOT_CONVERGED,
     NOT_SOLVED,
     Span,
     Stepping,
+    Structure,
     copy_values,
     gap_of,
     gap_rate,
     pull_together,
+    step_kernel,
+    step_loop,
 )
-from eventpound.solvers.timestepping.structure import Structure, step_kernel, step_loop
 from eventpound.tolerances import NO_SPEED, QUIET, STILL_GAP_RATE
 
 MOST_ITERATIONS = 60

@@ -23,13 +23,13 @@ from eventpound.solvers.base import Recording, Task, Work
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.from_samples import sampled_recording
 from eventpound.solvers.opensees import PACKAGE
-from eventpound.solvers.opensees.contacts import (
+from eventpound.solvers.opensees.elements import (
     DEFAULT,
     STEPS_IN_CONTACT,
     ContactKind,
     contact_choice,
+    elements_of,
 )
-from eventpound.solvers.opensees.elements import elements_of
 from eventpound.solvers.opensees.run import AnalysisRows, analyse
 from eventpound.solvers.settings import Settings, number
 from eventpound.tolerances import SAME_SAMPLE

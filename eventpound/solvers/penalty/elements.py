@@ -37,8 +37,8 @@ from eventpound.solvers.events.law_contacts import DRAG, TOUCH_ROWS
 from eventpound.solvers.events.run import Laws
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.settings import Settings, number
+from eventpound.solvers.timestepping.stepping import step_kernel
 from eventpound.solvers.timestepping.steps import checked_choices, largest_stiffness
-from eventpound.solvers.timestepping.structure import step_kernel
 
 _KELVIN_VOIGT, _JANKOWSKI = int(Element.KELVIN_VOIGT), int(Element.JANKOWSKI)
 

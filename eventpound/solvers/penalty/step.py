@@ -32,7 +32,7 @@ from eventpound.solvers.timestepping.equations import (
     predict,
     take_steps,
 )
-from eventpound.solvers.timestepping.record import (
+from eventpound.solvers.timestepping.stepping import (
     CONTACT,
     DONE,
     NOT_CONVERGED,
@@ -43,8 +43,9 @@ from eventpound.solvers.timestepping.record import (
     gap_of,
     gap_rate,
     pull_together,
+    step_kernel,
+    step_loop,
 )
-from eventpound.solvers.timestepping.structure import step_kernel, step_loop
 
 MOST_ITERATIONS = 60
 MOST_HALVINGS = 40

@@ -8,21 +8,33 @@ Moreau 1988; M. Jean, Comput. Methods Appl. Mech. Engrg 177, 1999, 235-257). Wit
 θ = 1/2 this is Newmark's method of average acceleration (N. M. Newmark, J. Eng.
 Mech. Div. ASCE 85, 1959, 67-94) written in velocities. Newton's matrix is
 ``M + h θ (C + h θ K)``, C and K being the tangents of the links.
+
+A law with a memory does not know time: with σ the sign of the change Δx of the elongation
+over the step, ``y = σ z`` follows
+
+    y' = |Δx| g(y),   g = dz/dx  (`eventpound.mechanics.elements.z_slopes`)
+
+over a step of length one. It is solved by the L-stable implicit Runge-Kutta
+method of two stages and order two (R. Alexander, SIAM J. Numer. Anal. 14,
+1977, 1006-1021, γ = 1 - 1/√2), each stage by Newton's method. The trapezoid
+rule would swing about the knee, where |z|^20 is stiff; backward Euler, the
+usual choice, would make every stepper first order. A reversal within a step
+is seen as the net change, an error of second order.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from eventpound.contact.cascade import EVENTS
-from eventpound.mechanics.elements import link_force, pull_per_z
+from eventpound.mechanics.elements import link_force, pull_per_z, z_slopes
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.timestepping.hysteresis import z_after
-from eventpound.solvers.timestepping.record import (
+from eventpound.solvers.timestepping.stepping import (
     DONE,
     EVALUATIONS,
     HYSTERETIC,
@@ -36,9 +48,66 @@ from eventpound.solvers.timestepping.record import (
     copy_values,
     pull_together,
     record_step,
+    step_kernel,
 )
-from eventpound.solvers.timestepping.structure import step_kernel
-from eventpound.tolerances import BALANCE, BALANCE_ROUNDING
+from eventpound.tolerances import BALANCE, BALANCE_ROUNDING, ITERATED
+
+DIAGONAL = 1.0 - 1.0 / math.sqrt(2.0)
+"""γ of the method."""
+MOST_ITERATIONS = 60
+
+
+@step_kernel
+def _stage(
+    a: int, memory: Floats, known: float, length: float, bound: float
+) -> tuple[float, float, float]:
+    """Solve ``y = known + length g(y)``; returns y, g(y) and g'(y), numbers that are none in vain.
+
+    Above zero the equation is convex, so Newton's method comes down from the
+    bound without fail.
+    """
+    y = min(known + length * z_slopes(a, memory, 1.0, 0.0, 0.0)[0], max(bound, known))
+    for _ in range(MOST_ITERATIONS):
+        g, g_y = z_slopes(a, memory, 1.0, y, 0.0)
+        change = (y - known - length * g) / (1.0 - length * g_y)
+        y -= change
+        if abs(change) <= ITERATED * max(1.0, abs(y)):
+            g, g_y = z_slopes(a, memory, 1.0, y, 0.0)
+            return y, g, g_y
+    return math.nan, math.nan, math.nan
+
+
+@step_kernel
+def z_after(a: int, memory: Floats, z: float, change: float, bound: float) -> tuple[float, float]:
+    """Return z at the end of a step and its derivative by the elongation.
+
+    Parameters
+    ----------
+    a : int
+        Number of the link.
+    memory : ndarray, shape (L, constants)
+        Constants of the laws.
+    z : float
+        At the start of the step.
+    change : float
+        Δx (m).
+    bound : float
+        Largest |z| that loading can reach.
+
+    Returns
+    -------
+    z, z_x : float
+        z and ∂z/∂Δx (1/m); not numbers where a stage has no solution.
+    """
+    sign, length = 1.0 if change >= 0.0 else -1.0, abs(change)
+    start = sign * z
+    implicit, explicit = DIAGONAL * length, (1.0 - DIAGONAL) * length
+    _, g_1, slope_1 = _stage(a, memory, start, implicit, bound)
+    y_2, g_2, slope_2 = _stage(a, memory, start + explicit * g_1, implicit, bound)
+    # The derivative by the length follows from those of the two stages.
+    by_1 = DIAGONAL * g_1 / (1.0 - implicit * slope_1)
+    by_2 = (1.0 - DIAGONAL) * g_1 + explicit * slope_1 * by_1 + DIAGONAL * g_2
+    return sign * y_2, by_2 / (1.0 - implicit * slope_2)
 
 
 class FixedStep(NamedTuple):

@@ -31,7 +31,7 @@ from eventpound.solvers.events.recorder import (
 from eventpound.solvers.events.run import Laws
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.timestepping.equations import end_of_step
-from eventpound.solvers.timestepping.record import (
+from eventpound.solvers.timestepping.stepping import (
     CONTACT,
     DONE,
     EVALUATIONS,
@@ -41,15 +41,13 @@ from eventpound.solvers.timestepping.record import (
     STEPS,
     Span,
     Stepping,
-    blank_record,
-    record_step,
-)
-from eventpound.solvers.timestepping.steps import EqualSteps, stretches
-from eventpound.solvers.timestepping.structure import (
     blank_equations,
+    blank_record,
     initial_instant,
+    record_step,
     structure_of,
 )
+from eventpound.solvers.timestepping.steps import EqualSteps, stretches
 from eventpound.tolerances import SAME_SAMPLE
 
 CHUNK = 20_000
@@ -89,7 +87,7 @@ Advance = Callable[[Span, Forcing, Any, Stepping], tuple[int, int]]
 """Takes the steps of a span, with what a method knows of contacts.
 
 Returns the number of the step before which it stopped, and one of
-`eventpound.solvers.timestepping.record`.
+`eventpound.solvers.timestepping.stepping`.
 """
 
 

@@ -21,8 +21,7 @@ from eventpound.scene import (
     Series,
     Spring,
 )
-from eventpound.solvers.opensees.contacts import contact_choice, contact_material
-from eventpound.solvers.opensees.elements import elements_of
+from eventpound.solvers.opensees.elements import contact_choice, contact_material, elements_of
 
 BOUC_WEN = BoucWen(2.0, 3.0, 0.5, exponent=4.0, beta=0.3, gamma=0.7)
 

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from eventpound.mechanics.link_law import z_bound
 from eventpound.scene import BoucWen
-from eventpound.solvers.timestepping.hysteresis import z_after
+from eventpound.solvers.timestepping.equations import z_after
 from tests.mechanics.dense import literal_z_rate, memory_of
 
 pytestmark = pytest.mark.usefixtures("interpreted")
