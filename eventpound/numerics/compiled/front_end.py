@@ -1,4 +1,4 @@
-"""Four slow spots of Numba's front end, and Python's collector, while kernels are compiled.
+"""Three slow spots of Numba's front end, and Python's collector, while kernels are compiled.
 
 Replaced are, with the same results:
 
@@ -7,7 +7,6 @@ Replaced are, with the same results:
   were set are compared first, and the hash, which upstream is made of the names of the
   options and so the same for all, is made once.
 * `BaseFunction.get_call_type`: a builtin called with the same types is resolved once.
-* `Inst._rec_list_vars`: walks the parts of a statement, most of which are no variables.
 * `_OverloadFunctionTemplate._get_jit_decorator`: while one of our kernels is compiled, what
   Numba itself brings (`np.zeros`, `min`) is a part of it, not made into machine code first.
 
@@ -25,12 +24,11 @@ from contextlib import contextmanager
 from functools import cache, partial
 from typing import Any
 
-from numba.core import ir, types
+from numba.core import types
 from numba.core.targetconfig import ConfigStack, TargetConfig
 from numba.core.types.functions import BaseFunction
 from numba.core.typing.templates import _OverloadFunctionTemplate
 
-_NO_VARIABLES = (ir.Loc, str, int, float, bool, type(None))
 _CALLS = "_eventpound_calls"
 _slow_equal = TargetConfig.__eq__
 _slow_call_type = BaseFunction.get_call_type
@@ -71,7 +69,6 @@ def _install() -> None:
     TargetConfig.__eq__ = _equal
     TargetConfig.__hash__ = _hash
     BaseFunction.get_call_type = _call_type
-    ir.Inst._rec_list_vars = _variables_in
     _OverloadFunctionTemplate._get_jit_decorator = _decorator
 
 
@@ -125,27 +122,3 @@ def _call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:
         key = (id(context), args, tuple(kws.items()), None if flags is None else flags.copy())
         known[key] = signature, self._impl_keys[signature.args]
     return signature
-
-
-def _variables_in(self: Any, value: Any) -> list[Any]:
-    kind = type(value)
-    if kind is ir.Var:
-        return [value]
-    if kind in _NO_VARIABLES:
-        return []
-    if isinstance(value, ir.Var):
-        return [value]
-    if isinstance(value, ir.Inst):
-        return value.list_vars()
-    if isinstance(value, dict):
-        value = value.values()
-    elif not isinstance(value, list | tuple):
-        return []
-    found = []
-    for each in value:
-        kind = type(each)
-        if kind is ir.Var:
-            found.append(each)
-        elif kind not in _NO_VARIABLES:
-            found.extend(_variables_in(self, each))
-    return found

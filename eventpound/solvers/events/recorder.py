@@ -7,7 +7,7 @@ that a compiled step never needs more.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -23,7 +23,7 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import in_python, scalar_kernel
+from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import ENDS_OF_REST, Energy, Event, EventKind, Extremes, History
 from eventpound.solvers.events.scales import SceneScales
@@ -110,6 +110,26 @@ def write_row(t: float, seen: Observed, journal: Journal) -> None:
     force = line_of(seen.u.size, seen.z.shape[1], springs, seen.gap.shape[1]).force
     for s in range(springs):
         row[force + s] -= journal.damping[s] * seen.elongation[1, s]
+
+
+@kernel
+def write_samples(
+    show: Callable[[Any, float], Observed],
+    of: Any,
+    origin: float,
+    start: float,
+    end: float,
+    journal: Journal,
+) -> None:
+    """History at the output times of a step from `start` to `end` (s, from `origin`).
+
+    `show` observes the motion of the step at a time of it, and is handed `of`, too.
+    """
+    while is_due(origin + end, journal):
+        t = journal.times[journal.cursor[PASSED]]
+        if t >= origin + start:
+            write_row(t, show(of, max(t - origin, start)), journal)
+        journal.cursor[PASSED] += 1
 
 
 def row_width(model: Model) -> int:

@@ -9,6 +9,7 @@ import numpy as np
 
 from eventpound.contact.cascade import T
 from eventpound.mechanics.monitored import update_extremes
+from eventpound.mechanics.observables import Observed
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, next_corner
 from eventpound.numerics.compiled import kernel
@@ -18,7 +19,7 @@ from eventpound.solvers.events.event_bounds import inspect_step
 from eventpound.solvers.events.law_contacts import gather
 from eventpound.solvers.events.location import add_vanished, first_event, update_peaks
 from eventpound.solvers.events.present import close_marked, forcing_now, put_instant, take
-from eventpound.solvers.events.recorder import PASSED, Journal, is_due, write_row
+from eventpound.solvers.events.recorder import is_due, write_samples
 from eventpound.solvers.events.run import FINDER, Dynamics, Run
 from eventpound.solvers.events.step_check import broken_contact
 
@@ -33,15 +34,9 @@ _SAMPLES = int(Family.SAMPLES)
 
 
 @kernel
-def write_samples(end: float, step: DenseStep, journal: Journal) -> None:
-    """History at the output times of a step before the local time `end` (s)."""
-    origin = step.forcing.start
-    while is_due(origin + end, journal):
-        t = journal.times[journal.cursor[PASSED]]
-        if t >= origin + step.dense.start:
-            look(max(t - origin, step.dense.start), step)
-            write_row(t, step.seen, journal)
-        journal.cursor[PASSED] += 1
+def _seen_at(step: DenseStep, tau: float) -> Observed:
+    look(tau, step)
+    return step.seen
 
 
 @kernel
@@ -75,7 +70,7 @@ def end_of_look(end: float, marked: bool, run: Run, step: DenseStep) -> None:
     if marked:
         update_peaks(run.marks.peak, end, run.rules.near, record.running, step)
     if is_due(origin + end, record.journal):
-        write_samples(end, step, record.journal)
+        write_samples(_seen_at, step, origin, step.dense.start, end, record.journal)
 
 
 @kernel

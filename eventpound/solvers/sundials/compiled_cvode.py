@@ -15,6 +15,7 @@ from eventpound.numerics.compiled import in_python, kernel, loop_kernel
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds, last_time
+from eventpound.solvers.events.recorder import write_samples
 from eventpound.solvers.events.reversals import take_directions
 from eventpound.solvers.events.step_check import Examination, examine, rate_at
 from eventpound.solvers.sundials.callback_data import Roots, address_of
@@ -38,7 +39,6 @@ from eventpound.solvers.sundials.loop import (
     reversal_in,
     root_at,
     was_told,
-    write_samples,
 )
 from eventpound.solvers.sundials.memory import CvodeMemory, MemoryLayout, layout
 from eventpound.solvers.sundials.root_values import cluster_roots
@@ -153,18 +153,20 @@ def _check(
 @kernel
 def _write(handles: CvodeHandles, start: float, end: float, e: Examination) -> None:
     """History at the output times of a step."""
-    write_samples(_show, handles, start, end, e)
+    write_samples(_shown, (handles, e), e.forcing.start, start, end, e.record.journal)
 
 
 @kernel
-def _show(handles: CvodeHandles, tau: float, seen: Observed, e: Examination) -> None:
-    """Observe the motion at `tau` (s) of the last step."""
+def _shown(of: tuple[CvodeHandles, Examination], tau: float) -> Observed:
+    """The motion at `tau` (s) of the last step, as it is observed."""
+    handles, e = of
     system = e.dynamics.system
     y = array_at(array_pointer(handles.look), system.size, np.float64)
     get_dky(handles.memory, tau, 0, handles.look)
     to_frame(e.frame, e.forcing.start + tau, -1.0, system.iq, system.iv, y)
     # Nothing in a line depends on rates: any will do.
-    observe(tau, y, e.rate[0], system, e.dynamics.bodies, e.forcing, seen)
+    observe(tau, y, e.rate[0], system, e.dynamics.bodies, e.forcing, e.looks[4])
+    return e.looks[4]
 
 
 @kernel

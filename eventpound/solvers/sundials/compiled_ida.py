@@ -19,6 +19,7 @@ from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel, loop_kernel
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.integrator import Bounds, last_time
+from eventpound.solvers.events.recorder import write_samples
 from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import Roots, address_of
@@ -51,7 +52,6 @@ from eventpound.solvers.sundials.loop import (
     carry_on,
     root_at,
     was_told,
-    write_samples,
 )
 from eventpound.solvers.sundials.memory import IdaMemory
 from eventpound.solvers.sundials.root_values import descriptor_roots
@@ -182,17 +182,19 @@ def _check(
 @kernel
 def _write(handles: IdaHandles, start: float, end: float, e: Examination) -> None:
     """History at the output times of a step."""
-    write_samples(_show, handles, start, end, e)
+    write_samples(_shown, (handles, e), e.forcing.start, start, end, e.record.journal)
 
 
 @kernel
-def _show(handles: IdaHandles, tau: float, seen: Observed, e: Examination) -> None:
-    """Observe the motion at `tau` (s) of the last step."""
+def _shown(of: tuple[IdaHandles, Examination], tau: float) -> Observed:
+    """The motion at `tau` (s) of the last step, as it is observed."""
+    handles, e = of
     problem = handles.given.problem
     y = array_at(array_pointer(handles.look), problem.d.size, np.float64)
     ida_get_dky(handles.memory, tau, 0, handles.look)
     to_moving_frame(problem, tau, -1.0, y)
-    look_at_descriptor(tau, y, problem, seen)
+    look_at_descriptor(tau, y, problem, e.looks[4])
+    return e.looks[4]
 
 
 @kernel

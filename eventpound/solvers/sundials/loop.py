@@ -11,12 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds
-from eventpound.solvers.events.recorder import PASSED, is_due, write_row
 from eventpound.solvers.events.reversals import NEGLIGIBLE, first_reversal, may_reverse
 from eventpound.solvers.events.roots import any_fell, on_the_root
 from eventpound.solvers.events.step_check import (
@@ -88,27 +86,6 @@ def carry_on(
         if verdict != CLEAR or end >= bounds.stop or steps == bounds.most:
             return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
-
-
-@kernel
-def write_samples(
-    show: Callable[[Any, float, Observed, Examination], None],
-    handles: Any,
-    start: float,
-    end: float,
-    e: Examination,
-) -> None:
-    """History at the output times of a step, on the integrator's own polynomial.
-
-    `show` observes the motion at a time of it (s).
-    """
-    journal, origin, seen = e.record.journal, e.forcing.start, e.looks[4]
-    while is_due(origin + end, journal):
-        t = journal.times[journal.cursor[PASSED]]
-        if t >= origin + start:
-            show(handles, max(t - origin, start), seen, e)
-            write_row(t, seen, journal)
-        journal.cursor[PASSED] += 1
 
 
 @scalar_kernel
