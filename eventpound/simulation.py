@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any, TypedDict, Unpack
+from typing import Any
 
 import numpy as np
 
@@ -40,44 +40,38 @@ from eventpound.units import Dimension
 Progress = Callable[[float], None]
 
 
-class SimulateOptions(TypedDict, total=False):
-    """Options of `eventpound.simulate` beside solver and tolerance, as they are described there."""
-
-    duration: float | str | None
-    output_step: float | str | None
-    energy: bool | None
-    settings: Mapping[str, object] | None
-    progress: Progress | None
-    max_steps: int | None
-
-
 def simulate(
     case: Case | Scene,
     solver: str | Solver | None = None,
     rtol: float | str | None = None,
-    **options: Unpack[SimulateOptions],
+    *,
+    duration: float | str | None = None,
+    output_step: float | str | None = None,
+    energy: bool | None = None,
+    settings: Mapping[str, object] | None = None,
+    **of_task: Any,
 ) -> Response:
     """Compute how a scene moves; `eventpound.simulate` without an estimate of the errors."""
-    ready = made_ready(case, solver, rtol, **options)
+    check_case(case)
+    length = positive("duration", duration, Dimension.TIME)
+    step = positive("output_step", output_step, Dimension.TIME)
+    run, options = options_of(case, length, step, energy)
+    ready = made_ready(case, run, options, solver, rtol, settings, **of_task)
     return ready.run({}, ready.task)
 
 
 def made_ready(
     case: Case | Scene,
+    run: RunOptions,
+    options: SolverOptions,
     solver: str | Solver | None,
     rtol: float | str | None,
-    **asked_for: Unpack[SimulateOptions],
+    settings: Mapping[str, object] | None,
+    progress: Progress | None = None,
+    max_steps: int | None = None,
 ) -> ReadyScene:
-    """What `simulate` is asked for, checked; its arguments."""
-    check_case(case)
-    settings, max_steps = asked_for.get("settings"), asked_for.get("max_steps")
+    """A checked scene with its options of a run (`options_of`) and of `simulate`."""
     number = positive("rtol", rtol, Dimension.NUMBER)
-    run, options = options_of(
-        case,
-        positive("duration", asked_for.get("duration"), Dimension.TIME),
-        positive("output_step", asked_for.get("output_step"), Dimension.TIME),
-        asked_for.get("energy"),
-    )
     if solver is not None:
         options = solver_instead(options, name_of(solver), "solver")
     options = replace(options, rtol=number or options.rtol)
@@ -86,7 +80,7 @@ def made_ready(
             raise InputError(f"settings: found beside solver = {solver!r}; accepted: one of them")
         options = replace(options, settings=settings_in_si(settings))
     scene = case.scene if isinstance(case, Case) else case
-    task = task_with(scene, run, options, asked_for.get("progress"))
+    task = task_with(scene, run, options, progress)
     asked([(scene, run.stated)])
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))

@@ -15,7 +15,13 @@ from eventpound.scene.check import motion_problems
 from eventpound.scene.parameters import motion_with, places_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.worst_variants import KnownRanges
-from eventpound.simulation import ReadyScene, made_ready, options_of, output_times
+from eventpound.simulation import (
+    ReadyScene,
+    check_case,
+    made_ready,
+    options_of,
+    output_times,
+)
 from eventpound.solvers.base import Solver, Task
 from eventpound.study.axes import given_axes
 from eventpound.study.plan import Base, base_of
@@ -73,20 +79,13 @@ def prepare(
     InputError
         Where the scene or an option cannot be run.
     """
+    check_case(case)
     length = positive("duration", duration, Dimension.TIME)
     step = positive("output_step", output_step, Dimension.TIME)
-    run, _ = options_of(case, length, step, energy)
+    run, options = options_of(case, length, step, energy)
     if step is None:
         run = replace(run, output_step=run.duration)
-    ready = made_ready(
-        case,
-        solver,
-        rtol,
-        duration=length,
-        output_step=run.output_step,
-        energy=energy,
-        settings=settings,
-    )
+    ready = made_ready(case, run, options, solver, rtol, settings)
     base = base_of(case, (), (), SolverOptions(), float("nan") if length is None else length)
     return Prepared(base, ready, replace(run, output_step=step or float("nan")))
 
