@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from eventpound.motion import Sine as Sine
     from eventpound.motion import TypeC as TypeC
     from eventpound.motion import read_record as read_record
-    from eventpound.report import plot as plot
+    from eventpound.report.run_figures import plot as plot
     from eventpound.response import Response as Response
     from eventpound.results import write as write
     from eventpound.scene import Backfill as Backfill
@@ -71,7 +71,7 @@ _NAMES = {
         "AntisymmetricRicker Cosine Harmonic MavroeidisPapageorgiou NoMotion "
         "Record Ricker Sine TypeC read_record"
     ),
-    "report": "plot",
+    "report.run_figures": "plot",
     "response": "Response",
     "results": "write",
     "scene": (

@@ -44,7 +44,7 @@ def add(commands: Commands) -> None:
 
 
 def _plot(options: Options) -> int:
-    from eventpound.report import plot
+    from eventpound.report.run_figures import plot
     from eventpound.study.table import SUITE_TABLE, TABLE
 
     out = options.results

@@ -87,7 +87,7 @@ def _run(options: Options) -> int:
     _say(estimate)
     print(f"results   {out}")
     if not options.no_figures:
-        from eventpound.report import plot
+        from eventpound.report.run_figures import plot
 
         say("draw the figures")
         # The same without contact was computed where its numbers are asked for.

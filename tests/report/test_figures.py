@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from eventpound.report import figures, plot
 from eventpound.report.displacements import displacement_figure
 from eventpound.report.loops import loop_figure
+from eventpound.report.run_figures import figures, plot
 from eventpound.units import STANDARD_GRAVITY
 
 
