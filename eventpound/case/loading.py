@@ -18,13 +18,7 @@ from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, bare_accelerations, for_scene, read_excitation
 from eventpound.case.figure import Figure, read_figure
-from eventpound.case.options import (
-    EQUILIBRIUM,
-    default_solver,
-    read_run,
-    read_solver,
-    to_be_placed,
-)
+from eventpound.case.options import EQUILIBRIUM, default_solver, read_run, read_solver, to_be_placed
 from eventpound.case.pi import OF_SCENE, read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.spring_stiffness import masses_carried

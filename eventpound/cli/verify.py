@@ -46,11 +46,7 @@ def _verify(options: Options) -> int:
     case = load(options.case)
     out = options.results
     from eventpound import results
-    from eventpound.accuracy.certificate_text import (
-        certificate_text,
-        sentence,
-        write_certificate,
-    )
+    from eventpound.accuracy.certificate_text import certificate_text, sentence, write_certificate
     from eventpound.accuracy.verify import CertificateInterrupted, verify
 
     results.check_writable(out)

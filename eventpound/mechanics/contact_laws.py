@@ -17,12 +17,7 @@ import math
 
 import numpy as np
 
-from eventpound.mechanics.contact_elements import (
-    CUT,
-    FIRST_CODE,
-    NO_LAW,
-    Elements,
-)
+from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.contact_law import Element

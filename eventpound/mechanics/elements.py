@@ -56,11 +56,7 @@ from eventpound.mechanics.link_law import (
 )
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import F, compile_with, kernel, scalar_kernel
-from eventpound.numerics.power_series import (
-    integer_power,
-    power_coefficient,
-    sign_after,
-)
+from eventpound.numerics.power_series import integer_power, power_coefficient, sign_after
 from eventpound.tolerances import NO_Z
 
 CURVE_PLACES = 5

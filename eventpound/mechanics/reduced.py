@@ -30,11 +30,7 @@ from eventpound.mechanics.elements import (
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.points import hold_at
-from eventpound.mechanics.reduced_loads import (
-    add_load_coefficients,
-    placed,
-    support_of,
-)
+from eventpound.mechanics.reduced_loads import add_load_coefficients, placed, support_of
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED

@@ -18,11 +18,7 @@ from eventpound.mechanics.elements import link_force, pull_per_z, z_coefficient
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
-from eventpound.mechanics.reduced_loads import (
-    add_load_coefficients,
-    place_supports,
-    support_of,
-)
+from eventpound.mechanics.reduced_loads import add_load_coefficients, place_supports, support_of
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats

@@ -22,13 +22,7 @@ from eventpound.mechanics.link_law import link_law, yielding
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.loops import z_by_x
 from eventpound.quantities.owners import owners
-from eventpound.quantities.rows import (
-    Rerun,
-    close_times,
-    first_step,
-    settled,
-    warn_unsettled,
-)
+from eventpound.quantities.rows import Rerun, close_times, first_step, settled, warn_unsettled
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
 from eventpound.scene.structures import structures_of

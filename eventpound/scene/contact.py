@@ -7,14 +7,7 @@ from collections.abc import Mapping
 from typing import Annotated
 
 from eventpound.errors import InputError
-from eventpound.given import (
-    Given,
-    Number,
-    OptionalNumber,
-    converting,
-    default,
-    read_fields,
-)
+from eventpound.given import Given, Number, OptionalNumber, converting, default, read_fields
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact_law import ContactLaw, damping_constant
 from eventpound.scene.point import Point

@@ -15,13 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.contact.kinks import still_rate
-from eventpound.mechanics.monitored import (
-    Places,
-    Running,
-    contact_pressed,
-    is_motion,
-    motion_of,
-)
+from eventpound.mechanics.monitored import Places, Running, contact_pressed, is_motion, motion_of
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel

@@ -14,14 +14,8 @@ from collections.abc import Callable
 import numpy as np
 
 from eventpound.contact.cascade import LONGEST_CASCADE, SINCE_IMPACT, STALE, T, is_fleeting
-from eventpound.contact.event_rows import (
-    end_cascade,
-    events_wanted,
-)
-from eventpound.contact.impacts import (
-    DONE,
-    FULL,
-)
+from eventpound.contact.event_rows import end_cascade, events_wanted
+from eventpound.contact.impacts import DONE, FULL
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import lacks_branch, pass_kinks
 from eventpound.mechanics.monitored import update_extremes
@@ -31,10 +25,7 @@ from eventpound.numerics.compiled import by_python, in_python, kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, look
 from eventpound.solvers.events.law_contacts import gather, turn_elements
-from eventpound.solvers.events.location import (
-    anything,
-    forget,
-)
+from eventpound.solvers.events.location import anything, forget
 from eventpound.solvers.events.present import (
     forcing_now,
     forget_held,
@@ -45,20 +36,8 @@ from eventpound.solvers.events.present import (
     take,
 )
 from eventpound.solvers.events.recorder import PASSED, WRITTEN, is_due
-from eventpound.solvers.events.run import (
-    KNOTS,
-    PHASE,
-    SHORT_STEPS,
-    STEPS,
-    Dynamics,
-    Run,
-)
-from eventpound.solvers.events.second_look import (
-    BROKEN,
-    end_of_look,
-    look_again,
-    look_between,
-)
+from eventpound.solvers.events.run import KNOTS, PHASE, SHORT_STEPS, STEPS, Dynamics, Run
+from eventpound.solvers.events.second_look import BROKEN, end_of_look, look_again, look_between
 from eventpound.solvers.events.short_series import local_series
 from eventpound.solvers.events.step_check import broken_contact
 

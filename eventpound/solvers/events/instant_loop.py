@@ -4,18 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import (
-    STALE,
-    endless_message,
-    long_message,
-)
-from eventpound.contact.impacts import (
-    DONE,
-    ENDLESS,
-    FULL,
-    NO_FORCES,
-    NO_IMPACT,
-)
+from eventpound.contact.cascade import STALE, endless_message, long_message
+from eventpound.contact.impacts import DONE, ENDLESS, FULL, NO_FORCES, NO_IMPACT
 from eventpound.contact.kinks import choose_branches, choose_clear_branches
 from eventpound.contact.rest import ORDER
 from eventpound.errors import ComputationError
@@ -43,11 +33,7 @@ from eventpound.solvers.events.instant import (
 )
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.point_instant import settle_points
-from eventpound.solvers.events.run import (
-    KNOTS,
-    PHASE,
-    SHORT_STEPS,
-)
+from eventpound.solvers.events.run import KNOTS, PHASE, SHORT_STEPS
 from eventpound.solvers.events.second_look import BROKEN, EVENT
 from eventpound.solvers.events.sliders import settle_sliders
 from eventpound.solvers.events.underway import Underway

@@ -27,12 +27,7 @@ from eventpound.solvers.events.instant_loop import (
     take_state,
 )
 from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError, Start
-from eventpound.solvers.events.recorder import (
-    energy_ledger,
-    impact_terms,
-    is_due,
-    kept,
-)
+from eventpound.solvers.events.recorder import energy_ledger, impact_terms, is_due, kept
 from eventpound.solvers.events.run import FINDER, STEPS
 from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.solvers.events.sliders import own_recording

@@ -23,13 +23,7 @@ from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.recorder import WRITTEN, write_row
-from eventpound.solvers.events.run import (
-    Dynamics,
-    Rules,
-    Run,
-    RunRecord,
-    State,
-)
+from eventpound.solvers.events.run import Dynamics, Rules, Run, RunRecord, State
 
 
 @kernel

@@ -27,12 +27,7 @@ from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Slider
 from eventpound.solvers.base import Energy
-from eventpound.solvers.events.event_bounds import (
-    Found,
-    Watched,
-    inspect_step,
-    room_at_rest,
-)
+from eventpound.solvers.events.event_bounds import Found, Watched, inspect_step, room_at_rest
 from eventpound.solvers.events.run import Dynamics, RunRecord
 from eventpound.tolerances import ENERGY_ERROR, GAP_NOISE, PULLED, SAME_SAMPLE
 

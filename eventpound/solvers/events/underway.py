@@ -35,32 +35,12 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
 from eventpound.scene.contact_law import Element
-from eventpound.solvers.base import (
-    Event,
-    History,
-    LawRecording,
-    Task,
-    steps_used_up,
-)
+from eventpound.solvers.base import Event, History, LawRecording, Task, steps_used_up
 from eventpound.solvers.events.event_bounds import Found
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.modes import Mode, ModeTable
-from eventpound.solvers.events.recorder import (
-    PASSED,
-    WRITTEN,
-    Journal,
-    history_of,
-    row_width,
-)
-from eventpound.solvers.events.run import (
-    COUNT_SIZE,
-    STEPS,
-    Happened,
-    Rules,
-    Run,
-    RunRecord,
-    State,
-)
+from eventpound.solvers.events.recorder import PASSED, WRITTEN, Journal, history_of, row_width
+from eventpound.solvers.events.run import COUNT_SIZE, STEPS, Happened, Rules, Run, RunRecord, State
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.events.step_check import broken_contact, contact_error
 from eventpound.tolerances import FLAT_WITHIN, FORCE, GAP, LENGTH

@@ -23,14 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.contact.event_rows import (
-    DETACHMENT,
-    IMPACT,
-    REST,
-    EventRow,
-    new_group,
-    write_event,
-)
+from eventpound.contact.event_rows import DETACHMENT, IMPACT, REST, EventRow, new_group, write_event
 from eventpound.mechanics.contact_problem import solve_contacts
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing

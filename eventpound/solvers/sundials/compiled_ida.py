@@ -46,13 +46,7 @@ from eventpound.solvers.sundials.library import (
     ida_solve,
     matrix_data,
 )
-from eventpound.solvers.sundials.loop import (
-    ROOT_RETURN,
-    Numbers,
-    carry_on,
-    root_at,
-    was_told,
-)
+from eventpound.solvers.sundials.loop import ROOT_RETURN, Numbers, carry_on, root_at, was_told
 from eventpound.solvers.sundials.memory import IdaMemory
 from eventpound.solvers.sundials.root_values import descriptor_roots
 

@@ -15,19 +15,9 @@ from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.numerics.compiling import Stopwatch
-from eventpound.solvers.base import (
-    Energy,
-    Recording,
-    Task,
-    Work,
-    steps_used_up,
-)
+from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
-from eventpound.solvers.events.recorder import (
-    energy_ledger,
-    history_of,
-    kept,
-)
+from eventpound.solvers.events.recorder import energy_ledger, history_of, kept
 from eventpound.solvers.events.run import Laws
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.timestepping.equations import end_of_step
