@@ -1,4 +1,4 @@
-"""Three slow spots of Numba's front end, and Python's collector, while kernels are compiled.
+"""Two slow spots of Numba's front end, and Python's collector, while kernels are compiled.
 
 Replaced are, with the same results:
 
@@ -7,8 +7,6 @@ Replaced are, with the same results:
   were set are compared first, and the hash, which upstream is made of the names of the
   options and so the same for all, is made once.
 * `BaseFunction.get_call_type`: a builtin called with the same types is resolved once.
-* `_OverloadFunctionTemplate._get_jit_decorator`: while one of our kernels is compiled, what
-  Numba itself brings (`np.zeros`, `min`) is a part of it, not made into machine code first.
 
 They stay in place once the first kernel is compiled, since they change no result; Numba's
 functions are put aside, not copied, and called wherever the shortcut does not apply.
@@ -19,47 +17,33 @@ and again, is held off while a kernel is compiled.
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache, partial
+from functools import cache
 from typing import Any
 
 from numba.core import types
 from numba.core.targetconfig import ConfigStack, TargetConfig
 from numba.core.types.functions import BaseFunction
-from numba.core.typing.templates import _OverloadFunctionTemplate
 
 _CALLS = "_eventpound_calls"
 _slow_equal = TargetConfig.__eq__
 _slow_call_type = BaseFunction.get_call_type
-_slow_decorator = _OverloadFunctionTemplate._get_jit_decorator
-_OPTIONS = frozenset(("nopython", "no_cpython_wrapper", "nogil", "_nrt", "error_model"))
-"""Options of Numba's own functions with which they are compiled as parts."""
 _hashes: dict[Any, int] = {}
-_parts: list[Callable[..., Any]] = []
-"""What makes parts, while a kernel is compiled."""
 
 
 @contextmanager
-def quick_front_end(part: Callable[..., Any]) -> Iterator[None]:
+def quick_front_end() -> Iterator[None]:
     """Compile with the shortcuts in place and the collector held off.
 
     For one who holds Numba's compiler lock.
-
-    Parameters
-    ----------
-    part : callable
-        Makes a dispatcher of a function and its options, as of
-        `eventpound.numerics.compiled.linked.Part`: for what Numba itself brings.
     """
     _install()
-    _parts.append(part)
     collecting = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
-        _parts.pop()
         if collecting:
             gc.enable()
 
@@ -69,20 +53,6 @@ def _install() -> None:
     TargetConfig.__eq__ = _equal
     TargetConfig.__hash__ = _hash
     BaseFunction.get_call_type = _call_type
-    _OverloadFunctionTemplate._get_jit_decorator = _decorator
-
-
-def _decorator(self: Any) -> Any:
-    usual = _slow_decorator(self)
-    if not _parts:
-        return usual
-
-    def decorate(**options: Any) -> Any:
-        if not options.keys() <= _OPTIONS:
-            return usual(**options)
-        return partial(_parts[-1], options={"nopython": True, "boundscheck": None, **options})
-
-    return decorate
 
 
 def _equal(self: Any, other: Any) -> Any:

@@ -295,8 +295,8 @@ class _EntryCompiler(_FunctionCompiler):
         return flags
 
 
-class Part(CPUDispatcher):
-    """A function as other compiled functions call it."""
+class KernelPart(CPUDispatcher):
+    """A kernel as other compiled functions call it."""
 
     def __init__(
         self,
@@ -307,6 +307,13 @@ class Part(CPUDispatcher):
         super().__init__(function, {}, options)
         self._compiler = _PartCompiler(function, self.targetdescr, options, {}, pipeline)
         self._inlined = options.get("forceinline", False)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """One specialisation for all values of a constant: LLVM sees the value all the same."""
+        return super().get_call_template(
+            tuple(map(types.unliteral, args)),
+            {name: types.unliteral(each) for name, each in kws.items()},
+        )
 
     def compile(self, signature: Any) -> Any:
         """Lower the function for arguments of these types; the key under which it is called."""
@@ -321,24 +328,8 @@ class Part(CPUDispatcher):
                     known.entry_point, known.fndesc, [known.library]
                 )
                 self.overloads[tuple(known.signature.args)] = known
+            function_read(self.py_func)
             return known.entry_point
-
-
-class KernelPart(Part):
-    """A kernel as other compiled functions call it."""
-
-    def get_call_template(self, args: Any, kws: Any) -> Any:
-        """One specialisation for all values of a constant: LLVM sees the value all the same."""
-        return super().get_call_template(
-            tuple(map(types.unliteral, args)),
-            {name: types.unliteral(each) for name, each in kws.items()},
-        )
-
-    def compile(self, signature: Any) -> Any:
-        """Lower the function for arguments of these types."""
-        key = super().compile(signature)
-        function_read(self.py_func)
-        return key
 
 
 class _Thread(threading.local):
@@ -411,7 +402,7 @@ class Entry(CPUDispatcher):
 
     def compile(self, signature: Any) -> Any:
         """Make the function ready for arguments of these types."""
-        with getting_ready(self.py_func), global_compiler_lock, quick_front_end(Part):
+        with getting_ready(self.py_func), global_compiler_lock, quick_front_end():
             return super().compile(signature)
 
     def __reduce__(self) -> Any:
@@ -430,7 +421,7 @@ class LinkedCallback(CFunc):
 
     def compile(self) -> None:
         """Make the function ready; its address is known then."""
-        with global_compiler_lock, quick_front_end(Part):
+        with global_compiler_lock, quick_front_end():
             super().compile()
 
 
