@@ -29,6 +29,7 @@ OTHERS = {
     "study/suite_statistics.py",
 }
 MOST, MOST_IN_SOLVERS = 23, 8
+KINDS = {"BOUC_WEN", "BACKFILL", "YIELDING_SOIL", "SLIDER", "DEGRADING", "ITS_ENERGY"}
 
 
 def _names(path: Path) -> set[str]:
@@ -49,3 +50,10 @@ def test_few_modules_name_a_constant_of_a_law_with_a_memory() -> None:
     assert len(naming) <= MOST, sorted(naming)
     inside = {name for name in naming if name.startswith(("solvers/", "mechanics/"))}
     assert len(inside) <= MOST_IN_SOLVERS, sorted(inside)
+
+
+def test_the_fast_solver_tells_no_law_with_a_memory_itself() -> None:
+    table = {path.name for path in (ROOT / "mechanics").glob("*.py") if _names(path) & KINDS}
+    assert {"elements.py", "link_law.py"} <= table
+    for path in (ROOT / "solvers" / "fast").rglob("*.py"):
+        assert not _names(path) & KINDS, path
