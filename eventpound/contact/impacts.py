@@ -96,8 +96,7 @@ def _only_closed(gap: Floats) -> int:
 def _close_several(at: Instant) -> None:
     """Put all bodies that closed contacts join in touch, their centres of mass kept."""
     shut = at.gap == 0.0
-    bodies = at.mass.size
-    touching = form_clusters(at.left, at.right, at.opening, shut, shut, bodies)
+    touching = form_clusters(at.left, at.right, at.opening, shut, shut, at.mass)
     put_as_one(touching.of_body, touching.offset, at.mass, at.u)
 
 
@@ -110,9 +109,8 @@ def _still_several(at: Instant) -> None:
     """
     still = (at.gap == 0.0) & (at.gap_rate == 0.0)
     if still.any():
-        bodies = at.mass.size
-        touching = form_clusters(at.left, at.right, at.opening, still, still, bodies)
-        put_as_one(touching.of_body, np.zeros(bodies), at.mass, at.v)
+        touching = form_clusters(at.left, at.right, at.opening, still, still, at.mass)
+        put_as_one(touching.of_body, np.zeros(at.mass.size), at.mass, at.v)
 
 
 @kernel

@@ -119,6 +119,7 @@ def touching_of(z: Floats, forcing: Forcing, at: Instant) -> Touching:
     stiffness = np.where(at.branch < 0, at.compression, at.extension)
     return Touching(
         (at.gap == 0.0) & (at.gap_rate == 0.0),
+        np.zeros(at.gap.size, np.bool_),
         at.released,
         at.u,
         at.v,

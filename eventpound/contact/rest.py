@@ -13,14 +13,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters, form_clusters
+from eventpound.mechanics.clusters import Clusters, form_clusters, is_support
 from eventpound.mechanics.contact_problem import parts, solve_contacts
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce, state_vector
+from eventpound.mechanics.reduced_loads import support_of
 from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_taylor
+from eventpound.motion.loads import LOADED, is_sinusoidal, row_of_link
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.tolerances import ACCELERATION, DIRECT, UNDECIDED
@@ -38,15 +40,17 @@ derivative that comes of it alone is as large as that makes it."""
 class Touching(NamedTuple):
     """What the acceleration problem is about: N bodies, K contacts, L links, H of them hysteretic.
 
-    undecided (K,): contacts with g = γ = 0. released (K,): those whose force has just been found
-    to pass zero, for which the order zero has vanished by definition. u (m), v (m/s), shape (N,);
-    z (H,). left, right, gap (K,), mass (N,), link_ends, law, hysteretic: those of the `Model`.
+    undecided (K,): contacts with g = γ = 0. pressed (K,): others that are known to be. released
+    (K,): those whose force has just been found to pass zero, for which the order zero has vanished
+    by definition. u (m), v (m/s), shape (N,); z (H,). left, right, gap (K,), mass (N,), link_ends,
+    law, hysteretic: those of the `Model`.
     stiffness k (N/m), preload f (N), shape (L,): of each link on its present branch. forcing: the
     ground motion from now on, its start at the time of the state. speed_noise: elongation rates
     without a meaningful sign (m/s). acceleration, time: the scene's own, L/T² (m/s²) and T (s).
     """
 
     undecided: Bools
+    pressed: Bools
     released: Bools
     u: Floats
     v: Floats
@@ -92,11 +96,11 @@ def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
     """
     left, right, mass, released = touching.left, touching.right, touching.mass, touching.released
     undecided = touching.undecided.copy()
-    pressed, kept = np.zeros(undecided.size, np.bool_), np.zeros(undecided.size, np.bool_)
+    pressed, kept = touching.pressed.copy(), np.zeros(undecided.size, np.bool_)
     no_ledger = np.empty(0)
     while undecided.any():
         # Those found pressed move as one.
-        clusters = form_clusters(left, right, touching.gap, pressed, pressed, mass.size)
+        clusters = form_clusters(left, right, touching.gap, pressed, pressed, mass)
         system = reduce(
             touching.link_ends,
             touching.law,
@@ -199,7 +203,7 @@ def _first_deciding(
     opening, level = np.zeros(undecided.size), np.zeros(undecided.size)
     members = np.flatnonzero(undecided & (first != second))
     label = parts(first[members], second[members], system.iv.size)
-    pulled = clusters_pulled(system) | (forcing.family != _GAUSSIAN)
+    pulled = _round_as_the_scene(system, forcing)
     noise, ground = np.empty(system.iv.size), np.zeros(ORDER)
     stiffness, damping = links_held(system)
     # In the tails of a pulse high orders are large beside what they are derivatives of.
@@ -216,7 +220,7 @@ def _first_deciding(
             if order == 0:
                 _add_residual(coefficient, first, second, members, label, released, rounding[0])
             pass_on(rounding, order, system, stiffness, damping)
-            _set_noise(noise, first, second, members, label, level)
+            _set_noise(noise, system.mass, first, second, members, label, level)
             own /= time * (order + 1)
             deciding = False
             for j in range(opening.size):
@@ -330,12 +334,36 @@ def clusters_pulled(system: Reduced) -> Bools:
 
 
 @kernel
+def _round_as_the_scene(system: Reduced, forcing: Forcing) -> Bools:
+    """Clusters (C,) of whose accelerations an own part of those of the scene is rounding.
+
+    Not those that the tail of a Gaussian pulse alone moves, nor those of supports, which are said
+    to the last digit; but sinusoids pass zero at times that are not.
+    """
+    result = clusters_pulled(system) | (forcing.family != _GAUSSIAN)
+    if forcing.family == LOADED:
+        for a in range(system.link.size):
+            if support_of(system.link[a], forcing.coefficients) >= 0:
+                row = row_of_link(system.link[a], forcing.coefficients)
+                result[system.ends[a, 0]] = is_sinusoidal(0, forcing.coefficients)
+                result[system.ends[a, 0]] |= is_sinusoidal(row, forcing.coefficients)
+    return result
+
+
+@kernel
 def _set_noise(
-    noise: Floats, first: Ints, second: Ints, members: Ints, label: Ints, level: Floats
+    noise: Floats,
+    mass: Floats,
+    first: Ints,
+    second: Ints,
+    members: Ints,
+    label: Ints,
+    level: Floats,
 ) -> None:
     """Noise of the undecided `members` into `level` (K,): of each part the largest of clusters.
 
-    `noise` (C,) is that of each cluster, `label` the part of each member.
+    `noise`, `mass` (C,) are those of each cluster, `label` the part of each member. What is between
+    two whose motion is given has their own alone.
     """
     largest = np.zeros(noise.size)
     for i in range(members.size):
@@ -343,7 +371,12 @@ def _set_noise(
             if c >= 0:
                 largest[label[i]] = max(largest[label[i]], noise[c])
     for i in range(members.size):
+        one, other = first[members[i]], second[members[i]]
         level[members[i]] = largest[label[i]]
+        if (one < 0 or is_support(one, mass)) and (other < 0 or is_support(other, mass)):
+            level[members[i]] = max(
+                noise[one] if one >= 0 else 0.0, noise[other] if other >= 0 else 0.0
+            )
 
 
 @scalar_kernel

@@ -8,7 +8,9 @@ that a solution found pressed carry them. On a directed cycle (a row squeezed
 between two barriers) no contact can open: it is locked, and its forces here may
 have any sign (`eventpound.mechanics.pressures` has those that are told).
 
-All barriers are one node of the graph of contacts, number N.
+All barriers are one node of the graph of contacts, number N. So are supports where it is asked
+what joins what: contacts may join two of them only while they move alike, and their forces are then
+not unique. A cluster never holds more than one.
 """
 
 from __future__ import annotations
@@ -70,16 +72,16 @@ def unique_forces(clusters: Clusters, left: Ints, right: Ints) -> Bools:
     cluster = np.empty(resting.size, np.int64)
     several = np.zeros(clusters.count + 1, np.bool_)
     for i in range(resting.size):
-        j = resting[i]
-        cluster[i] = clusters.of_body[right[j] if right[j] >= 0 else left[j]]
-        # The bodies that stand still count as one cluster, the last.
-        several[cluster[i]] |= clusters.redundant[i]
+        for end in (left[resting[i]], right[resting[i]]):
+            # The bodies that stand still count as one cluster, the last.
+            cluster[i] = clusters.of_body[end] if end >= 0 else -1
+            several[cluster[i]] |= clusters.redundant[i]
     return ~several[cluster]
 
 
 @kernel
 def form_clusters(
-    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
+    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, mass: Floats
 ) -> Clusters:
     """Group bodies by resting contacts.
 
@@ -94,19 +96,19 @@ def form_clusters(
     pressed : ndarray of bool, shape (K,)
         Contacts that a solution of the acceleration problem found pressed:
         where contacts are redundant, these carry the forces.
-    bodies : int
-        N.
+    mass : ndarray, shape (N,)
+        Of the bodies, inf of supports.
     """
-    return Clusters(*_joined(left, right, gap, resting, pressed, bodies))
+    return Clusters(*_joined(left, right, gap, resting, pressed, mass))
 
 
 def form_clusters_of_few(
-    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
+    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, mass: Floats
 ) -> Clusters:
     """`form_clusters` for callers in Python: what resting contacts need is compiled when one is."""
     if not resting.any():
-        return _bodies_alone(bodies)
-    return in_python(form_clusters)(left, right, gap, resting, pressed, bodies)
+        return _bodies_alone(mass.size)
+    return in_python(form_clusters)(left, right, gap, resting, pressed, mass)
 
 
 def _bodies_alone(bodies: int) -> Clusters:
@@ -120,20 +122,21 @@ def _bodies_alone(bodies: int) -> Clusters:
 
 @kernel
 def _joined(
-    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
+    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, mass: Floats
 ) -> tuple[Any, ...]:
     """The fields of `form_clusters`, a plain tuple for callers in Python."""
-    members = np.flatnonzero(resting)
+    members, bodies = np.flatnonzero(resting), mass.size
     first_node, second_node = left[members], right[members]
     first_node[first_node < 0] = bodies
     second_node[second_node < 0] = bodies
-    carrying = _forest(first_node, second_node, pressed[members], bodies + 1)
+    tail, head = _anchored(first_node, mass), _anchored(second_node, mass)
+    carrying = _forest(tail, head, pressed[members], bodies + 1)
     of_body, offset, count, elimination = _spread(
         members[carrying], first_node[carrying], second_node[carrying], gap, bodies
     )
     locked = np.zeros(members.size, np.bool_)
     if not carrying.all():
-        locked = on_directed_cycles(first_node, second_node, bodies + 1)
+        locked = on_directed_cycles(tail, head, bodies + 1)
     return of_body, offset, count, members, locked, ~carrying, elimination, np.empty((0, 0))
 
 
@@ -167,6 +170,16 @@ def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> Non
         if 1.0 - share < 1.0:
             u[left] += share * opening
         u[right] = u[left] - gap
+
+
+@kernel
+def _anchored(node: Ints, mass: Floats) -> Ints:
+    """Nodes, N where one is a support."""
+    result = node.copy()
+    for i in range(node.size):
+        if node[i] < mass.size and is_support(node[i], mass):
+            result[i] = mass.size
+    return result
 
 
 @kernel

@@ -120,6 +120,10 @@ def solve_contacts(
     label = parts(left, right, inverse_mass.size)
     solved = True
     members = np.empty(q.size, np.int64)
+    for j in range(q.size):
+        # No force moves what lies between two masses that move as they are told to.
+        if _coupling(left, right, inverse_mass, j, j) == 0.0:
+            w[j], label[j], solved = max(0.0, q[j]), -1, solved and q[j] >= 0.0
     for start in range(q.size):
         part, count = label[start], 0
         if part < 0:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from eventpound.motion.base import Family, GroundMotion, Piece, Scales
 from eventpound.motion.delayed import travelled
 from eventpound.motion.record import integrals
 from eventpound.numerics.arrays import Floats
+from eventpound.tolerances import DIRECT
 
 FIRST_ROW, ROW_WIDTH = 3, 10
 """Where the rows of a LOADED piece begin in its coefficients, and numbers in each."""
@@ -98,13 +99,21 @@ class LoadedMotion:
         return self.own
 
     def pieces(self) -> list[Piece]:
-        """Stretches on which every signal is smooth, of the family LOADED."""
+        """Stretches on which every signal is smooth, of the family LOADED.
+
+        And at whose ends supports begin to move apart, on which a body may have rested until then.
+        """
         signals = [self.ground.pieces(), *(load.signal.pieces() for load in self.loads)]
-        ends = sorted({piece.end for pieces in signals for piece in pieces})
+        ends = {piece.end for pieces in signals for piece in pieces} | _partings(self._moved)
         return [
             self._together(start, end, [_at(pieces, start) for pieces in signals])
-            for start, end in pairwise([-np.inf, *ends])
+            for start, end in pairwise([-np.inf, *sorted(ends)])
         ]
+
+    @property
+    def _moved(self) -> list[GroundMotion]:
+        """The motions of ground and supports."""
+        return [self.ground, *(load.signal for load in self.loads if load.driven)]
 
     def _together(self, start: float, end: float, parts: Sequence[Piece]) -> Piece:
         """One stretch, of a piece of every signal."""
@@ -120,13 +129,26 @@ class LoadedMotion:
         for row, load in zip(rows[1:], self.loads, strict=True):
             row[5:8] = load.factor, load.body, load.driven
         known = next((t for t in (start, end) if np.isfinite(t)), 0.0)
-        moved = [self.ground, *(load.signal for load in self.loads if load.driven)]
-        for row, motion, part, own in zip(rows, moved, parts, samples, strict=False):
+        for row, motion, part, own in zip(rows, self._moved, parts, samples, strict=False):
             own_travel = signal_travel(int(part.family), part.coefficients, own, known)
             row[8:] = np.subtract(travelled(motion, np.array(known)), own_travel)
         header = np.array([len(self.loads), self.first_link, known])
         numbers = [header, rows.ravel(), *(part.coefficients for part in parts)]
         return Piece(start, end, Family.LOADED, np.concatenate(numbers), np.concatenate(samples))
+
+
+def _partings(moved: Sequence[GroundMotion]) -> set[float]:
+    """Samples (s) at which two motions begin to differ that have been the same."""
+    pieces = [piece for motion in moved for piece in motion.pieces()]
+    sampled = [piece for piece in pieces if piece.family is Family.SAMPLES]
+    if len(moved) == 1 or not sampled:
+        return set()
+    times = [p.coefficients[0] + np.arange(p.samples.size) * p.coefficients[1] for p in sampled]
+    t, found = np.unique(np.concatenate(times)), set[float]()
+    for one, other in combinations([motion.acceleration(t) for motion in moved], 2):
+        same = np.abs(one - other) <= DIRECT * np.abs(one)
+        found.update(t[1:-1][same[:-2] & same[1:-1] & ~same[2:]].tolist())
+    return found
 
 
 def _with_sums(piece: Piece) -> Floats:

@@ -58,6 +58,12 @@ def is_driven(row: int, coefficients: Floats) -> bool:
 
 
 @scalar_kernel
+def is_sinusoidal(row: int, coefficients: Floats) -> bool:
+    """Whether a load, or the ground in row 0, is a sum of sinusoids."""
+    return coefficients[FIRST_ROW + ROW_WIDTH * row] == _SINUSOIDS
+
+
+@scalar_kernel
 def support_motion(row: int, piece: Formula, t: float) -> tuple[float, float]:
     """Displacement (m) and velocity (m/s) of a support relative to the ground at the time t (s)."""
     d, v = _travel(row, piece, t)

@@ -14,7 +14,7 @@ from tests.numerics.problems import Contacts, graph
 def _form(pairs: list[tuple[int, int]], gap: list[float], bodies: int) -> Clusters:
     left, right = np.array(pairs, np.int64).reshape(-1, 2).T
     every = np.ones(len(pairs), bool)
-    return form_clusters(left.copy(), right.copy(), np.array(gap), every, every, bodies)
+    return form_clusters(left.copy(), right.copy(), np.array(gap), every, every, np.ones(bodies))
 
 
 def _incidence(pairs: list[tuple[int, int]], bodies: int) -> np.ndarray:
@@ -99,8 +99,8 @@ def test_parallel_contacts_are_not_locked() -> None:
 
 def test_the_pressed_contact_carries_the_force() -> None:
     left, right = np.array([0, 0]), np.array([1, 1])
-    pressed = np.array([False, True])
-    clusters = form_clusters(left, right, np.array([0.2, 0.2]), np.ones(2, bool), pressed, 2)
+    pressed, one = np.array([False, True]), np.ones(2)
+    clusters = form_clusters(left, right, np.array([0.2, 0.2]), np.ones(2, bool), pressed, one)
     np.testing.assert_array_equal(clusters.redundant, [True, False])
 
 
@@ -117,6 +117,19 @@ def test_only_the_squeezed_part_is_locked() -> None:
     clusters = _form([(-1, 0), (0, 1), (1, -1), (2, 1)], [0.0, 0.0, 0.0, 0.4], 3)
     np.testing.assert_array_equal(clusters.locked, [True, True, True, False])
     assert clusters.count == 0
+
+
+def test_supports_are_one_node_and_no_cluster_has_two() -> None:
+    # Supports 0 and 1; 2 and 3 between the first and a barrier, 4 between both.
+    left, right = np.array([0, 2, 3, 0, 4]), np.array([2, 3, -1, 4, 1])
+    every, mass = np.ones(5, bool), np.array([np.inf, np.inf, 1.0, 1.0, 1.0])
+    pressed = np.array([True, True, False, False, True])
+    clusters = form_clusters(left, right, np.zeros(5), every, pressed, mass)
+    np.testing.assert_array_equal(clusters.of_body, [0, 1, 0, 0, 1])
+    np.testing.assert_array_equal(clusters.redundant, [False, False, True, True, False])
+    # From the barrier to the first support nothing leads, from the first to the second one row.
+    np.testing.assert_array_equal(clusters.locked, every)
+    assert not unique_forces(clusters, left, right).any()
 
 
 def test_nobody_rests() -> None:
@@ -151,7 +164,7 @@ def test_random_contact_graphs() -> None:
         # Gaps that all close at one position u of the bodies, on a grid that sums exactly.
         place = np.append(rng.integers(-64, 64, bodies) / 64.0, 0.0)
         gap = place[left] - place[right]
-        clusters = form_clusters(left, right, gap, resting, pressed, bodies)
+        clusters = form_clusters(left, right, gap, resting, pressed, contacts.mass)
         W, members = contacts.W[:, resting], np.flatnonzero(resting)
         np.testing.assert_array_equal(clusters.resting, members)
 

@@ -3,7 +3,7 @@
 What an instant leaves open is tried in every pattern of slip, stick, rest and opening: in the right
 one slips go along their friction's pull, gaps open, and some forces within their bounds hold the
 rest, unique or not. Nothing here is taken from the package but the numbers of a scene and the
-acceleration of the ground.
+motions of ground and supports. Rows have a column for each body, then one for each support.
 """
 
 from __future__ import annotations
@@ -45,17 +45,18 @@ class Program:
     def __init__(self, scene: Scene, length: float, time: float) -> None:
         self.scene, self.speed = scene, length / time
         names = [body.name for body in scene.bodies]
-        n = self.n = len(names)
+        self.n = len(names)
         self.mass = np.array([body.mass for body in scene.bodies])
+        names += [support.name for support in scene.supports]
 
         def row(ends: tuple[str, str]) -> np.ndarray:
-            found = np.zeros(n)
+            found = np.zeros(len(names))
             for end_name, sign in zip(ends, (-1.0, 1.0), strict=True):
                 if end_name in names:
                     found[names.index(end_name)] += sign
             return found
 
-        self.stiffness, self.damping = np.zeros((n, n)), np.zeros((n, n))
+        self.stiffness, self.damping = np.zeros((2, len(names), len(names)))
         rows, bounds = [], []
         for spring in scene.springs:
             B, law = row(spring.between), spring.law
@@ -67,36 +68,65 @@ class Program:
         for dashpot in scene.dashpots:
             B = row(dashpot.between)
             self.damping += dashpot.coefficient * np.outer(B, B)
-        self.B, self.F = np.reshape(rows, (-1, n)), np.array(bounds)
-        self.W = np.reshape([row((c.left, c.right)) for c in scene.contacts], (-1, n))
+        self.B, self.F = np.reshape(rows, (-1, len(names))), np.array(bounds)
+        self.W = np.reshape([row((c.left, c.right)) for c in scene.contacts], (-1, len(names)))
         self.gap = np.array([c.gap for c in scene.contacts])
         self.restitution = np.array([c.restitution for c in scene.contacts], float)
         # Of each slider +1, -1 or 0 where it sticks; of each contact whether it rests.
         self.slip, self.rest = np.zeros(len(bounds), int), np.zeros(self.gap.size, bool)
 
+    def with_supports(self, t: float, values: np.ndarray, what: str) -> np.ndarray:
+        """Displacements, velocities or accelerations of the bodies, then those of supports."""
+        moved = [
+            float(getattr(m, what)(np.array(t)))
+            for m in (
+                self.scene.motion,
+                *(s.moved_by(self.scene.motion) for s in self.scene.supports),
+            )
+        ]
+        return np.append(values, np.array(moved[1:]) - moved[0])
+
     def free(self, t: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Forces on the bodies without friction of sliders that stick, and without contacts."""
-        ground = float(self.scene.motion.acceleration(np.array(t)))
-        force = -self.stiffness @ u - self.damping @ v - self.mass * ground
-        return force - self.B.T @ (self.F * self.slip)
+        ground, n = float(self.scene.motion.acceleration(np.array(t))), self.n
+        force = -self.stiffness @ self.with_supports(t, u, "displacement")
+        force -= self.damping @ self.with_supports(t, v, "velocity")
+        force -= self.B.T @ (self.F * self.slip)
+        for given in self.scene.forces:
+            b = [body.name for body in self.scene.bodies].index(given.body)
+            value = float(given.history.acceleration(np.array(t)))
+            force[b] += value * (self.mass[b] if given.per_mass else 1.0)
+        return force[:n] - self.mass * ground
 
     def held(self) -> np.ndarray:
         """Rows of what sticks, then of what rests."""
         return np.vstack((self.B[self.slip == 0], self.W[self.rest]))
 
+    def balanced(self, t: float, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Accelerations of bodies and supports, and some forces of what sticks and rests."""
+        force, D, n = self.free(t, u, v), self.held(), self.n
+        a = self.with_supports(t, force / self.mass, "acceleration")
+        G = D[:, :n] / self.mass @ D[:, :n].T
+        found = -np.linalg.lstsq(G, D @ a, 1e-9)[0] if D.shape[0] else np.zeros(0)
+        a[:n] += D[:, :n].T @ found / self.mass
+        return a, found
+
     def acceleration(self, t: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Of the bodies."""
-        force, D = self.free(t, u, v), self.held()
-        if D.shape[0]:
-            G = D / self.mass @ D.T
-            force = force - D.T @ np.linalg.lstsq(G, D @ (force / self.mass), 1e-9)[0]
-        return force / self.mass
+        return self.balanced(t, u, v)[0][: self.n]
 
     def margin(self, t: float, u: np.ndarray, v: np.ndarray) -> float:
-        """How far the forces of what sticks or rests can be inside their bounds, in parts."""
-        D, force = self.held(), self.free(t, u, v)
-        G = D / self.mass @ D.T
-        found = -np.linalg.lstsq(G, D @ (force / self.mass), 1e-9)[0]
+        """How far the forces of what sticks or rests can be inside their bounds, in parts.
+
+        Or by how much it moves all the same, where supports move apart.
+        """
+        D = self.held()
+        a, found = self.balanced(t, u, v)
+        apart = float(np.abs(D @ a).max()) / (np.abs(a).max() + (self.F / self.mass.min()).max())
+        room = self._room(D[:, : self.n], found, self.free(t, u, v))
+        return room if apart < 0.01 * NOISE else min(room, -apart)
+
+    def _room(self, D: np.ndarray, found: np.ndarray, force: np.ndarray) -> float:
         sticks = int((self.slip == 0).sum())
         F = self.F[self.slip == 0]
         unit = max(F.max(initial=0.0), float((self.mass * np.abs(force / self.mass)).max()), 1e-300)
@@ -133,23 +163,24 @@ class Program:
 
     def decide(self, t: float, u: np.ndarray, v: np.ndarray) -> None:
         """Who sticks and slips, rests and opens."""
-        still = [i for i in range(self.F.size) if abs(self.B[i] @ v) <= STILL * self.speed]
-        gaps = self.gap + self.W @ u
+        all_v = self.with_supports(t, v, "velocity")
+        still = [i for i in range(self.F.size) if abs(self.B[i] @ all_v) <= STILL * self.speed]
+        gaps = self.gap + self.W @ self.with_supports(t, u, "displacement")
         shut = [
             j
             for j in range(self.gap.size)
             if (self.rest[j] or gaps[j] <= STILL * self.speed) and
-            abs(self.W[j] @ v) <= STILL * self.speed
+            abs(self.W[j] @ all_v) <= STILL * self.speed
         ]  # fmt: skip
         for i in range(self.F.size):
-            self.slip[i] = 0 if i in still else int(np.sign(self.B[i] @ v))
+            self.slip[i] = 0 if i in still else int(np.sign(self.B[i] @ all_v))
         self.rest[:] = False
         best, found = -np.inf, (self.slip.copy(), self.rest.copy())
         for slips in product((0, 1, -1), repeat=len(still)):
             self.slip[still] = slips
             for rests in product((True, False), repeat=len(shut)):
                 self.rest[shut] = rests
-                a = self.acceleration(t, u, v)
+                a = self.balanced(t, u, v)[0]
                 unit = np.abs(a).max() + (self.F / self.mass.min()).max(initial=0.0)
                 ways = [s * float(self.B[i] @ a) / unit for i, s in zip(still, slips, strict=True)]
                 opens = [float(self.W[j] @ a) / unit for j in shut if not self.rest[j]]
@@ -180,12 +211,12 @@ def solved(scene: Scene, end: float, length: float, time: float,
         while t < stop:
             events, owners = [], []
             for i in np.flatnonzero(p.slip):
-                events.append(lambda t, y, i=i: p.slip[i] * float(p.B[i] @ y[n:])
-                              + NOISE * p.speed)  # fmt: skip
+                events.append(lambda t, y, i=i: p.slip[i] * float(
+                    p.B[i] @ p.with_supports(t, y[n:], "velocity")) + NOISE * p.speed)  # fmt: skip
                 owners.append(("slip", i))
             for j in np.flatnonzero(~p.rest):
-                events.append(lambda t, y, j=j: p.gap[j] + float(p.W[j] @ y[:n])
-                              + NOISE * length)  # fmt: skip
+                events.append(lambda t, y, j=j: p.gap[j] + float(p.W[j] @ p.with_supports(
+                    t, y[:n], "displacement")) + NOISE * length)  # fmt: skip
                 owners.append(("contact", j))
             if p.held().shape[0]:
                 events.append(lambda t, y: p.margin(t, y[:n], y[n:]) + NOISE)
@@ -195,14 +226,17 @@ def solved(scene: Scene, end: float, length: float, time: float,
             tolerances = {"rtol": TOLERANCE, "atol": 1e-15 * length, "max_step": end / MOST_STEPS}
             run = solve_ivp(rate, (t, stop), np.concatenate((u, v)), "DOP853", events=events,
                             **tolerances)  # fmt: skip
-            t = float(run.t[-1])
-            before, (u, v) = u, np.split(run.y[:, -1], 2)
-            answer.path += np.abs(p.B @ (u - before)) * (p.slip != 0)
+            before, t = p.with_supports(t, u, "displacement"), float(run.t[-1])
+            u, v = np.split(run.y[:, -1], 2)
+            moved = p.B @ (p.with_supports(t, u, "displacement") - before)
+            answer.path += np.abs(moved) * (p.slip != 0)
             struck = False
             for (kind, i), times in zip(owners, run.t_events, strict=True):
                 if times.size and kind == "contact":
-                    impulse = -(1.0 + p.restitution[i]) * float(p.W[i] @ v)
-                    v = v + impulse / float(p.W[i] @ (p.W[i] / p.mass)) * p.W[i] / p.mass
+                    w = p.W[i, :n]
+                    closing = float(p.W[i] @ p.with_supports(t, v, "velocity"))
+                    impulse = -(1.0 + p.restitution[i]) * closing
+                    v = v + impulse / float(w @ (w / p.mass)) * w / p.mass
                     if p.rest.any():
                         raise ArithmeticError("an impact where contacts rest")
                     answer.impacts.append(t)

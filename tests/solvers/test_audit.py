@@ -36,7 +36,7 @@ def _watched(*, rests: bool) -> Watched:
 def _check(t: float, seen: Observed, watched: Watched) -> None:
     j = broken_contact(seen, watched, LENGTH_NOISE)
     if j >= 0:
-        raise contact_error(t, j, seen, watched, SCENE)
+        raise contact_error(t, j, seen, watched, ["joint"])
 
 
 def test_penetration_names_the_contact_and_the_depth():

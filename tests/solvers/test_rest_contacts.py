@@ -28,6 +28,7 @@ def _rest(
     law = link_law([], nothing)
     touching = Touching(
         undecided,
+        np.zeros_like(undecided),
         released,
         nothing,
         nothing,
@@ -122,6 +123,7 @@ def test_rounding_of_an_acceleration_does_not_open_a_stiff_body(way: float) -> N
     nothing, one = np.zeros(2), np.ones(2)
     touching = Touching(
         np.ones(1, bool),
+        np.zeros(1, bool),
         np.zeros(1, bool),
         nothing,
         nothing,

@@ -10,8 +10,10 @@ import pytest
 from scipy.optimize import brentq
 
 from eventpound import simulate
-from eventpound.errors import InputError
-from eventpound.motion import Harmonic, NoMotion, Sine
+from eventpound.errors import ComputationError, InputError
+from eventpound.motion import Harmonic, NoMotion, Record, Ricker, Sine
+from eventpound.motion.base import GroundMotion
+from eventpound.motion.constant import Constant
 from eventpound.response import Response
 from eventpound.scene import (
     GROUND,
@@ -334,6 +336,94 @@ def test_random_scene_moves_as_in_another_program(seed: int, solver: str) -> Non
     paths = [response.quantity(f"springs.{name}.slip_path") for name in sliders]
     np.testing.assert_allclose(paths, answer.path, rtol=0.0, atol=1e-7 * size)
     assert abs(response.energy.closure) < 1e-7
+
+
+def on_a_support(scene: Scene, seed: int) -> Scene:
+    """The scene with constant forces, and some of its springs and contacts on a pier that moves."""
+    rng = np.random.default_rng(seed)
+    same = scene.motion.period
+    late = np.concatenate((np.zeros(6), np.sin(0.26 * np.arange(60))))
+    motion = (Harmonic(1.0, same, reverse=True), Sine(1.0, same), Record(late, 0.2))[seed % 3]
+    pier = Support("pier", motion=motion)
+
+    def moved(name: str) -> str:
+        return "pier" if name in (GROUND, "barrier") and rng.random() < 0.5 else name
+
+    springs = tuple(replace(s, between=(moved(s.between[0]), moved(s.between[1])))
+                    for s in scene.springs)  # fmt: skip
+    contacts = tuple(
+        replace(c, left=moved(c.left), right=moved(c.right), gap=rng.choice([0.0, c.gap]),
+                restitution=0.0)
+        for c in scene.contacts
+    )  # fmt: skip
+    return Scene(
+        tuple(replace(body, velocity=0.0) for body in scene.bodies),
+        springs,
+        contacts=contacts,
+        motion=scene.motion,
+        supports=(pier,),
+        forces=tuple(Force(b.name, Constant(0.3 * rng.normal()), True) for b in scene.bodies),
+    )
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+@pytest.mark.parametrize("seed", [1, 4, 5, 9])
+def test_random_scene_on_a_support_moves_as_in_another_program(seed: int, solver: str) -> None:
+    scene, end = random_scene(seed)
+    scene = on_a_support(scene, seed)
+    response = run(scene, end, solver)
+    size = float(np.abs(response.recording.history.u).max())
+    moved = (scene.motion, scene.supports[0].motion)
+    pieces = [piece for motion in moved if motion for piece in motion.pieces()]
+    corners = {piece.end for piece in pieces} | set((0.2 * np.arange(66)).tolist())
+    answer = solved(scene, end, size, 1.0, tuple(sorted(corners)))
+    np.testing.assert_allclose(response.recording.u, answer.u, rtol=0.0, atol=1e-7 * size)
+    assert abs(response.energy.closure) < 1e-7
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+@pytest.mark.parametrize(
+    "motion",
+    [
+        Record(np.repeat([0.0, 1.0], (6, 5)), 0.2),
+        Record(np.repeat([0.0, 1.0], (6, 5)), 0.2, reverse=True),
+        Ricker(1.0, 0.5, center=1.8),
+        Sine(1.0, 1.0),
+        Sine(1.0, 1.0, reverse=True),
+    ],
+    ids=["late", "late, back", "from a tail", "with its jerk", "with its jerk, back"],
+)
+def test_deck_held_by_ground_and_pier_goes_with_the_one_that_tells(
+    solver: str, motion: GroundMotion
+) -> None:
+    # The pier stands at its left. Friction holds it against the push onto the pier.
+    scene = Scene(
+        (Body("deck", 1.0),),
+        (Spring("bearing", (GROUND, "deck"), Slider(2.0, 1.0)),),
+        contacts=(Contact("joint", "pier", "deck", 0.0, 0.0),),
+        motion=NoMotion(),
+        supports=(Support("pier", motion=motion),),
+        forces=(Force("deck", Constant(-1.0)),),
+    )
+    h = run(scene, 1.9, solver).recording.history
+    # A push of 1 and friction of 2 stop more than the pier does, until it goes back.
+    pier = np.array([float(motion.displacement(np.array(t))) for t in h.t])
+    np.testing.assert_allclose(h.u[:, 0], np.maximum.accumulate(np.maximum(pier, 0.0)), atol=1e-8)
+
+
+def test_what_supports_squeeze_without_a_way_out_is_refused_by_name() -> None:
+    scene = Scene(
+        (Body("deck", 1.0),),
+        (Spring("bearing", (GROUND, "deck"), Slider(2.0, 1.0)),),
+        contacts=(
+            Contact("joint", "deck", "pier", 0.0, 0.0),
+            Contact("wall", "barrier", "deck", 0.0, 0.0),
+        ),
+        motion=NoMotion(),
+        supports=(Support("pier", motion=Sine(1.0, 1.0, reverse=True)),),
+    )
+    with pytest.raises(ComputationError, match="could not be found: 'joint', 'wall', 'bearing'; "):
+        simulate(scene, duration=1.0)
 
 
 @pytest.mark.parametrize("solver", ["fast", "moreau", "penalty"])

@@ -92,8 +92,10 @@ def _failure(ended: int, now: Underway) -> ComputationError:
     if ended == ENDLESS:
         return ComputationError(endless_message(now.events(), now.task.scene.contacts), now.t)
     if ended == NO_FORCES:
-        contacts = np.flatnonzero(now.state.resting).tolist()
-        message = f"the forces of resting contacts could not be found (contacts {contacts})"
+        names = ", ".join(repr(now.names[j]) for j in np.flatnonzero(now.state.resting))
+        message = f"the forces of resting contacts could not be found: {names}"
+        if now.model.supports:
+            message += "; something between ground and supports has to give way where these meet"
         return ComputationError(message, now.t)
     if ended == UNENDING:
         return ComputationError(long_message(now.events(), now.task.scene.contacts), now.t)

@@ -132,7 +132,7 @@ class ModeTable:
         at_points[model.points] = True
         ordinary, projection = resting & ~at_points, None
         clusters = form_clusters_of_few(
-            model.left, model.right, model.gap, ordinary, pressed, model.bodies
+            model.left, model.right, model.gap, ordinary, pressed, model.mass
         )
         if (resting & at_points).any():
             clusters, projection = with_points(model, clusters, resting & at_points, pressed)
@@ -194,7 +194,7 @@ def _locked_beside_sliders(model: Model, resting: Bools, clusters: Clusters) -> 
     """Resting contacts (R,) that cannot open: a slider gives way in either direction."""
     own = resting.copy()
     own[model.own_contacts :] = False
-    alone = form_clusters_of_few(model.left, model.right, model.gap, own, own, model.bodies)
+    alone = form_clusters_of_few(model.left, model.right, model.gap, own, own, model.mass)
     locked = np.zeros(model.contacts, np.bool_)
     locked[alone.resting] = alone.locked
     return locked[clusters.resting]

@@ -203,7 +203,7 @@ def rest_contacts_at_points(
 def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: Bools) -> _Pressed:
     mass, ordinary = touching.mass, pressed & ~at_points
     left, right, gap = touching.left, touching.right, touching.gap
-    clusters = in_python(form_clusters)(left, right, gap, ordinary, ordinary, mass.size)
+    clusters = in_python(form_clusters)(left, right, gap, ordinary, ordinary, mass)
     system = in_python(reduce)(
         touching.link_ends,
         touching.law,

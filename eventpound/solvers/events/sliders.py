@@ -6,12 +6,15 @@ With f the friction of a slider, F its bound and x' the rate of its elongation
 
 A slider that slips in a direction σ is a link with the constant force σ F, until x' vanishes. One
 that sticks rests as a contact does, from its first end to its second, whose force λ is what
-friction lacks: ``f = σ F - λ``, ``0 <= σ λ <= 2 F``. So long as σ λ stays below 2 F the
-acceleration problem is that of contacts (`eventpound.contact.rest`), and decides as theirs what
-an order of the motion leaves open, and who carries where forces are not unique. Where a σ λ is
-larger, that slider is taken on its other side, and all is solved again: the problem is a minimum
-over box-shaped bounds of which each side leaves out one a slider, and each turn raises it, so none
-comes back.
+friction lacks: ``f = σ F - λ``, ``0 <= σ λ <= 2 F``.
+
+Accelerations are those of Gauss: with μ the forces of what may stick and rest, each in its bounds,
+``½ μᵀ G μ + qᵀ μ`` is least, q being the accelerations without them. Where ground and supports hold
+a body between them, G is singular and q tells no more as soon as they have no acceleration beside
+each other; then the first derivative that they have says which contact or slider gives way
+(`eventpound.numerics.box`). Only where they move alike all hold, and forces are not unique.
+With that a slider has a side, and what these forces leave open, an order of the motion
+further, is that of contacts alone (`eventpound.contact.rest`).
 
 Friction is bounded and has no impulse: in impacts the gap of every slider counts as infinite, and a
 slider sticks on where they leave it no rate. An instant is run by Python, some milliseconds.
@@ -19,10 +22,8 @@ slider sticks on where they leave it no rate. An instant is run by Python, some 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from itertools import islice, product
 
 import numpy as np
 
@@ -30,20 +31,22 @@ from eventpound.contact.cascade import STALE
 from eventpound.contact.impacts import DONE, put_as_one
 from eventpound.contact.instant import any_may_rest, settle_impacts, take_rests, touching_of
 from eventpound.contact.kinks import still_rate
-from eventpound.contact.rest import Touching, rest_contacts
-from eventpound.mechanics.clusters import form_clusters
+from eventpound.contact.rest import ORDER, Touching, rest_contacts, take_noise
+from eventpound.mechanics.clusters import form_clusters, form_clusters_of_few
+from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
-from eventpound.motion.forcing import CurrentPiece
-from eventpound.numerics.arrays import Bools, Ints
+from eventpound.mechanics.reduced import Branches, motion_rate, reduce, state_vector
+from eventpound.motion.forcing import CurrentPiece, decay_time, ground_taylor
+from eventpound.motion.loads import is_sinusoidal, load_taylor
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.box import least_in_box
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import LawRecording, Recording
 from eventpound.solvers.events.instant import settle_in_python
-from eventpound.solvers.events.present import forcing_now, make_ready
+from eventpound.solvers.events.present import forcing_now
 from eventpound.solvers.events.underway import Underway
-
-MOST_SIDES = 1000
-"""Choices of sides after which an instant has no solution."""
+from eventpound.tolerances import ACCELERATION
 
 
 def settle_sliders(now: Underway, piece: CurrentPiece) -> int:
@@ -88,7 +91,7 @@ def _end_sticks_and_slips(now: Underway) -> None:
         tied = at.resting.copy()
         tied[own:] |= stopped
         none = np.zeros_like(tied)
-        clusters = in_python(form_clusters)(at.left, at.right, at.opening, tied, none, at.mass.size)
+        clusters = in_python(form_clusters)(at.left, at.right, at.opening, tied, none, at.mass)
         in_python(put_as_one)(clusters.of_body, np.zeros(at.mass.size), at.mass, at.v)
 
 
@@ -106,35 +109,102 @@ def _offer(now: Underway) -> None:
 
 
 def _decide(now: Underway, piece: CurrentPiece) -> int:
-    """The acceleration problem, on the sides of sliders on which it holds; ends as `take_rests`."""
-    at, model = now.run.instant, now.model
-    own, links = model.own_contacts, model.sliders
-    offered = links[at.gap[own:] == 0.0]
+    """The acceleration problem, its forces within their bounds; ends as `take_rests`."""
+    at, own = now.run.instant, now.model.own_contacts
     if not in_python(any_may_rest)(at):
         # A cascade of impacts between what slips needs no more.
         return DONE
-    others, tried = _all_sides(offered.size), set[bytes]()
-    while True:
-        tried.add(at.branch.tobytes())
-        touching = in_python(touching_of)(now.state.z, forcing_now(piece, now.t), at)
-        resting, pressed, solved = in_python(rest_contacts)(_on_sides(touching, at.branch, model))
-        turned = _overloaded(resting, pressed, now, piece) if solved else offered[:0]
-        if solved and turned.size == 0:
-            break
-        at.branch[turned] *= -1
-        while at.branch.tobytes() in tried:
-            sides = next(others, None)
-            if sides is None:
-                return int(in_python(take_rests)(resting, pressed, False, at))
-            at.branch[offered] = sides
-    ended = in_python(take_rests)(resting, pressed, True, at)
+    touching = in_python(touching_of)(now.state.z, forcing_now(piece, now.t), at)
+    members = np.flatnonzero(touching.undecided)
+    force = _forces(members, touching, now)
+    if force is None:
+        return int(in_python(take_rests)(touching.undecided, at.pressed, False, at))
+    pressed = _take_sides(members, force, now)
+    touching = in_python(touching_of)(now.state.z, forcing_now(piece, now.t), at)
+    touching = touching._replace(undecided=touching.undecided & ~pressed, pressed=pressed)
+    found = in_python(rest_contacts)(_on_sides(touching, at.branch, now.model))
+    ended = in_python(take_rests)(*found, at)
     at.gap[own:][~at.resting[own:]] = np.inf
     return int(ended)
 
 
-def _all_sides(sliders: int) -> Iterator[tuple[int, ...]]:
-    """Choices of sides of so many sliders, no more than can be waited for."""
-    return islice(product((1, -1), repeat=sliders), MOST_SIDES)
+def _forces(members: Ints, touching: Touching, now: Underway) -> Floats | None:
+    """Forces of these contacts (N), from -F to F those of sliders; None where there are none.
+
+    They are the least of Gauss's function. Where ground and supports hold several, who carries is
+    told by the way in which these are about to part.
+    """
+    at, model = now.run.instant, now.model
+    W = contact_rows(model)[members]
+    low, high = np.zeros(members.size), np.full(members.size, np.inf)
+    a, start = _accelerations(touching), low.copy()
+    of_sliders = members >= model.own_contacts
+    links = model.sliders[members[of_sliders] - model.own_contacts]
+    high[of_sliders] = model.law.memory[links, STRENGTH]
+    low[of_sliders] = -high[of_sliders]
+    start[of_sliders] = low[of_sliders] * np.sign(at.branch[links])
+    # What slips along its branch has been pulled by that force.
+    a -= W.T @ start / model.mass
+    given = _given_motion(model.supports, touching)
+    a[: model.supports] = given[0]
+    q = np.column_stack((W @ a, *(W[:, : model.supports] @ later for later in given[1:])))
+    return least_in_box(W / model.mass @ W.T, q, low, high, start)
+
+
+def _accelerations(touching: Touching) -> Floats:
+    """Accelerations of the bodies (N,) without forces of contacts (m/s²)."""
+    mass, none = touching.mass, np.zeros_like(touching.undecided)
+    clusters = form_clusters_of_few(touching.left, touching.right, touching.gap, none, none, mass)
+    branches = Branches(touching.stiffness, touching.preload)
+    ends, law, hysteretic = touching.link_ends, touching.law, touching.hysteretic
+    system = in_python(reduce)(ends, law, mass, hysteretic, clusters, branches, 0)
+    state, rate = (touching.u, touching.v, touching.z, np.empty(0)), np.empty(system.size)
+    y = in_python(state_vector)(clusters, system, mass, *state)
+    in_python(motion_rate)(0.0, y, rate, system, touching.forcing)
+    return np.asarray(rate[system.iv])
+
+
+def _given_motion(supports: int, touching: Touching) -> Floats:
+    """Taylor coefficients of the accelerations of supports, (orders, supports), without rounding.
+
+    Beside the ground (m/s²); the first, and those after it that do not all vanish.
+    """
+    forcing, numbers = touching.forcing, touching.forcing.coefficients
+    if supports == 0:
+        return np.zeros((1, 0))
+    ground, found = np.zeros(ORDER), np.zeros((supports, ORDER))
+    ground_taylor(forcing, forcing.start, ORDER, ground)
+    for row in range(1, supports + 1):
+        load_taylor(row, forcing, forcing.start, ORDER, found[row - 1])
+    rough = np.array([is_sinusoidal(row, numbers) for row in range(supports + 1)], np.bool_)
+    noise, own = np.zeros(supports), ACCELERATION * touching.acceleration
+    time = min(touching.time, decay_time(forcing, forcing.start))
+    kept = []
+    for order in range(ORDER):
+        beside = (found[:, order] - ground[order]) / (order + 1)
+        floor = np.zeros(supports)
+        in_python(take_noise)(order, beside, ground[order], own, rough[1:] | rough[0], floor, noise)
+        beside[np.abs(beside) <= noise] = 0.0
+        if order == 0 or beside.any():
+            kept.append(beside)
+        own /= time * (order + 1)
+    return np.array(kept)
+
+
+def _take_sides(members: Ints, force: Floats, now: Underway) -> Bools:
+    """Put sliders on the sides of their forces (N); contacts (K,) that something presses."""
+    at, model = now.run.instant, now.model
+    own, noise = model.own_contacts, now.table.force_noise
+    pressed = np.zeros(model.contacts, np.bool_)
+    for j, value in zip(members, force, strict=True):
+        if j < own:
+            pressed[j] = value > noise and not at.released[j]
+            continue
+        link = model.sliders[j - own]
+        pressed[j] = not at.released[j] and model.law.memory[link, STRENGTH] - abs(value) > noise
+        if not pressed[j]:
+            at.branch[link] = -np.sign(value)
+    return pressed
 
 
 def _on_sides(touching: Touching, branch: Ints, model: Model) -> Touching:
@@ -143,18 +213,6 @@ def _on_sides(touching: Touching, branch: Ints, model: Model) -> Touching:
     back = model.own_contacts + np.flatnonzero(branch[model.sliders] < 0)
     left[back], right[back], gap[back] = right[back], left[back], -gap[back]
     return touching._replace(left=left, right=right, gap=gap)
-
-
-def _overloaded(resting: Bools, pressed: Bools, now: Underway, piece: CurrentPiece) -> Ints:
-    """Links of sliders that cannot hold what sticks, with these contacts (K,) at rest."""
-    run, at, model = now.run, now.run.instant, now.model
-    own, links = model.own_contacts, model.sliders
-    mode = now.table.mode(resting, at.branch, pressed, at.opening)
-    now.take_closing_speeds(mode)
-    in_python(make_ready)(run, mode.dynamics, piece)
-    force = run.looks[0].contact_force[0, own:] * at.branch[links]
-    most = 2.0 * model.law.memory[links, STRENGTH] + now.table.force_noise
-    return np.asarray(links[mode.watched.unlocked[own:] & (force > most)])
 
 
 def own_recording(recording: Recording, model: Model) -> Recording:

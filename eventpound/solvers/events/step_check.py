@@ -12,6 +12,7 @@ invariants of contacts and energy stand here, too: a run that breaks one stops a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -24,8 +25,6 @@ from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
-from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Slider
 from eventpound.solvers.base import Energy
 from eventpound.solvers.events.event_bounds import Found, Watched, inspect_step, room_at_rest
 from eventpound.solvers.events.run import Dynamics, RunRecord
@@ -190,18 +189,17 @@ def broken_contact(seen: Observed, watched: Watched, length_noise: float) -> int
 
 
 def contact_error(
-    t: float, j: int, seen: Observed, watched: Watched, scene: Scene
+    t: float, j: int, seen: Observed, watched: Watched, names: Sequence[str]
 ) -> ComputationError:
-    """What to raise of contact j, which `broken_contact` names."""
-    held = [spring.name for spring in scene.springs if isinstance(spring.law, Slider)]
-    name = [*(contact.name for contact in scene.contacts), *held][j]
+    """What to raise of contact j, which `broken_contact` names, those of sliders included."""
+    name = names[j]
     if watched.open_contacts[j]:
         depth = -float(seen.gap[0, j])
         return ComputationError(
             f"contact {name!r} penetrates by {depth:.3g} m; try a smaller rtol", t
         )
     pull = -float(in_python(room_at_rest)(j, watched, seen.contact_force)[0])
-    if j >= len(scene.contacts):
+    if watched.force_low[j] < 0.0 or watched.force_high[j] < np.inf:
         return ComputationError(
             f"slider {name!r} sticks with {pull:.3g} N more than it can; try a smaller rtol", t
         )

@@ -152,6 +152,15 @@ class Underway:
         return float(self.state.clock[T])
 
     @property
+    def names(self) -> list[str]:
+        """Of the contacts, those of sliders included."""
+        springs = self.task.scene.springs
+        return [
+            *(contact.name for contact in self.task.scene.contacts),
+            *(springs[link].name for link in self.model.sliders),
+        ]
+
+    @property
     def steps(self) -> int:
         """Steps so far."""
         return int(self.state.count[STEPS])
@@ -254,7 +263,7 @@ class Underway:
         """What to raise where the last of the looks shows a contact that penetrates or pulls."""
         seen, watched = self.run.looks[2], self.mode.watched
         j = in_python(broken_contact)(seen, watched, self.rules.length_noise)
-        return contact_error(t, j, seen, watched, self.task.scene)
+        return contact_error(t, j, seen, watched, self.names)
 
 
 def _doubled(rows: Floats, taken: int) -> Floats:

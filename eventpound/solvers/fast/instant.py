@@ -164,7 +164,7 @@ def _form(contacts: Contacts, mass: Floats, v: Floats, forces: Resting) -> tuple
     the elimination.
     """
     left, right, bodies = contacts.left, contacts.right, mass.size
-    clusters = form_clusters(left, right, contacts.gap, forces.resting, forces.pressed, bodies)
+    clusters = form_clusters(left, right, contacts.gap, forces.resting, forces.pressed, mass)
     for b in range(bodies):
         forces.of_body[b] = clusters.of_body[b]
     copy_numbers(clusters.resting, forces.rests)

@@ -1,0 +1,70 @@
+"""The least of a quadratic function in a box, beside every corner, edge and face tried."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from eventpound.numerics.box import least_in_box
+
+SMALL = 1e-4
+
+
+def _problem(rng: np.random.Generator) -> tuple[np.ndarray, ...]:
+    """More unknowns than G has rank; numbers of a few digits, so that some are exactly equal."""
+    k, rank = int(rng.integers(1, 5)), int(rng.integers(1, 4))
+    D = rng.integers(-2, 3, (k, rank)) * 1.0
+    D[~D.any(axis=1), 0] = 1.0
+    q = np.column_stack((D @ rng.integers(-3, 4, rank), rng.integers(-1, 2, (k, 2)))) * 1.0
+    high = np.where(rng.random(k) < 0.5, np.inf, rng.integers(1, 4, k))
+    low = np.where(np.isinf(high), 0.0, -high)
+    return D @ D.T, q, low, high
+
+
+def _every_way(G: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.ndarray) -> list[np.ndarray]:
+    """Where the gradient points out of the box, of the x that each choice of bounds leaves."""
+    found = []
+    for sides in product((-1, 0, 1), repeat=q.size):
+        side = np.array(sides)
+        x = np.where(side < 0, low, np.where(side > 0, high, 0.0))
+        free = side == 0
+        if not np.isfinite(x).all():
+            continue
+        if free.any():
+            F = G[np.ix_(free, free)]
+            x[free] = np.linalg.lstsq(F, -(q + G @ x)[free], 1e-9)[0]
+        w = G @ x + q
+        inside = ((x >= low - 1e-11) & (x <= high + 1e-11)).all()
+        if inside and (np.abs(w[free]) < 1e-11).all() and (side[~free] * w[~free] <= 1e-11).all():
+            found.append(x)
+    return found
+
+
+def test_limit_is_that_of_small_changes_tried_in_every_way() -> None:
+    rng = np.random.default_rng(5)
+    seen = none = 0
+    for _ in range(150):
+        G, q, low, high = _problem(rng)
+        start = np.where(np.isinf(high), 0.0, low)
+        x = least_in_box(G, q, low, high, start)
+        small = _every_way(G, q @ np.array([1.0, SMALL, SMALL**2]), low, high)
+        if x is None:
+            none += 1
+            assert not small
+            continue
+        seen += 1
+        # Which of several is free; that it is the limit of one is not.
+        assert min(np.abs(x - other).max() for other in small) < 100.0 * SMALL
+        w = G @ x + q[:, 0]
+        inside = (x > low) & (x < high)
+        np.testing.assert_allclose(w[inside], 0.0, atol=1e-12)
+    assert seen > 100
+    assert none > 3
+
+
+def test_a_number_that_nothing_moves_stays_at_its_start() -> None:
+    G, low, high = np.ones((2, 2)), np.full(2, -1.0), np.ones(2)
+    x = least_in_box(G, np.zeros((2, 1)), low, high, np.array([1.0, -1.0]))
+    assert x == pytest.approx([1.0, -1.0])
