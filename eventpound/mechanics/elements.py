@@ -328,6 +328,9 @@ def z_coefficient(
         kappa, power[k] = 1.0, -2.0 * z[k]
         for j in range(k + 1):
             power[k] -= z[j] * z[k - j]
+    elif memory[a, BETA] == memory[a, GAMMA] == 0.0:
+        # Of a small z a power, though it does not count, may be too large for a double.
+        return float(x_rate[k] / memory[a, YIELD])
     else:
         power[k] = power_coefficient(z, power, memory[a, EXPONENT], k)
     product = _convolution(k, x_rate, power)

@@ -189,6 +189,14 @@ def _series_of_z(law: np.ndarray, x: np.ndarray, z_0: float, sigma: float) -> np
     return z
 
 
+def test_soil_that_is_hardly_pressed_has_a_series() -> None:
+    law = link_law([Backfill(1.0, 1.0, 0.5)], [0.0]).memory
+    law = memory_on_branches(law, np.array([CLOSED]))
+    # As it arrives at rest after a cascade.
+    x = np.append((0.0, 1e-93), np.random.default_rng(5).normal(size=24))
+    assert _series_of_z(law, x, -1e-186, 1.0)[1:] == pytest.approx(0.5 * x[1:], rel=1e-15)
+
+
 @pytest.mark.parametrize("n", [1.0, 2.5, 20.0])
 @pytest.mark.parametrize(("z_0", "sigma"), [(0.7, 1.0), (-0.6, 1.0), (0.6, -1.0), (-0.8, -1.0)])
 def test_series_on_a_curve_is_the_general_one(n: float, z_0: float, sigma: float) -> None:

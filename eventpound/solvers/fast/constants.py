@@ -38,7 +38,7 @@ from eventpound.solvers.fast.run import (
     FastPlan,
     FastSeries,
     FastState,
-    Followed,
+    FollowedMemories,
     Ground,
     Limits,
     Links,
@@ -330,7 +330,7 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         elimination=np.zeros((contacts, 4), np.int64),
         single=Single(np.zeros(1, BODY), np.zeros(most), turns, work),
         each=_blank_each(plan, loaded),
-        followed=Followed(np.zeros(followed), np.zeros(followed), np.zeros(1)),
+        followed=FollowedMemories(np.zeros(followed), np.zeros(followed), np.zeros(1)),
         # Steps from sample to sample follow no z.
         tables=blank_tables(bodies if followed == 0 else 0, links),
         held=np.zeros((4, in_python(places_of)(bodies, plan.links.springs, contacts).end)),

@@ -205,7 +205,7 @@ class Each(NamedTuple):
     since: Floats
 
 
-class Followed(NamedTuple):
+class FollowedMemories(NamedTuple):
     """Of z that go by series of their own (F,), `eventpound.solvers.fast.followed`.
 
     sigma: sign of x' just after the start of the step, 0 where it is not known yet. weight: what
@@ -275,7 +275,7 @@ class FastSeries(NamedTuple):
     elimination: Ints
     single: Single
     each: Each
-    followed: Followed
+    followed: FollowedMemories
     tables: SampleTables
     held: Floats
 
