@@ -185,10 +185,15 @@ def _knee_worn(a: int, memory: Floats, beside: float) -> float:
 
 
 @_part
+def _has_one_formula(a: int, memory: Floats) -> bool:
+    """Whether dz/dx of link a takes no power of z, as on each branch of a law that has branches."""
+    return bool(memory[a, BETA] == memory[a, GAMMA] == 0.0)
+
+
+@_part
 def z_bend(a: int, memory: Floats, z: float, beside: float, travel: float) -> float:
     """By how much z departs from a line over a `travel` of the elongation (m), at most."""
-    if memory[a, BETA] == memory[a, GAMMA] == 0.0:
-        # A branch has one formula.
+    if _has_one_formula(a, memory):
         return 0.0
     linear = travel / memory[a, YIELD]
     return float(linear * (abs(z) + linear) ** memory[a, EXPONENT] * _knee_worn(a, memory, beside))
@@ -328,7 +333,7 @@ def z_coefficient(
         kappa, power[k] = 1.0, -2.0 * z[k]
         for j in range(k + 1):
             power[k] -= z[j] * z[k - j]
-    elif memory[a, BETA] == memory[a, GAMMA] == 0.0:
+    elif _has_one_formula(a, memory):
         # Of a small z a power, though it does not count, may be too large for a double.
         return float(x_rate[k] / memory[a, YIELD])
     else:
