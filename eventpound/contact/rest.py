@@ -345,8 +345,7 @@ def _round_as_the_scene(system: Reduced, forcing: Forcing) -> Bools:
         for a in range(system.link.size):
             if support_of(system.link[a], forcing.coefficients) >= 0:
                 row = row_of_link(system.link[a], forcing.coefficients)
-                result[system.ends[a, 0]] = is_sinusoidal(0, forcing.coefficients)
-                result[system.ends[a, 0]] |= is_sinusoidal(row, forcing.coefficients)
+                result[system.ends[a, 0]] = is_sinusoidal(row, forcing.coefficients)
     return result
 
 

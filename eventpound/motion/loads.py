@@ -59,8 +59,9 @@ def is_driven(row: int, coefficients: Floats) -> bool:
 
 @scalar_kernel
 def is_sinusoidal(row: int, coefficients: Floats) -> bool:
-    """Whether a load, or the ground in row 0, is a sum of sinusoids."""
-    return coefficients[FIRST_ROW + ROW_WIDTH * row] == _SINUSOIDS
+    """Whether a load beside the ground, which is row 0, has a sum of sinusoids in it."""
+    ground, own = coefficients[FIRST_ROW], coefficients[FIRST_ROW + ROW_WIDTH * row]
+    return bool(ground == _SINUSOIDS or own == _SINUSOIDS)
 
 
 @scalar_kernel

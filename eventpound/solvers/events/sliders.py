@@ -176,14 +176,14 @@ def _given_motion(supports: int, touching: Touching) -> Floats:
     ground_taylor(forcing, forcing.start, ORDER, ground)
     for row in range(1, supports + 1):
         load_taylor(row, forcing, forcing.start, ORDER, found[row - 1])
-    rough = np.array([is_sinusoidal(row, numbers) for row in range(supports + 1)], np.bool_)
+    rough = np.array([is_sinusoidal(row, numbers) for row in range(1, supports + 1)], np.bool_)
     noise, own = np.zeros(supports), ACCELERATION * touching.acceleration
     time = min(touching.time, decay_time(forcing, forcing.start))
     kept = []
     for order in range(ORDER):
         beside = (found[:, order] - ground[order]) / (order + 1)
         floor = np.zeros(supports)
-        in_python(take_noise)(order, beside, ground[order], own, rough[1:] | rough[0], floor, noise)
+        in_python(take_noise)(order, beside, ground[order], own, rough, floor, noise)
         beside[np.abs(beside) <= noise] = 0.0
         if order == 0 or beside.any():
             kept.append(beside)
