@@ -366,13 +366,19 @@ def _overlaps(scene: Scene, start: float) -> dict[int, float]:
     displacements |= {BARRIER: 0.0, GROUND: 0.0, **starts_of_supports(scene, start)}
     # Bodies at rest on each other stand at sums of the coordinates and gaps of their row.
     largest = max((abs(contact.gap) for contact in scene.contacts), default=0.0)
-    largest += 2.0 * max(map(abs, displacements.values()))
+    largest += 2.0 * max(map(abs, displacements.values())) + _scale_of_supports(scene)
     found = {}
     for i, contact in enumerate(scene.contacts):
         gap = float(opening(contact, contact.gap, displacements))
         if contact.law is None and gap < -4.0 * math.ulp(1.0) * largest:
             found[i] = gap
     return found
+
+
+def _scale_of_supports(scene: Scene) -> float:
+    """Length of which the way of a support before the start, as in a tail, is rounding (m)."""
+    scales = [support.moved_by(scene.motion).scales() for support in scene.supports]
+    return max((each.length for each in scales if each is not None), default=0.0)
 
 
 def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:

@@ -53,12 +53,13 @@ class Sought(NamedTuple):
 
     kind: a gap, the force of a resting contact, the room of a link on its branch; or a quantity
     of which extremes are recorded. index: of the contact or link, or its column of the extremes.
-    noise: depth below zero that means nothing.
+    noise: depth below zero that means nothing. level: what counts as zero.
     """
 
     kind: int
     index: int  # type: ignore[assignment]  # hides the method of tuples
     noise: float
+    level: float
 
 
 class Sample(NamedTuple):
@@ -78,7 +79,7 @@ def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
         return Sample(tau, seen.gap[0, i], seen.gap[1, i])
     if sought.kind == _FORCE:
         force, rate = room_at_rest(i, step.dynamics.watched, seen.contact_force)
-        return Sample(tau, force, rate)
+        return Sample(tau, force - sought.level, rate)
     if sought.kind == _MONITORED:
         value, rate, _ = motion_of(i, step.dynamics.watched.at, seen)
         return Sample(tau, value, rate)
@@ -234,6 +235,7 @@ def first_event(
     float
         When (s, local); inf where nothing happens.
     """
+    kept = happened.released.copy()
     forget(happened)
     first = step.dense.end
     any_event = False
@@ -245,9 +247,10 @@ def first_event(
             if not marks[i]:
                 continue
             noise = watched.force_noise if kind == _FORCE else rules.length_noise
+            level = _level_of_kept(i, watched, step) if kind == _FORCE and kept[i] else 0.0
             if kind == _KINK:
                 noise = noise_on_branch(i, watched, rules.length, rules.time)
-            tau = first_below(Sought(kind, i, noise), first, step)
+            tau = first_below(Sought(kind, i, noise, level), first, step)
             if tau == np.inf:
                 continue
             if tau < first:
@@ -264,6 +267,18 @@ def first_event(
     look(first, step)
     add_vanished(step.seen, watched, rules, happened)
     return first
+
+
+@kernel
+def _level_of_kept(j: int, watched: Watched, step: DenseStep) -> float:
+    """What counts as zero of the force of a contact that was released, and rests still (N).
+
+    Where the acceleration problem decides nothing a force that is below zero is so by rounding:
+    it must fall further, or the same instant would come again for ever.
+    """
+    look(step.dense.start, step)
+    force = room_at_rest(j, watched, step.seen.contact_force)[0]
+    return force - watched.force_noise if force < 0.0 else 0.0
 
 
 @scalar_kernel
@@ -342,7 +357,7 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
     for k in range(running.at.displacement, running.at.end):
         if not peak[k]:
             continue
-        sought = Sought(_MONITORED, k, running.rounding[k])
+        sought = Sought(_MONITORED, k, running.rounding[k], 0.0)
         a = Sample(times[0], seen[0, 0, k], seen[1, 0, k])
         for i in range(1, PARTS + 1):
             b = Sample(times[i], seen[0, i, k], seen[1, i, k])
