@@ -155,7 +155,7 @@ SHARED_WITH_LAWS = {
 }
 """What those share besides whose contacts have laws of their own."""
 SHARED_WITH_SLIDERS = {
-    f"{_EVENTS}.sliders": "which sliders stick, and which way others slip",
+    "eventpound.contact.sliders": "which sliders stick, and which way others slip",
     "eventpound.numerics.box": "the forces of what may stick or rest",
     "eventpound.mechanics.observables": "the friction of those that stick",
 }

@@ -28,7 +28,7 @@ With ``Q = F_ult/R_f``, ``u_y = Q/K_0`` and ``η = y/u_y``
     z' = (x'/u_y) (1 + z)^2  yielding: z = -η/(1 + η), until x' turns.
 
 A slider has two, the directions of its slip, on which it pulls with a constant Q of their sign and
-z is one. Whether it sticks `eventpound.solvers.events.sliders` decides.
+z is one. Whether it sticks `eventpound.contact.sliders` decides.
 """
 
 from __future__ import annotations

@@ -52,7 +52,7 @@ ready for a step; to put it, the last, into the history."""
 (OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, IN_PYTHON) = range(20, 25)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
 steps are used up; links have no branch yet; what is to be done is that of
-`eventpound.solvers.events.point_instant` or `eventpound.solvers.events.sliders`."""
+`eventpound.solvers.events.point_instant` or `eventpound.contact.sliders`."""
 NOT_FINITE, UNENDING = 30, 32
 """How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
 

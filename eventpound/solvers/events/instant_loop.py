@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from eventpound.contact.cascade import STALE, endless_message, long_message
 from eventpound.contact.impacts import DONE, ENDLESS, FULL, NO_FORCES, NO_IMPACT
 from eventpound.contact.kinks import choose_branches, choose_clear_branches
 from eventpound.contact.rest import ORDER
+from eventpound.contact.sliders import decide_sticks, settle_beside_sliders
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import CurrentPiece, ground_onset
@@ -30,12 +33,13 @@ from eventpound.solvers.events.instant import (
     TAKE,
     UNENDING,
     proceed,
+    settle_in_python,
 )
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.point_instant import settle_points
+from eventpound.solvers.events.present import forcing_now
 from eventpound.solvers.events.run import KNOTS, PHASE, SHORT_STEPS
 from eventpound.solvers.events.second_look import BROKEN, EVENT
-from eventpound.solvers.events.sliders import settle_sliders
 from eventpound.solvers.events.underway import Underway
 
 NOWHERE = Dense(np.zeros((1, 1)), 0.0, 0.0, 0.0, NO_FRAME, False, NO_GAPS)
@@ -75,7 +79,7 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
             now.enter_mode()
         elif ended == IN_PYTHON:
             # No scene has both.
-            settle = settle_sliders if now.model.sliders.size else settle_points
+            settle = _settle_sliders if now.model.sliders.size else settle_points
             ended = settle(now, piece)
         if ended == FULL:
             now.make_room()
@@ -83,6 +87,28 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
             _choose_branches(now, piece)
         if ended in FAILED:
             raise _failure(ended, now)
+
+
+def _settle_sliders(now: Underway, piece: CurrentPiece) -> int:
+    """What the present instant demands of a scene with sliders; ends as `proceed` does."""
+    run, model = now.run, now.model
+    # The last look is at the event.
+    impacts = partial(
+        settle_beside_sliders,
+        run.looks[2].contact_force[0],
+        run.happened.kinked,
+        run.instant,
+        model,
+    )
+    noise = now.table.force_noise
+
+    def rests() -> int:
+        ended = decide_sticks(run.state.z, forcing_now(piece, now.t), noise, run.instant, model)
+        if ended == DONE:
+            run.state.count[STALE] |= bool((run.instant.branch != now.mode.branch).any())
+        return ended
+
+    return settle_in_python(run, impacts, rests)
 
 
 def _failure(ended: int, now: Underway) -> ComputationError:

@@ -27,10 +27,15 @@ from eventpound.solvers.events.instant_loop import (
     take_state,
 )
 from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError, Start
-from eventpound.solvers.events.recorder import energy_ledger, impact_terms, is_due, kept
+from eventpound.solvers.events.recorder import (
+    energy_ledger,
+    impact_terms,
+    is_due,
+    kept,
+    own_recording,
+)
 from eventpound.solvers.events.run import FINDER, STEPS
 from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
-from eventpound.solvers.events.sliders import own_recording
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     HAPPENED,
@@ -319,4 +324,4 @@ class EventLoop:
             integrated=self._integrated,
             **kept(now.record.extremes, events, now.t, now.model),
         )
-        return own_recording(recording, now.model) if now.model.sliders.size else recording
+        return own_recording(recording, now.model)

@@ -8,6 +8,7 @@ that a compiled step never needs more.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -25,7 +26,16 @@ from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.scene.elastic_laws import elastic_force
-from eventpound.solvers.base import ENDS_OF_REST, Energy, Event, EventKind, Extremes, History
+from eventpound.solvers.base import (
+    ENDS_OF_REST,
+    Energy,
+    Event,
+    EventKind,
+    Extremes,
+    History,
+    LawRecording,
+    Recording,
+)
 from eventpound.solvers.events.scales import SceneScales
 
 PASSED, WRITTEN = 0, 1
@@ -195,6 +205,32 @@ def kept(table: Floats, events: Sequence[Event], end: float, model: Model) -> di
         "resting_time": resting_times(events, model.contacts, end),
         "max_force": np.maximum(force.maximum, 0.0),
     }
+
+
+def own_recording(recording: Recording, model: Model) -> Recording:
+    """A recording without the contacts that stand for sliders, and with every z at its end."""
+    if model.sliders.size == 0:
+        return recording
+    own = model.own_contacts
+    h, laws, z = recording.history, recording.laws, recording.z.copy()
+    of_sliders = model.z_of_link[model.sliders]
+    if h.t.size > 0:
+        z[of_sliders] = h.z[-1, of_sliders]
+    if laws is not None:
+        laws = LawRecording(laws.smallest_force[:own], laws.longest_contact[:own])
+    assert recording.largest_gap is not None
+    return replace(
+        recording,
+        z=z,
+        history=replace(h, gap=h.gap[:, :own], contact_force=h.contact_force[:, :own]),
+        events=tuple(event for event in recording.events if event.contact < own),
+        smallest_gap=recording.smallest_gap[:own],
+        largest_gap=recording.largest_gap[:own],
+        resting_time=recording.resting_time[:own],
+        max_force=recording.max_force[:own],
+        unique_forces=recording.unique_forces[:own],
+        laws=laws,
+    )
 
 
 def resting_times(events: Sequence[Event], contacts: int, end: float) -> Floats:

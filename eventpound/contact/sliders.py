@@ -22,71 +22,87 @@ slider sticks on where they leave it no rate. An instant is run by Python, some 
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import partial
-
 import numpy as np
 
-from eventpound.contact.cascade import STALE
 from eventpound.contact.impacts import DONE, put_as_one
 from eventpound.contact.instant import any_may_rest, settle_impacts, take_rests, touching_of
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import ORDER, Touching, rest_contacts, take_noise
+from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import form_clusters, form_clusters_of_few
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.reduced import Branches, motion_rate, reduce, state_vector
-from eventpound.motion.forcing import CurrentPiece, decay_time, ground_taylor
+from eventpound.mechanics.reduced import Branches, Forcing, motion_rate, reduce, state_vector
+from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.motion.loads import is_sinusoidal, load_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.box import least_in_box
 from eventpound.numerics.compiled import in_python
-from eventpound.solvers.base import LawRecording, Recording
-from eventpound.solvers.events.instant import settle_in_python
-from eventpound.solvers.events.present import forcing_now
-from eventpound.solvers.events.underway import Underway
 from eventpound.tolerances import ACCELERATION
 
 
-def settle_sliders(now: Underway, piece: CurrentPiece) -> int:
-    """Impacts of the present instant, and who rests and sticks after them; ends as `proceed` does.
+def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Model) -> int:
+    """Impacts of an instant of a scene with sliders; ends as `settle_impacts`.
 
     Parameters
     ----------
-    now : Underway
-        The run.
-    piece : CurrentPiece
-        The ground motion.
+    force : ndarray, shape (K,)
+        Forces of the contacts as the instant begins (N).
+    kinked : ndarray of bool, shape (L,)
+        Links whose branch has just ended: sliders whose slip has.
+    at : Instant
+        The instant.
+    model : Model
+        The scene, its sliders with contacts of their own.
     """
-    return settle_in_python(now.run, partial(_impacts, now), partial(_rests, now, piece))
-
-
-def _impacts(now: Underway) -> int:
-    _end_sticks_and_slips(now)
-    at = now.run.instant
-    at.gap[now.model.own_contacts :] = np.inf
+    _end_sticks_and_slips(force, kinked, at, model)
+    at.gap[model.own_contacts :] = np.inf
     return int(in_python(settle_impacts)(at))
 
 
-def _rests(now: Underway, piece: CurrentPiece) -> int:
-    _offer(now)
-    ended = _decide(now, piece)
-    if ended == DONE:
-        run = now.run
-        run.state.count[STALE] |= bool((run.instant.branch != now.mode.branch).any())
-    return ended
+def decide_sticks(z: Floats, forcing: Forcing, noise: float, at: Instant, model: Model) -> int:
+    """Who sticks and who rests after the impacts of an instant; ends as `take_rests`.
+
+    Parameters
+    ----------
+    z : ndarray, shape (H,)
+        Hysteretic variables.
+    forcing : Forcing
+        The ground motion from now on.
+    noise : float
+        Contact forces below this (N) have no meaningful sign.
+    at : Instant
+        The instant, its impacts over.
+    model : Model
+        The scene, its sliders with contacts of their own.
+    """
+    _offer(at, model)
+    if not in_python(any_may_rest)(at):
+        # A cascade of impacts between what slips needs no more.
+        return DONE
+    own = model.own_contacts
+    touching = in_python(touching_of)(z, forcing, at)
+    members = np.flatnonzero(touching.undecided)
+    force = _forces(members, touching, at, model)
+    if force is None:
+        return int(in_python(take_rests)(touching.undecided, at.pressed, False, at))
+    pressed = _take_sides(members, force, noise, at, model)
+    touching = in_python(touching_of)(z, forcing, at)
+    touching = touching._replace(undecided=touching.undecided & ~pressed, pressed=pressed)
+    found = in_python(rest_contacts)(_on_sides(touching, at.branch, model))
+    ended = in_python(take_rests)(*found, at)
+    at.gap[own:][~at.resting[own:]] = np.inf
+    return int(ended)
 
 
-def _end_sticks_and_slips(now: Underway) -> None:
+def _end_sticks_and_slips(force: Floats, kinked: Bools, at: Instant, model: Model) -> None:
     """Put sliders that let go on the side on which they do, and stop those whose slip has ended."""
-    run, at, model = now.run, now.run.instant, now.model
     own, links = model.own_contacts, model.sliders
-    # The last look is at the event.
-    force = run.looks[2].contact_force[0, own:] * at.branch[links]
-    turned = links[at.released[own:] & (force > model.law.memory[links, STRENGTH])]
+    lacking = force[own:] * at.branch[links]
+    turned = links[at.released[own:] & (lacking > model.law.memory[links, STRENGTH])]
     at.branch[turned] *= -1
-    stopped = run.happened.kinked[links]
+    stopped = kinked[links]
     if stopped.any():
         tied = at.resting.copy()
         tied[own:] |= stopped
@@ -95,9 +111,8 @@ def _end_sticks_and_slips(now: Underway) -> None:
         in_python(put_as_one)(clusters.of_body, np.zeros(at.mass.size), at.mass, at.v)
 
 
-def _offer(now: Underway) -> None:
+def _offer(at: Instant, model: Model) -> None:
     """Let sliders that stand still take part in the acceleration problem, others slip."""
-    at, model = now.run.instant, now.model
     own, links = model.own_contacts, model.sliders
     x, rate = (model.elongations(values)[links] for values in (at.u, at.v))
     moving = np.abs(rate) > still_rate(at.length, at.time)
@@ -108,33 +123,12 @@ def _offer(now: Underway) -> None:
     at.opening[own:][begins] = -x[begins]
 
 
-def _decide(now: Underway, piece: CurrentPiece) -> int:
-    """The acceleration problem, its forces within their bounds; ends as `take_rests`."""
-    at, own = now.run.instant, now.model.own_contacts
-    if not in_python(any_may_rest)(at):
-        # A cascade of impacts between what slips needs no more.
-        return DONE
-    touching = in_python(touching_of)(now.state.z, forcing_now(piece, now.t), at)
-    members = np.flatnonzero(touching.undecided)
-    force = _forces(members, touching, now)
-    if force is None:
-        return int(in_python(take_rests)(touching.undecided, at.pressed, False, at))
-    pressed = _take_sides(members, force, now)
-    touching = in_python(touching_of)(now.state.z, forcing_now(piece, now.t), at)
-    touching = touching._replace(undecided=touching.undecided & ~pressed, pressed=pressed)
-    found = in_python(rest_contacts)(_on_sides(touching, at.branch, now.model))
-    ended = in_python(take_rests)(*found, at)
-    at.gap[own:][~at.resting[own:]] = np.inf
-    return int(ended)
-
-
-def _forces(members: Ints, touching: Touching, now: Underway) -> Floats | None:
+def _forces(members: Ints, touching: Touching, at: Instant, model: Model) -> Floats | None:
     """Forces of these contacts (N), from -F to F those of sliders; None where there are none.
 
     They are the least of Gauss's function. Where ground and supports hold several, who carries is
     told by the way in which these are about to part.
     """
-    at, model = now.run.instant, now.model
     W = contact_rows(model)[members]
     low, high = np.zeros(members.size), np.full(members.size, np.inf)
     a, start = _accelerations(touching), low.copy()
@@ -191,10 +185,9 @@ def _given_motion(supports: int, touching: Touching) -> Floats:
     return np.array(kept)
 
 
-def _take_sides(members: Ints, force: Floats, now: Underway) -> Bools:
+def _take_sides(members: Ints, force: Floats, noise: float, at: Instant, model: Model) -> Bools:
     """Put sliders on the sides of their forces (N); contacts (K,) that something presses."""
-    at, model = now.run.instant, now.model
-    own, noise = model.own_contacts, now.table.force_noise
+    own = model.own_contacts
     pressed = np.zeros(model.contacts, np.bool_)
     for j, value in zip(members, force, strict=True):
         if j < own:
@@ -213,27 +206,3 @@ def _on_sides(touching: Touching, branch: Ints, model: Model) -> Touching:
     back = model.own_contacts + np.flatnonzero(branch[model.sliders] < 0)
     left[back], right[back], gap[back] = right[back], left[back], -gap[back]
     return touching._replace(left=left, right=right, gap=gap)
-
-
-def own_recording(recording: Recording, model: Model) -> Recording:
-    """A recording without the contacts that stand for sliders, and with every z at its end."""
-    own = model.own_contacts
-    h, laws, z = recording.history, recording.laws, recording.z.copy()
-    of_sliders = model.z_of_link[model.sliders]
-    if h.t.size > 0:
-        z[of_sliders] = h.z[-1, of_sliders]
-    if laws is not None:
-        laws = LawRecording(laws.smallest_force[:own], laws.longest_contact[:own])
-    assert recording.largest_gap is not None
-    return replace(
-        recording,
-        z=z,
-        history=replace(h, gap=h.gap[:, :own], contact_force=h.contact_force[:, :own]),
-        events=tuple(event for event in recording.events if event.contact < own),
-        smallest_gap=recording.smallest_gap[:own],
-        largest_gap=recording.largest_gap[:own],
-        resting_time=recording.resting_time[:own],
-        max_force=recording.max_force[:own],
-        unique_forces=recording.unique_forces[:own],
-        laws=laws,
-    )
