@@ -34,7 +34,6 @@ from eventpound.scene.contact import BARRIER
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Hysteretic
-from eventpound.tolerances import EPS
 
 WORK_OF_SUPPORTS = 3
 """Entries of the energy ledger before those of supports: input, viscous and hysteretic work."""
@@ -149,10 +148,6 @@ class Model:
         """Gaps ``g = δ + u_right - u_left`` (m), shape (..., K), for u of shape (..., N)."""
         return self.gap + self.rates(u)
 
-    def initial_gaps(self, length: float) -> Floats:
-        """Gaps at the start, exactly zero within rounding; `length` (m) is the scene's own."""
-        return without_rounding(self.gaps(self.u0), self.gap, self.u0, length)
-
     def rates(self, v: Floats) -> Floats:
         """``Wᵀ v``, shape (..., K): rates of the gaps for velocities v of shape (..., N)."""
         found = differences(v, self.left, self.right)
@@ -242,23 +237,6 @@ def with_sliders(model: Model) -> Model:
         ),
         sliders=sliders,
     )
-
-
-def without_rounding(gap: Floats, at_zero: Floats, u: Floats, length: Floats | float) -> Floats:
-    """Gaps, exactly zero where they are rounding of the coordinates or of the scene's own length.
-
-    Parameters
-    ----------
-    gap, at_zero : ndarray, shape (..., K)
-        Gaps at the displacements u, and at none (m).
-    u : ndarray, shape (..., N)
-        Displacements (m). A scene may penetrate by their rounding (`eventpound.scene.check`).
-    length : float or ndarray, shape (...)
-        The scene's own (m).
-    """
-    largest = np.abs(at_zero).max(-1, initial=0.0) + 2.0 * np.abs(u).max(-1, initial=0.0)
-    rounding = EPS * np.maximum(4.0 * largest, 64.0 * np.asarray(length))
-    return np.where(np.abs(gap) <= rounding[..., None], 0.0, gap)
 
 
 def assemble(scene: Scene) -> Model:

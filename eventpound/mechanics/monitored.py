@@ -154,11 +154,11 @@ def blank_extremes(at: Places, scales: Sizes) -> Floats:
 
     The five rows are those of `Running`.
     """
-    sizes = np.broadcast_arrays(*(getattr(scales, scale) for scale in SCALES))
+    sizes = [np.asarray(getattr(scales, scale)) for scale in SCALES]
     table = np.zeros((*sizes[0].shape, 5, at.end))
     table[..., 0, :], table[..., 2, :] = -np.inf, np.inf
-    for kind, size in zip(KINDS, sizes, strict=True):
-        table[..., 4, columns_of_kind(kind, at)] = ATTAINED_ANEW * size[..., None]
+    for first, end, size in zip(at[:-1], at[1:], sizes, strict=True):
+        table[..., 4, first:end] = ATTAINED_ANEW * size[..., None]
     return table
 
 

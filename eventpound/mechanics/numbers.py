@@ -21,14 +21,16 @@ from eventpound.scene.parameters import Place, with_values
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Series
 
-OF_MODEL = ("mass", "u0", "v0", "z0", "gap", "restitution")
+OF_CONTACTS = ("gap", "restitution")
+OF_MODEL = ("mass", "u0", "v0", "z0", *OF_CONTACTS)
 """Fields of a `Model` that are numbers of its scene, beside those of its laws."""
 
 
 def numbers_of(model: Model) -> dict[str, Floats]:
-    """Arrays of a model that hold numbers of its scene, by their names."""
+    """Arrays of a model that hold numbers of its scene, by their names; `OF_CONTACTS` at last."""
     own = {key: getattr(model, key) for key in OF_MODEL}
-    return own | model.elastic._asdict() | model.law._asdict()
+    contacts = {key: own.pop(key) for key in OF_CONTACTS}
+    return own | model.elastic._asdict() | model.law._asdict() | contacts
 
 
 def with_numbers(model: Model, numbers: Mapping[str, Floats]) -> Model:

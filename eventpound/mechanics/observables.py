@@ -23,7 +23,8 @@ from eventpound.mechanics.reduced_loads import placed
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import in_python, kernel
+from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
+from eventpound.tolerances import EPS
 
 
 class Bodies(NamedTuple):
@@ -182,6 +183,34 @@ def difference(values: Floats, first: int, second: int) -> float:
     if first >= 0:
         result -= values[first]
     return result
+
+
+@scalar_kernel
+def gap_rounding(at_zero: Floats, u: Floats, length: float) -> float:
+    """Size of a gap that is rounding of the coordinates, or of the scene's own length (m).
+
+    Parameters
+    ----------
+    at_zero : ndarray, shape (K,)
+        Gaps at no displacement (m).
+    u : ndarray, shape (N,)
+        Displacements (m). A scene may penetrate by their rounding (`eventpound.scene.check`).
+    length : float
+        The scene's own (m).
+    """
+    largest, moved = 0.0, 0.0
+    for gap in at_zero:
+        largest = max(largest, abs(gap))
+    for each in u:
+        moved = max(moved, abs(each))
+    return EPS * max(4.0 * (largest + 2.0 * moved), 64.0 * length)
+
+
+def initial_gaps(model: Model, length: float) -> Floats:
+    """Gaps at the start (m), shape (K,), zero within rounding; `length` (m) is the scene's own."""
+    gap = model.gaps(model.u0)
+    rounding = in_python(gap_rounding)(model.gap, model.u0, length)
+    return np.where(np.abs(gap) <= rounding, 0.0, gap)
 
 
 @kernel

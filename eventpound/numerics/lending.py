@@ -145,6 +145,28 @@ def _lend(context: Any, builder: Any, signature: Any, given: Any) -> Any:
     return builder.asm(same, "", "=r,0,~{memory}", [address], True)
 
 
+def whole(lent: Any) -> Any:
+    """A group that is lent as a named tuple again; where Python runs it, what it is given."""
+    return lent
+
+
+@type_callable(whole)
+def _type_of_whole(context: Any) -> Any:
+    return lambda lent: lent.group
+
+
+@lower_builtin(whole, Lent)  # type: ignore[no-untyped-call]
+def _whole(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def gathered(lent: Any, table: Any) -> Any:
+        values = []
+        for name, kind in zip(lent.group.fields, lent.group.types, strict=True):
+            value = _field(context, builder, lent, table, name)
+            values.append(gathered(Lent(kind), value) if isinstance(kind, _GROUPS) else value)
+        return context.make_tuple(builder, lent.group, values)
+
+    return gathered(signature.args[0], given[0])
+
+
 @infer_getattr
 class _Fields(AttributeTemplate):
     key = Lent
@@ -220,9 +242,10 @@ class Loan:
         Where there is anything else in it.
     """
 
-    __slots__ = ("_numba_type_", "_table", "address", "group")
+    __slots__ = ("_first", "_numba_type_", "_table", "address", "group")
 
     def __init__(self, group: Any) -> None:
+        self._first: Any = None
         self._numba_type_, self._table = _listed(group)
         self.address = self._table.buffer_info()[0]
         self.group = group
@@ -235,6 +258,25 @@ class Loan:
         # Of the same length, so that it is filled where it is.
         self._table[:] = table
         self.group = group
+
+    def change_first(self, group: Any) -> None:
+        """Lend another group of the same kind as the first field, at the same address.
+
+        Of its own fields only those that are others are listed anew.
+        """
+        own, *others = self.group
+        if self._first is None:
+            self._first = [_marked(each) for each in own]
+        begin = 0
+        for known, was, now in zip(self._first, own, group, strict=True):
+            end = begin + len(known[1])
+            if now is not was:
+                marks, words = _marked(now)
+                if marks != known[0]:
+                    raise TypeError(f"{type(group).__name__} is of another kind than what was lent")
+                self._table[begin:end] = array("q", words)
+            begin = end
+        self.group = type(self.group)(group, *others)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.group, name)
@@ -250,6 +292,11 @@ def change_loan(loan: Group, group: Group) -> None:
     """Lend another group of the same kind at the address of one on loan; see `Loan.change_to`."""
     present: Any = loan
     present.change_to(group)
+
+
+def change_first(loan: Any, group: Any) -> None:
+    """Lend another group of the same kind as the first field of one on loan."""
+    loan.change_first(group)
 
 
 def fields_of(loan: Any) -> tuple[Any, ...]:
@@ -276,6 +323,14 @@ def _listed(group: Any) -> tuple[Lent, array[int]]:
     if mark not in _KINDS:
         _KINDS[mark] = Lent(_kind(group))
     return _KINDS[mark], array("q", words)
+
+
+def _marked(value: Any) -> tuple[list[Any], list[int]]:
+    """Marks and words of a field."""
+    words: list[int] = []
+    marks: list[Any] = []
+    _list((value,), words, marks)
+    return marks, words
 
 
 def _list(group: tuple[Any, ...], words: list[int], marks: list[Any]) -> None:

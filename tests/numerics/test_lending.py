@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+import pytest
 
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import scalar_kernel
-from eventpound.numerics.lending import lend, on_loan
+from eventpound.numerics.lending import change_first, lend, on_loan, whole
 
 
 class Mass(np.record):  # type: ignore[misc]  # final to type checkers only
@@ -62,3 +63,41 @@ def test_layouts_are_told_apart_by_their_class() -> None:
     other = np.dtype((type("Other", (Mass,), {}), np.dtype([("x", float)])))
     kinds = {on_loan(Several(np.zeros(2, each), 0.5))._numba_type_ for each in (LAYOUT, other)}  # type: ignore[attr-defined]
     assert len(kinds) == 2
+
+
+class Inner(NamedTuple):
+    """A number and arrays."""
+
+    factor: float
+    y: Floats
+    z: Floats
+
+
+class Scaled(NamedTuple):
+    """A group, and an array beside it."""
+
+    first: Inner
+    second: Floats
+
+
+@scalar_kernel
+def total(inner: Inner) -> float:
+    """All numbers of a group that is no loan."""
+    return inner.factor * inner.y[0] + inner.z[0]
+
+
+@scalar_kernel
+def total_of_lent(scaled: Scaled) -> float:
+    """The same of one that was lent, and the number beside it."""
+    return total(whole(scaled.first)) + scaled.second[0]
+
+
+def test_the_first_group_on_loan_is_exchanged() -> None:
+    y, z = np.array([2.0]), np.array([3.0, 4.0])
+    loan = on_loan(Scaled(Inner(0.5, y, z), np.array([100.0])))
+    assert total_of_lent(loan) == 104.0
+    change_first(loan, Inner(10.0, y, np.array([5.0])))
+    assert total_of_lent(loan) == 125.0
+    assert loan.first.factor == 10.0
+    with pytest.raises(TypeError, match="Inner is of another kind"):
+        change_first(loan, Inner(10.0, y, np.array([5])))

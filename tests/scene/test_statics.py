@@ -11,6 +11,7 @@ import pytest
 from eventpound.case import read_case
 from eventpound.errors import InputError
 from eventpound.mechanics.model import assemble
+from eventpound.mechanics.observables import initial_gaps
 from eventpound.motion import Cosine
 from eventpound.scene import (
     BARRIER,
@@ -167,7 +168,7 @@ def test_two_contacts_that_hold_two_bodies_are_shut_to_rounding() -> None:
     a, b = (body.displacement for body in standing.bodies)
     expected = np.linalg.solve([[-0.721, 0.573], [-0.22, 1.0]], [-0.0154, -0.0133])
     assert (a, b) == pytest.approx(tuple(expected), rel=1e-14)
-    assert (assemble(standing).initial_gaps(1e-3) == 0.0).all()
+    assert (initial_gaps(assemble(standing), 1e-3) == 0.0).all()
     check_scene(standing)
 
 

@@ -19,7 +19,7 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import solver as fast
-from eventpound.solvers.fast.constants import blank_state, order_for, plan_of
+from eventpound.solvers.fast.constants import order_for, plan_of
 from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.expansion import begin_series, expand
 from eventpound.solvers.fast.instant import start
@@ -70,8 +70,10 @@ def _by_equal_steps(order: int, count: int) -> np.ndarray:
     none = np.full(model.bodies, 1e-200)
     limits = plan.limits._replace(rtol=1e-200, atol_u=none, atol_v=none)
     plan = plan._replace(limits=limits)
-    state = blank_state(plan, model.u0, model.v0, model.z0, 0.0)
-    given = fast.run_of(plan, state, model, scales)
+    moving = fast.moving_of(model)
+    fast.put_start(plan, 0.0, model, scales, moving)
+    given = fast.run_of(plan, moving, model)
+    state = given.state
     h, piece, seen = end / count, piece_of(0, given.plan.ground), given.seen
     with by_python():
         start(given)

@@ -30,11 +30,14 @@ OTHER_PAIR = replace(
     springs=(*PAIR.springs[:1], Spring("two", ("ground", "b"), IN_SERIES)),
     dashpots=(*PAIR.dashpots, Dashpot(("ground", "a"), 0.2)),
 )
+BETWEEN = replace(P1, contacts=(*P1.contacts, Contact("left", "barrier", "body0", 0.0, 0.5)))
 NUMBERS: list[tuple[Scene, str, dict[str, float]]] = [
     (P1, "fast", {"contact.contact0.gap": 0.41}),
     (P1, "fast", {"spring.spring0.strength": 0.3, "body.body0.mass": 1.2}),
     (P1, "fast", {"spring.spring0.exponent": 9.0, "spring.spring0.beta": 0.4}),
     (P1, "fast", {"excitation.amplitude": 1.3, "excitation.period": 5.0}),
+    # Without play it is not the kernel of a single body that runs.
+    (BETWEEN, "fast", {"contact.contact0.gap": 0.0}),
     (P1, "cvode", {"excitation.amplitude": 1.3, "contact.contact0.restitution": 0.2}),
     (PAIR, "fast", {"contact.joint.gap": 0.035, "body.a.displacement": 0.002}),
     (PAIR, "fast", {"spring.cable.extension": 70.0, "body.b.velocity": 0.1}),

@@ -30,7 +30,6 @@ from eventpound.mechanics.supported import peak_of
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.latest import Keep, made_anew
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Task
 
@@ -218,9 +217,7 @@ class SceneScales:
         return self.mass * self.speed**2
 
 
-def scene_scales(
-    scene: Scene, model: Model, duration: float, keep: Keep = made_anew
-) -> SceneScales:
+def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
     """Scales of a scene.
 
     Parameters
@@ -231,26 +228,25 @@ def scene_scales(
         Its arrays.
     duration : float
         Length of the run (s), the last resort for a time scale.
-    keep : Keep
-        Gives what follows from the arrays alone.
     """
-    h = model.hysteretic
-    motion, push = scene.motion.scales(), push_of(scene.motion)
-    if motion is not None:
-        length, time = motion.length, 1.0 / motion.omega_g
-    else:
-        length, time = scales_without(model, duration, push)
-    shaken = motion is not None or push > 0.0
-    start = InitialState(model.u0, model.v0, model.z0, h)
-    arrays = (*start[:3], model.mass, *model.law, *model.elastic)
+    return scales_by(*scale_units(scene.motion, model, duration), model)
 
-    def made() -> SceneScales:
-        mass = float(model.mass[model.supports :].max())
-        bounds = z_bound(model.law.memory[h])
-        own = own_scales(attached(model), model.mass, start, length, time, length / time**2, shaken)
-        return SceneScales(length, time, mass, bounds, *own)
 
-    return keep(("scales", length, time, shaken, *(each.tobytes() for each in arrays)), made)
+def scale_units(motion: GroundMotion, model: Model, duration: float) -> tuple[float, float, bool]:
+    """L (m) and T (s) of a scene, and whether they are those of what shakes it."""
+    own = motion.scales()
+    if own is not None:
+        return own.length, 1.0 / own.omega_g, True
+    push = push_of(motion)
+    return *scales_without(model, duration, push), push > 0.0
+
+
+def scales_by(length: float, time: float, shaken: bool, model: Model) -> SceneScales:
+    """Scales of a scene whose own are known; gaps do not count any more."""
+    start = InitialState(model.u0, model.v0, model.z0, model.hysteretic)
+    own = own_scales(attached(model), model.mass, start, length, time, length / time**2, shaken)
+    mass = float(model.mass[model.supports :].max())
+    return SceneScales(length, time, mass, z_bound(model.law.memory[model.hysteretic]), *own)
 
 
 def _free_scales(model: Model, duration: float) -> tuple[float, float]:

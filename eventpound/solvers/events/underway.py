@@ -25,7 +25,7 @@ from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.elements import branch_within
 from eventpound.mechanics.model import Model, assemble, with_elements, with_sliders
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
-from eventpound.mechanics.observables import Observed, blank
+from eventpound.mechanics.observables import Observed, blank, initial_gaps
 from eventpound.mechanics.points import unique_forces_of
 from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.motion.base import Piece
@@ -70,7 +70,7 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
     """
     if not model.v0.any():
         return np.empty((0, row_width(model)))
-    gap, rate = model.initial_gaps(scales.length), model.rates(model.v0)
+    gap, rate = initial_gaps(model, scales.length), model.rates(model.v0)
     if not ((model.elements.kind == NO_LAW) & (gap == 0.0) & (rate < 0.0)).any():
         return np.empty((0, row_width(model)))
     elastic, total = model.link_forces(model.u0, model.v0, model.z0)
@@ -297,7 +297,7 @@ def _rules_of(task: Task, scales: SceneScales) -> Rules:
 
 def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
     """The state at the start."""
-    gap = model.initial_gaps(scales.length)
+    gap = initial_gaps(model, scales.length)
     # These take no part in impacts and rests.
     gap[model.laws] = gap[model.own_contacts :] = np.inf
     branch, rates = _first_branches(model, LENGTH * scales.length), model.elongations(model.v0)

@@ -10,8 +10,8 @@ import numpy as np
 from eventpound.contact.cascade import INTERVAL, RESTED_AT, SETTLED_AT, SINCE_IMPACT, T
 from eventpound.mechanics.backbone import hysteresis_of
 from eventpound.mechanics.elements import CURVE_PLACES
-from eventpound.mechanics.link_law import yielding
-from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model, differences, without_rounding
+from eventpound.mechanics.link_law import YIELD, yielding
+from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model
 from eventpound.mechanics.monitored import places_of
 from eventpound.motion.base import Family, Piece
 from eventpound.motion.parametric import Parametric
@@ -129,17 +129,15 @@ def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_ane
     """
     atol, motion = tolerances(task, scales), task.scene.motion
     memory, elastic = model.law.memory, model.elastic
-    law = memory.tobytes()
-    small = keep(
-        ("small", law, model.mass.tobytes(), scales.acceleration),
-        lambda: float(small_difference(task.rtol, memory, model.mass, scales.acceleration)),
-    )
+    small = float(small_difference(task.rtol, memory, model.mass, scales.acceleration))
     links = keep(
         ("links", elastic.compression.tobytes(), elastic.extension.tobytes()),
         lambda: links_of(model),
     )
     hysteresis = keep(
-        ("hysteresis", law, small), lambda: hysteresis_of(memory, model.hysteretic, small)
+        # A backbone does not depend on the force that stands before these.
+        ("hysteresis", memory[:, YIELD:].tobytes(), small),
+        lambda: hysteresis_of(memory, model.hysteretic, small),
     )
 
     def ground() -> Ground:
@@ -149,14 +147,16 @@ def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_ane
         mass=model.mass,
         links=links,
         hysteresis=hysteresis,
-        contacts=Contacts(model.left, model.right, model.gap, model.restitution),
+        contacts=keep(
+            ("contacts",), lambda: Contacts(model.left, model.right, model.gap, model.restitution)
+        ),
         # These two are equal where all their numbers are the same, which cannot change.
         ground=keep(("ground", motion), ground)
         if isinstance(motion, Parametric | Record)
         else ground(),
         limits=Limits(
-            end=task.end,
-            rtol=task.rtol,
+            end=float(task.end),
+            rtol=float(task.rtol),
             atol_u=np.asarray(atol["displacement"]),
             atol_v=np.asarray(atol["velocity"]),
             length=scales.length,
@@ -167,7 +167,8 @@ def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_ane
             ledger=task.energy,
             atol_z=np.asarray(atol["z"]),
         ),
-        output_times=task.output_times,
+        # Those of a task may be written to.
+        output_times=np.array(task.output_times, np.float64),
         oscillator=oscillator_of(model, scales.length, links, energy=task.energy),
     )
 
@@ -193,7 +194,7 @@ def blank_happened(plan: FastPlan) -> FastMarks:
 def blank_state(
     plan: FastPlan, u0: Floats, v0: Floats, z0: Floats, start: float, ledger: int = WORK_OF_SUPPORTS
 ) -> FastState:
-    """State arrays at the start of a run, or with a leading axis of many.
+    """State arrays before the start of a run, which opens gaps, or with a leading axis of many.
 
     Parameters
     ----------
@@ -208,34 +209,46 @@ def blank_state(
     ledger : int
         Entries of the energy ledger.
     """
-    contacts, limits, runs = plan.contacts, plan.limits, u0.shape[:-1]
-    ends = contacts.left, contacts.right
-    gap = contacts.gap + differences(u0, *ends)
-    gap = without_rounding(gap, contacts.gap, u0, limits.length)
-    clock = np.zeros((*runs, CLOCK_SIZE))
-    clock[..., T], clock[..., GUESS] = start, limits.time
-    clock[..., INTERVAL] = limits.time
-    clock[..., SINCE_IMPACT] = limits.time
-    clock[..., RESTED_AT] = clock[..., SETTLED_AT] = -np.inf
-    counts = np.zeros((*runs, COUNT_SIZE), np.int64)
-    counts[..., DUE] = 1
+    counts = u0.shape[-1], plan.links.ends.shape[0], plan.contacts.left.size, z0.shape[-1]
+    state = zero_state(counts, ledger, u0.shape[:-1])
+    begin_state(plan, u0, v0, z0, start, state)
+    return state
+
+
+def zero_state(
+    counts: tuple[int, int, int, int], ledger: int, runs: tuple[int, ...] = ()
+) -> FastState:
+    """A state of zeros; `counts`: N, L, K and H, `runs`: the leading axes."""
+    bodies, links, contacts, hysteretic = ((*runs, count) for count in counts)
     return FastState(
-        u0.copy(),
-        v0.copy(),
-        np.zeros(z0.shape),
-        np.zeros(z0.shape),
-        z0 / plan.hysteresis.bound,
-        np.zeros(z0.shape, np.int64),
-        gap,
-        differences(v0, *ends),
-        np.zeros(gap.shape, np.bool_),
-        np.zeros(gap.shape, np.bool_),
-        np.zeros(gap.shape, np.bool_),
-        np.zeros((*runs, plan.links.ends.shape[0]), np.int64),
+        np.zeros(bodies),
+        np.zeros(bodies),
+        np.zeros(hysteretic),
+        np.zeros(hysteretic),
+        np.zeros(hysteretic),
+        np.zeros(hysteretic, np.int64),
+        np.zeros(contacts),
+        np.zeros(contacts),
+        np.zeros(contacts, np.bool_),
+        np.zeros(contacts, np.bool_),
+        np.zeros(contacts, np.bool_),
+        np.zeros(links, np.int64),
         np.zeros((*runs, ledger)),
-        clock,
-        counts,
+        np.zeros((*runs, CLOCK_SIZE)),
+        np.zeros((*runs, COUNT_SIZE), np.int64),
     )
+
+
+def begin_state(
+    plan: FastPlan, u0: Floats, v0: Floats, z0: Floats, start: float, state: FastState
+) -> None:
+    """Fill in what of a state is not zero; as `blank_state`."""
+    clock, time = state.clock, plan.limits.time
+    state.u[:], state.v[:], state.xi_r[:] = u0, v0, z0 / plan.hysteresis.bound
+    clock[..., T] = start
+    clock[..., GUESS] = clock[..., INTERVAL] = clock[..., SINCE_IMPACT] = time
+    clock[..., RESTED_AT] = clock[..., SETTLED_AT] = -np.inf
+    state.count[..., DUE] = 1
 
 
 def _blank_each(plan: FastPlan, loaded: bool) -> Each:

@@ -29,6 +29,7 @@ from eventpound.solvers.fast.links import (
     all_variables,
     elongations,
     has_curve,
+    open_gaps,
     reverse,
     set_curve,
     turns_back,
@@ -250,6 +251,7 @@ def settle(forcing: Forcing, z: Floats, at: Instant, run: FastRun) -> int:
 def start(run: FastRun) -> None:
     """The first mode of a run, and its hysteretic links on their curves."""
     plan, state, series = run.plan, run.state, run.series
+    open_gaps(plan, state)
     for a in range(plan.links.offset.size):
         copy_numbers(plan.links.law.memory[a], series.memory[a])
     further = series.load.shape[0] > 0 or follows(run)

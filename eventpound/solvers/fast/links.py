@@ -20,14 +20,14 @@ import numpy as np
 
 from eventpound.mechanics.backbone import Hysteresis, backbone, backbone_inverse
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
-from eventpound.mechanics.observables import difference
+from eventpound.mechanics.observables import difference, gap_rounding
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import (
     compiled,
     compiled_apart,
     compiled_whole,
 )
-from eventpound.solvers.fast.run import Contacts, FastRun, FastState, Links
+from eventpound.solvers.fast.run import Contacts, FastPlan, FastRun, FastState, Links
 
 
 @compiled
@@ -53,6 +53,18 @@ def gap_of(j: int, contacts: Contacts, u: Floats, v: Floats) -> tuple[float, flo
     if left >= 0:
         gap, rate = gap - u[left], rate - v[left]
     return gap, rate
+
+
+@compiled
+def open_gaps(plan: FastPlan, state: FastState) -> None:
+    """Gaps and their rates at the start of a run."""
+    contacts = plan.contacts
+    rounding = gap_rounding(contacts.gap, state.u, plan.limits.length)
+    for j in range(contacts.gap.size):
+        left, right = contacts.left[j], contacts.right[j]
+        opened, state.gap_rate[j] = elongation(left, right, state.u, state.v)
+        gap = contacts.gap[j] + opened
+        state.gap[j] = 0.0 if abs(gap) <= rounding else gap
 
 
 CORE, UNLOADING, DOWN, UP, SATURATED = 0, 1, 2, 3, 4

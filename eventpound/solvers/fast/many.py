@@ -40,7 +40,6 @@ from eventpound.solvers.fast.run import (
     Ground,
     Seen,
 )
-from eventpound.solvers.fast.single.body import forget
 from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 
@@ -230,7 +229,6 @@ def run_single_rows(
         state = state_of_run(i, rows.state, rows.motions)
         record = FastRecord(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
         record.unique[:] = True
-        forget(single.body[0])
         ended = GOING_ON
         while ended == GOING_ON:
             ended = oscillate(budget, plan, state, single, record)

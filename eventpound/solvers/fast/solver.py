@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from threading import local
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,13 +26,17 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.model import Model, assemble, shape_of
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
-from eventpound.mechanics.numbers import numbers_of, put_numbers, with_numbers
+from eventpound.mechanics.numbers import OF_CONTACTS, numbers_of, put_numbers, with_numbers
 from eventpound.mechanics.supported import lowered
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.motion.parametric import Parametric
+from eventpound.motion.record import Record
+from eventpound.numerics.arrays import Bytes, Floats
+from eventpound.numerics.block import Block
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.numerics.latest import Latest
+from eventpound.numerics.lending import change_first, on_loan
 from eventpound.scene.contact import Contact
 from eventpound.scene.parameters import Place
 from eventpound.scene.spring import Hysteretic, Linear
@@ -44,17 +48,18 @@ from eventpound.solvers.events.recorder import (
     kept,
     row_width,
 )
-from eventpound.solvers.events.scales import SceneScales, scene_scales
+from eventpound.solvers.events.scales import SceneScales, scale_units, scales_by, scene_scales
 from eventpound.solvers.events.step_check import check_energy
 from eventpound.solvers.events.underway import lines_before
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.constants import (
+    begin_state,
     blank_happened,
     blank_series,
-    blank_state,
     clear_scratch,
     links_of,
     plan_of,
+    zero_state,
 )
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.followed import follow
@@ -74,8 +79,8 @@ from eventpound.solvers.fast.run import (
     FastRun,
     FastState,
 )
-from eventpound.solvers.fast.single.body import oscillator_of
-from eventpound.solvers.fast.single.oscillator import oscillate
+from eventpound.solvers.fast.single.body import has_play, oscillator_of
+from eventpound.solvers.fast.single.oscillator import oscillate_alone
 from eventpound.solvers.supported import with_supports
 
 BUDGET = 20_000
@@ -122,7 +127,7 @@ class Ready:
 
     def __init__(self, task: Task) -> None:
         self._scene, self._model = task.scene, assemble(task.scene)
-        self._own = numbers_of(self._model)
+        self._own = Block(list(numbers_of(self._model).values())).data
         self._shape = task.rtol, task.energy, *shape_of(self._model)
 
     def run(self, values: Mapping[Place, float], task: Task) -> Callable[[], Recording]:
@@ -130,10 +135,10 @@ class Ready:
         known = _last_of_thread.arrays
         # Who watches a run may begin another.
         arrays = known.pop(self._shape, None) or Arrays(self._model)
-        columns = {place: np.array((value,)) for place, value in values.items()}
-        for key, array in arrays.numbers.items():
-            array[...] = self._own[key]
-        put_numbers(self._scene, self._model, columns, arrays.rows)
+        arrays.numbers.data[:] = self._own
+        if values:
+            columns = {place: np.array((value,)) for place, value in values.items()}
+            put_numbers(self._scene, self._model, columns, arrays.rows)
         try:
             return arrays.run(task).recording
         finally:
@@ -164,60 +169,129 @@ class Arrays:
 
     Attributes
     ----------
-    numbers : dict of str to ndarray
+    numbers : Block
         `eventpound.mechanics.numbers.numbers_of` of the next run.
     rows : dict of str to ndarray
-        The same with a leading axis.
+        The same, each with a leading axis.
     """
 
     def __init__(self, model: Model) -> None:
-        self.numbers = {key: array.copy() for key, array in numbers_of(model).items()}
-        self.rows = {key: array[None] for key, array in self.numbers.items()}
-        self._model, self._keep = with_numbers(model, self.numbers), Latest()
+        own = numbers_of(model)
+        self.numbers = Block(list(own.values()))
+        named = dict(zip(own, self.numbers.arrays, strict=True))
+        self.rows = {key: array[None] for key, array in named.items()}
+        self._model, self._keep = with_numbers(model, named), Latest()
+        of_contacts = sum(named[key].nbytes for key in OF_CONTACTS)
+        # Those of contacts are the last.
+        self._others = self.numbers.data[: self.numbers.data.size - of_contacts]
+        self._moving = moving_of(model)
         self._run: FastRun | None = None
 
     def run(self, task: Task) -> Left:
         """Run a task of the present numbers, but for the motion, which is that of its scene."""
-        clock, model, keep = Stopwatch(), self._model, self._keep
-        scales = scene_scales(task.scene, model, task.end - task.start, keep)
-        plan = plan_of(task, model, scales, keep)
-        state = blank_state(plan, model.u0, model.v0, model.z0, task.start, model.ledger_entries)
-        run, ended, stopped = _run(task, self._blank_run(plan, state, scales))
-        left = _left_by(task, model, scales, run, ended, clock)
+        clock, begun = Stopwatch(), self._begun(task)
+        run, ended, stopped = _run(task, self._blank_run(begun))
+        left = self._left(task, begun.scales, run, ended, clock)
         self._run = run if run.record.rows.nbytes <= MOST_KEPT else None
         if stopped is not None:
             stopped.recording = replace(left.recording(), message=str(stopped))
             raise stopped
         if ended != FINISHED:
             recording = left.recording()
-            raise ComputationError(recording.message, left.t, recording)
+            raise ComputationError(recording.message, recording.t, recording)
         if left.energy is not None:
             try:
-                check_energy(left.t, left.energy, task.rtol)
+                check_energy(float(run.state.clock[T]), left.energy, task.rtol)
             except ComputationError as error:
                 error.recording = left.recording()
                 raise
         return left
 
-    def _blank_run(self, plan: FastPlan, state: FastState, scales: SceneScales) -> FastRun:
-        """A run with nothing recorded, in the arrays of the one before."""
-        run = self._run
+    def _begun(self, task: Task) -> _Begun:
+        """What a run begins with, made anew where a number that it depends on is another."""
+        model, motion = self._model, task.scene.motion
+        length, time, shaken = scale_units(motion, model, task.end - task.start)
+
+        def made() -> _Begun:
+            scales = scales_by(length, time, shaken, model)
+            plan = plan_of(task, model, scales, self._keep)
+            put_start(plan, task.start, model, scales, self._moving)
+            return _Begun(scales, plan, self._moving.data.copy())
+
+        if not isinstance(motion, Parametric | Record):
+            return made()
+        # These two are equal where all their numbers are the same, which cannot change.
+        own = motion, task.start, task.end, task.output_times.tobytes(), *task.atol.items()
+        of = length, time, shaken, has_play(model.gap, length), self._others.tobytes(), *own
+        return self._keep(("begun", *of), made)
+
+    def _blank_run(self, begun: _Begun) -> FastRun:
+        """A run with nothing recorded, on loan, in the arrays of the one before."""
+        run, plan = self._run, begun.plan
+        self._moving.data[:] = begun.moving
         if run is None or not np.array_equal(run.plan.ground.family, plan.ground.family):
-            return run_of(plan, state, self._model, scales)
+            return on_loan(run_of(plan, self._moving, self._model))
+        if plan is not run.plan:
+            change_first(run, plan)
         if not plan.oscillator.alone:
             in_python(clear_scratch)(run.series, run.happened, run.seen)
-        # As bytes: a record is copied field by field.
-        run.series.single.body.view(np.uint8)[:] = 0
-        run.record.extremes[:] = self._keep(
-            ("extremes", scales.length, scales.acceleration, scales.force),
-            lambda: blank_extremes(places_in(self._model), scales),
+        return run
+
+    def _left(
+        self, task: Task, scales: SceneScales, run: FastRun, ended: int, clock: Stopwatch
+    ) -> Left:
+        """What a run leaves, in arrays of its own."""
+        state, record, model = run.state, run.record, self._model
+        events = record.events[: state.count[EVENTS]].copy()
+        energy: Energy | None = None
+        if task.energy:
+            terms = impact_terms(model, task.scene.motion, events_of(events))
+            energy = energy_ledger(model, scales, state.u, state.v, state.ledger, *terms)
+        rows = record.rows[: state.count[ROWS]].copy()
+        if any(model.v0.tolist()):
+            rows = np.vstack((lines_before(task, model, scales), rows))
+        unique = record.unique
+        return Left(
+            task.scene.contacts,
+            model,
+            ended,
+            self._moving.copy(),
+            run.plan.hysteresis,
+            events,
+            rows,
+            None if all(unique.tolist()) else history_of(rows, unique.copy(), model),
+            energy,
+            clock.seconds,
+            clock.compilation,
         )
-        run.record.unique[:] = True
-        return run._replace(plan=plan, state=state)
 
 
-@dataclass(frozen=True)
-class Left:
+class _Begun(NamedTuple):
+    """What runs of the same numbers begin with; moving: the data of `moving_of`."""
+
+    scales: SceneScales
+    plan: FastPlan
+    moving: Bytes
+
+
+def moving_of(model: Model) -> Block:
+    """Arrays of `FastState`, then extremes and uniqueness of forces of `FastRecord`."""
+    extremes = np.zeros((5, places_in(model).end))
+    state = zero_state(model.counts, model.ledger_entries)
+    return Block([*state, extremes, np.zeros(model.contacts, np.bool_)])
+
+
+def put_start(
+    plan: FastPlan, start: float, model: Model, scales: SceneScales, moving: Block
+) -> None:
+    """Put what moves at the start of a run (s)."""
+    *state, extremes, unique = moving.arrays
+    moving.data[:] = 0
+    begin_state(plan, model.u0, model.v0, model.z0, start, FastState(*state))
+    extremes[:], unique[:] = blank_extremes(places_in(model), scales), True
+
+
+class Left(NamedTuple):
     """What a run has left, from which a recording is made when it is asked for.
 
     Parameters
@@ -228,16 +302,12 @@ class Left:
         Of which only the shape counts: its numbers may be those of a later run.
     ended : int
         How the run ended.
-    t : float
-        When (s).
-    state : FastState
-        As it was last.
+    moving : Block
+        `moving_of`, as it was last.
     hysteresis : Hysteresis
         Of the plan.
-    events, rows, extremes : ndarray
+    events, rows : ndarray
         Of `FastRecord`.
-    unique : ndarray of bool, shape (K,)
-        Whether forces were always unique.
     history : History, optional
         Where forces were not, so that it takes the numbers of the model.
     energy : Energy, optional
@@ -249,13 +319,10 @@ class Left:
     contacts: tuple[Contact, ...]
     model: Model
     ended: int
-    t: float
-    state: FastState
+    moving: Block
     hysteresis: Hysteresis
     events: Floats
     rows: Floats
-    extremes: Floats
-    unique: Bools
     history: History | None
     energy: Energy | None
     seconds: float
@@ -263,9 +330,14 @@ class Left:
 
     def recording(self) -> Recording:
         """The same as every solver returns it."""
-        events, state, z = events_of(self.events), self.state, np.empty(self.hysteresis.link.size)
+        *moving, extremes, unique = self.moving.arrays
+        state, events, z = (
+            FastState(*moving),
+            events_of(self.events),
+            np.empty(self.hysteresis.link.size),
+        )
         all_variables(self.model.elongations(state.u), self.hysteresis, state, z)
-        count = state.count
+        t, count = float(state.clock[T]), state.count
         message = MESSAGES.get(self.ended, "left before its end")
         if self.ended == ENDLESS:
             message = endless_message(events, self.contacts)
@@ -277,84 +349,50 @@ class Left:
         return Recording(
             self.ended == FINISHED,
             message,
-            self.t,
+            t,
             state.u,
             state.v,
             z,
-            self.history or history_of(self.rows, self.unique, self.model),
+            self.history or history_of(self.rows, unique, self.model),
             tuple(events),
-            unique_forces=self.unique,
+            unique_forces=unique,
             work=Work(*work, self.seconds, self.compilation),
             energy=self.energy,
-            **kept(self.extremes, events, self.t, self.model),
+            **kept(extremes, events, t, self.model),
         )
 
 
-def _left_by(
-    task: Task, model: Model, scales: SceneScales, run: FastRun, ended: int, clock: Stopwatch
-) -> Left:
-    """What a run leaves, in arrays of its own."""
-    state, record = run.state, run.record
-    events = record.events[: state.count[EVENTS]].copy()
-    energy: Energy | None = None
-    if task.energy:
-        terms = impact_terms(model, task.scene.motion, events_of(events))
-        energy = energy_ledger(model, scales, state.u, state.v, state.ledger, *terms)
-    rows, before = record.rows[: state.count[ROWS]], lines_before(task, model, scales)
-    rows = np.vstack((before, rows)) if before.size > 0 else rows.copy()
-    unique = record.unique.copy()
-    return Left(
-        task.scene.contacts,
-        model,
-        ended,
-        float(state.clock[T]),
-        state,
-        run.plan.hysteresis,
-        events,
-        rows,
-        record.extremes.copy(),
-        unique,
-        None if unique.all() else history_of(rows, unique, model),
-        energy,
-        clock.seconds,
-        clock.compilation,
-    )
-
-
-def run_of(plan: FastPlan, state: FastState, model: Model, scales: SceneScales) -> FastRun:
-    """A run with nothing recorded."""
-    at = places_in(model)
+def run_of(plan: FastPlan, moving: Block, model: Model) -> FastRun:
+    """A run with nothing recorded, in arrays of `moving_of`."""
+    *state, extremes, unique = moving.arrays
     record = FastRecord(
         np.zeros((FIRST_ROOM + 4 * model.contacts, EVENT_WIDTH)),
         np.zeros((plan.output_times.size + 2 * FIRST_ROOM, row_width(model))),
-        blank_extremes(at, scales),
-        np.ones(model.contacts, np.bool_),
+        extremes,
+        unique,
     )
     return FastRun(
         plan=plan,
-        state=state,
+        state=FastState(*state),
         series=blank_series(plan, model.loads > 0),
         happened=blank_happened(plan),
         record=record,
         seen=blank_seen(plan),
-        running=in_python(running_of)(record.extremes, at),
+        running=in_python(running_of)(extremes, places_in(model)),
     )
 
 
 def _run(task: Task, run: FastRun) -> tuple[FastRun, int, ComputationError | None]:
     """Advance to the end, with progress and room for the record; how it ended, who stopped it."""
     plan, state, most = run.plan, run.state, task.max_steps
-    alone = plan.oscillator.alone
+    carry = oscillate_alone if plan.oscillator.alone else advance
     while True:
         budget = BUDGET if most is None else min(BUDGET, most - int(state.count[STEPS]))
-        if alone:
-            ended = oscillate(budget, plan, state, run.series.single, run.record)
-        else:
-            ended = advance(budget, run)
+        ended = carry(budget, run)
         if ended == FULL:
             if state.count[EVENTS] > MOST_EVENTS:
                 return run, CROWDED, None
-            run = run._replace(record=_enlarged(run.record, plan, state))
+            run = on_loan(run._replace(record=_enlarged(run.record, plan, state)))
         elif ended != GOING_ON:
             return run, ended, None
         try:
@@ -403,24 +441,14 @@ def kernels_kept(task: Task) -> bool:
     model = assemble(task.scene)
     scales = scene_scales(task.scene, model, task.end - task.start)
     one = oscillator_of(model, scales.length, links_of(model), energy=task.energy)
-    needed: tuple[Callable[..., Any], ...] = (advance,)
+    needed: Callable[..., Any] = advance
     if one.alone and sum(curved) <= 1:
-        needed = (oscillate,)
-    if all(isinstance(each, Entry) and each.overloads for each in needed):
+        needed = oscillate_alone
+    if not isinstance(needed, Entry):
+        return False
+    if needed.overloads:
         return True
     plan = plan_of(task, model, scales)
-    state = blank_state(plan, model.u0, model.v0, model.z0, task.start, model.ledger_entries)
-    run = run_of(plan, state, model, scales)
-    arguments: dict[Callable[..., Any], tuple[Any, ...]] = {
-        oscillate: (BUDGET, plan, state, run.series.single, run.record),
-        advance: (BUDGET, run),
-    }
-    return all(_ready(each, *arguments[each]) for each in needed)
-
-
-def _ready(function: Callable[..., Any], *arguments: Any) -> bool:
-    """Whether a compiled function can be called with such arguments at once."""
-    if not isinstance(function, Entry):
-        return False
-    types = tuple(function.typeof_pyval(each) for each in arguments)
-    return types in function.overloads or function._cache.has(types, function.targetctx)
+    run = on_loan(run_of(plan, moving_of(model), model))
+    types = tuple(needed.typeof_pyval(each) for each in (BUDGET, run))
+    return needed._cache.has(types, needed.targetctx)

@@ -25,7 +25,7 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
+from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP, open_gaps
 from eventpound.solvers.fast.run import (
     LOCAL_SHARE,
     Contacts,
@@ -272,6 +272,7 @@ def enter(plan: FastPlan, state: FastState, run: SingleRun) -> None:
     """Fill in the constants of a run and what moves, once: from then on it moves here."""
     body, o, contacts = run.body, plan.oscillator, plan.contacts
     set_constants(0, plan, body)
+    open_gaps(plan, state)
     body.u, body.v = state.u[0], state.v[0]
     if o.right >= 0:
         body.right, body.right_gap = state.gap[o.right], contacts.gap[o.right]
@@ -391,6 +392,11 @@ def put_on_barrier(side: float, body: SingleBody) -> None:
         body.u = -body.left_gap
 
 
+def has_play(gap: Floats, length: Floats | float) -> Any:
+    """Whether a body has room between two barriers with such gaps (..., K) (m)."""
+    return gap.sum(axis=-1) > LEAST_PLAY * np.asarray(length)
+
+
 def oscillators_of(
     model: Model, gap: Floats, length: Floats | float, links: Links, *, energy: bool
 ) -> Any:
@@ -426,7 +432,7 @@ def oscillators_of(
     )
     alone: Any = np.logical_not(links.kinked) & fits
     if fits and to_right and to_left:
-        alone &= gap.sum(axis=-1) > LEAST_PLAY * np.asarray(length)
+        alone &= has_play(gap, length)
     right, left = (found[0] if found else -1 for found in (to_right, to_left))
     return Oscillator(alone, right, left)
 

@@ -31,7 +31,7 @@ from eventpound.motion.forcing import (
     ground_taylor,
     sample_time,
 )
-from eventpound.numerics.lending import lend
+from eventpound.numerics.lending import lend, whole
 from eventpound.solvers.fast.compiled import (
     compiled,
     compiled_apart,
@@ -49,10 +49,12 @@ from eventpound.solvers.fast.run import (
     PIECE,
     RESTING,
     STALLED,
+    STARTED,
     STEPS,
     STUCK,
     FastPlan,
     FastRecord,
+    FastRun,
     FastState,
     Single,
     piece_of,
@@ -62,6 +64,7 @@ from eventpound.solvers.fast.single.body import (
     absolute_acceleration,
     acceleration_level,
     enter,
+    forget,
     leave,
     put_on_barrier,
     set_force,
@@ -148,6 +151,13 @@ def _write_rest(rests: bool, j: int, rate: float, run: SingleRun) -> None:
     write_change(code, j, new_group(count), rate, run.clock[T], count, run.events)
 
 
+@compiled_apart
+def oscillate_alone(budget: int, run: FastRun) -> int:
+    """`oscillate` of a run, lent."""
+    single = whole(run.series.single)
+    return oscillate(budget, whole(run.plan), whole(run.state), single, whole(run.record))
+
+
 _SAMPLES, _GAUSSIAN, _ZERO = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.ZERO)
 
 
@@ -191,8 +201,10 @@ def oscillate(
         )
     )
     body, clock, count = run.body, run.clock, run.count
-    if not body.known:
+    if count[STARTED] == 0:
+        forget(body)
         enter(plan, state, run)
+        count[STARTED] = 1
     last_step = count[STEPS] + budget
     code = GOING_ON
     while code == GOING_ON:
