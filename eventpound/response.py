@@ -23,11 +23,12 @@ from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_o
 from eventpound.quantities.owners import owners
 from eventpound.quantities.rows import rows_at, settled, warn_unsettled
 from eventpound.quantities.shocks import shocks_of
+from eventpound.quantities.spring_events import SpringEvent, spring_events
 from eventpound.scene.continuation import FinalState, continued, state_of
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.pi_terms import pi_terms
 from eventpound.scene.scene import Scene
-from eventpound.solvers import solver_named
+from eventpound.solvers import lists_springs, solver_named
 from eventpound.solvers.base import Energy, Event, EventKind, Recording, Task, Work
 from eventpound.units import Dimension
 
@@ -343,6 +344,26 @@ class Response:
         import pandas as pd
 
         return pd.DataFrame(self.event_rows(), columns=list(EVENT_COLUMNS))
+
+    @property
+    def spring_events(self) -> pd.DataFrame:
+        """Where sliders stick and slip, and soil is touched and left; units in the columns.
+
+        Raises
+        ------
+        InputError
+            Where the solver does not tell.
+        """
+        import pandas as pd
+
+        if not lists_springs(solver_named(self.solver), self.scene):
+            raise InputError(f"spring_events: {self.solver} does not list events of springs")
+        found = spring_events(self.scene, self.recording)
+        table = pd.DataFrame(found, columns=list(SpringEvent._fields))
+        # Of an empty table, too.
+        numbers = {"time_s": float, "direction": int, "elongation_m": float, "force_N": float}
+        kinds = [event.kind.value for event in found]
+        return table.assign(kind=kinds).astype(numbers | {"spring": str, "kind": str})
 
     def event_rows(self) -> list[tuple[Any, ...]]:
         """Rows of `events`."""

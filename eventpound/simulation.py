@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -13,7 +13,7 @@ from eventpound.case.case import LARGEST_RTOL as LARGEST_RTOL
 from eventpound.case.case import SMALLEST_RTOL as SMALLEST_RTOL
 from eventpound.case.case import Case, RunOptions, SolverOptions, Stated
 from eventpound.case.defaults import default_duration, default_output_step
-from eventpound.case.options import run_problems, settings_in_si
+from eventpound.case.options import event_problems, run_problems, settings_in_si
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
@@ -28,6 +28,7 @@ from eventpound.solvers import (
     available,
     knows_laws,
     knows_springs,
+    lists_springs,
     name_of,
     solver_named,
     takes_loads,
@@ -48,6 +49,7 @@ def simulate(
     duration: float | str | None = None,
     output_step: float | str | None = None,
     energy: bool | None = None,
+    events: Sequence[str] | None = None,
     settings: Mapping[str, object] | None = None,
     **of_task: Any,
 ) -> Response:
@@ -55,7 +57,7 @@ def simulate(
     check_case(case)
     length = positive("duration", duration, Dimension.TIME)
     step = positive("output_step", output_step, Dimension.TIME)
-    run, options = options_of(case, length, step, energy)
+    run, options = options_of(case, length, step, energy, events)
     ready = made_ready(case, run, options, solver, rtol, settings, **of_task)
     return ready.run({}, ready.task)
 
@@ -193,6 +195,7 @@ def options_of(
     duration: float | None,
     output_step: float | None,
     energy: bool | None,
+    events: Sequence[str] | None = None,
 ) -> tuple[RunOptions, SolverOptions]:
     """Options of the case, or defaults for a checked scene, with what was given instead."""
     if isinstance(case, Case):
@@ -205,13 +208,17 @@ def options_of(
         solver = SolverOptions()
     changes: dict[str, Any] = {"duration": duration, "output_step": output_step, "energy": energy}
     run = replace(run, **{key: v for key, v in changes.items() if v is not None})
-    problems = run_problems(run.start_time, run.duration, run.output_step)
+    problems = [*run_problems(run.start_time, run.duration, run.output_step)]
+    if events is not None:
+        run = replace(run, stated=replace(run.stated, events=tuple(events)))
+        scene = case.scene if isinstance(case, Case) else case
+        problems += [("events", problem) for problem in event_problems(events, scene)]
     if found := [f"{key}: {problem}" for key, problem in problems]:
         raise InputError(found)
     return run, solver
 
 
-def check_solver(options: SolverOptions, scene: Scene | None = None) -> None:
+def check_solver(options: SolverOptions, scene: Scene | None = None, events: bool = False) -> None:
     """Refuse a solver, a setting or a tolerance that there is not, or cannot serve a scene.
 
     A solver that can tell wrong values of its settings before it runs has a function
@@ -223,6 +230,8 @@ def check_solver(options: SolverOptions, scene: Scene | None = None) -> None:
         What a case, the command line or a call asks for.
     scene : Scene, optional
         What it is to carry.
+    events : bool
+        Whether it is to tell the events of its springs, too.
 
     Raises
     ------
@@ -234,7 +243,7 @@ def check_solver(options: SolverOptions, scene: Scene | None = None) -> None:
         solver = solver_named(options.name)
         problems += _setting_problems(solver, options.settings)
         if scene is not None:
-            problems += _scene_problems(solver, scene)
+            problems += _scene_problems(solver, scene, events)
     except InputError as error:
         problems += [f"[solver]: {problem}" for problem in error.problems]
     if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
@@ -268,7 +277,7 @@ def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[st
     return problems
 
 
-def _scene_problems(solver: Solver, scene: Scene) -> list[str]:
+def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
     """What of a scene a solver cannot take, with the solvers that take all of it."""
     laws = ", ".join(f"{c.name!r} ({c.law.kind})" for c in scene.contacts if c.law is not None)
     unknown = unknown_springs(solver, scene).items()
@@ -282,6 +291,7 @@ def _scene_problems(solver: Solver, scene: Scene) -> list[str]:
         (knows_springs, f"{name} does not know the laws of springs {springs}"),
         (takes_points, f"{name} does not take contacts at a point between bodies ({points})"),
         (takes_loads, f"name: the solver {name!r} cannot take {loads}"),
+        *([(lists_springs, f"{name} does not list events of springs")] if events else []),
     )
     problems = [problem for can, problem in asked if not can(solver, scene)]
     able = available().items() if problems else ()
@@ -293,7 +303,7 @@ def task_with(
     scene: Scene, run: RunOptions, options: SolverOptions, progress: Progress | None
 ) -> Task:
     """The task of a scene with these options, which are checked."""
-    check_solver(options, scene)
+    check_solver(options, scene, bool(run.stated.events))
     return Task(
         scene,
         run.start_time,

@@ -136,6 +136,8 @@ DRIFTED = 1e-9
 differ from that of the displacements; rounding and `GAP_COEFFICIENT` leave a hundredth of it."""
 ENERGY_ERROR = 1e3
 """Multiples of rtol by which the energy ledger may fail to close."""
+OF_ROWS = 1e-9
+"""Part of the largest in the rows of a run below which a rate or z, read off them, has no sign."""
 OF_SUPPORT = 1e-6
 """Part of the largest velocity in a scene by which a support may differ from its motion, which it
 does by rounding, or by a body between two supports that leave it no room; and of the largest

@@ -42,6 +42,7 @@ HOLDS: Mapping[str, frozenset[Way]] = {
     "threshold_speed": _RUNS,
     "avoiding_gap": _RUNS,
     "units": frozenset({Way.RUN, Way.SUITE}),
+    "events": frozenset({Way.RUN, Way.SUITE}),
     "error_estimate": frozenset({Way.RUN, Way.SUITE}),
 }
 """Ways in which each option of ``[run]`` does what it says."""
@@ -65,6 +66,7 @@ _GIVEN: Mapping[str, Callable[[RunOptions], bool]] = {
     "threshold_speed": lambda run: run.stated.threshold_speed != DEFAULTS.threshold_speed,
     "avoiding_gap": lambda run: run.stated.avoiding_gap,
     "units": lambda run: bool(run.stated.units),
+    "events": lambda run: bool(run.stated.events),
     "error_estimate": lambda run: bool(run.error_estimate),
 }
 """Whether an option is given; times always have a value."""

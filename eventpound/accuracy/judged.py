@@ -36,6 +36,7 @@ def simulate(
     duration: float | str | None = None,
     output_step: float | str | None = None,
     energy: bool | None = None,
+    events: Sequence[str] | None = None,
     settings: Mapping[str, object] | None = None,
     progress: Progress | bool | None = None,
     max_steps: Count | None = None,
@@ -60,6 +61,9 @@ def simulate(
         Distance of the rows of the history (s).
     energy : bool, optional
         Keep the energy ledger.
+    events : sequence of str, optional
+        Which events of springs `write` writes, ``"slip"`` and ``"soil"``; the table
+        `spring_events` has all.
     settings : mapping, optional
         Settings of the solver (`Solver.settings` names them), in place of all those of the
         case.
@@ -102,6 +106,7 @@ def simulate(
         duration=duration,
         output_step=output_step,
         energy=energy,
+        events=events,
         settings=settings,
         progress=_shown if progress is True else progress or None,
         max_steps=max_steps,

@@ -31,6 +31,8 @@ class Stated:
         Whether to find the smallest gap that would have avoided each contact.
     units : tuple of str
         In which design numbers are told (`eventpound.units.TOLD`); of others the usual.
+    events : tuple of str
+        Which events of springs are written (`eventpound.case.options.LISTED`).
     """
 
     threshold_speed: float = 0.01
@@ -39,6 +41,7 @@ class Stated:
     without_contact: bool = False
     avoiding_gap: bool = False
     units: tuple[str, ...] = ()
+    events: tuple[str, ...] = ()
 
     def named(self) -> Iterator[tuple[str, str]]:
         """Names and paths of all quantities that are wanted, each after the option that says so."""

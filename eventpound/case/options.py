@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from eventpound.case.case import (
     DEFAULTS,
@@ -27,6 +27,8 @@ REFERENCE, FAST = "cvode", "fast"
 """The solver of one run, and that of many, where none is named."""
 FAST_KNOWS = frozenset((LawName.BACKFILL, LawName.DEGRADING_BOUC_WEN))
 """Laws of springs with a memory, beside Bouc-Wen's, that the second one knows."""
+LISTED = {"slip": LawName.SLIDER, "soil": LawName.BACKFILL}
+"""Words of ``events``, each with the law of the springs whose events it lists."""
 OWN_SOLVERS = (REFERENCE, "ida", FAST, "moreau", "penalty")
 """Solvers that need no other package, by their names."""
 EQUILIBRIUM = "equilibrium"
@@ -38,6 +40,7 @@ _ATOL = {
     "velocity": Dimension.VELOCITY,
     "z": Dimension.NUMBER,
 }
+_EVENTS = f"a list of {' and '.join(map(repr, LISTED))}, each at most once"
 # Solvers' own keys that have a dimension; any other is taken as it is.
 _SETTINGS = {"time_step": Dimension.TIME, "contact_stiffness": Dimension.STIFFNESS}
 HERTZIAN = tuple(element.word for element in Element if element.hertzian)
@@ -72,7 +75,7 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
     output_step = table.optional_quantity("output_step", Dimension.TIME, positive)
     energy, balanced = table.flag("energy"), to_be_placed(table.data)
     errors = table.flag("error_estimate") if table.has("error_estimate") else None
-    stated = _read_stated(table)
+    stated = _read_stated(table, scene)
     if suite and not math.isnan(start_time):
         table.close()
         length, step = (math.nan if x is None else x for x in (duration, output_step))
@@ -112,7 +115,7 @@ def run_problems(
         )
 
 
-def _read_stated(table: Table) -> Stated:
+def _read_stated(table: Table, scene: Scene | None) -> Stated:
     """What is said of quantities."""
     speed = table.quantity("threshold_speed", Dimension.VELOCITY, DEFAULTS.threshold_speed)
     table.require("threshold_speed", not speed < 0.0, "a speed (m/s), not negative")
@@ -120,7 +123,30 @@ def _read_stated(table: Table) -> Stated:
     stiffness = table.optional_quantity("contact_stiffness", Dimension.STIFFNESS, positive)
     given = table.texts("quantities", "a list of texts") if table.has("quantities") else ()
     free, gaps = table.flag("without_contact"), table.flag("avoiding_gap")
-    return Stated(speed, stiffness, tuple(dict.fromkeys(given)), free, gaps, _read_units(table))
+    units, events = _read_units(table), _read_events(table, scene)
+    return Stated(speed, stiffness, tuple(dict.fromkeys(given)), free, gaps, units, events)
+
+
+def _read_events(table: Table, scene: Scene | None) -> tuple[str, ...]:
+    """Words of ``events``."""
+    if not table.has("events"):
+        return ()
+    words = table.texts("events", _EVENTS)
+    for problem in event_problems(words, scene):
+        table.report("events", problem)
+    return words
+
+
+def event_problems(words: Sequence[str], scene: Scene | None) -> Iterator[str]:
+    """What is wrong with words of ``events`` for a scene, if that is known."""
+    if not LISTED.keys() >= set(words) or len(set(words)) < len(words):
+        yield f"found {list(words)!r}; accepted: {_EVENTS}"
+    elif scene is not None:
+        laws = scene.branched_springs.values()
+        for word in words:
+            if LISTED[word] not in laws:
+                law = LISTED[word].value
+                yield f"found {word!r}, which needs a spring of the law {law!r}; there is none"
 
 
 def _read_units(table: Table) -> tuple[str, ...]:

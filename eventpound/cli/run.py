@@ -175,11 +175,15 @@ def _keep_partial(case: Case, error: BaseException, response: Response | None, o
         print("eventpound: nothing was computed that could be kept", file=sys.stderr)
         return
     from eventpound import results
+    from eventpound.case.case import DEFAULTS
     from eventpound.response import Response
     from eventpound.simulation import task_of
 
     try:
-        results.write(Response(task_of(case), case.solver.name, recording), out, case=case)
+        # Named quantities would take further runs.
+        stated = replace(DEFAULTS, events=case.run.stated.events)
+        partial = Response(task_of(case), case.solver.name, recording, stated=stated)
+        results.write(partial, out, case=case)
     except InputError as unwritten:
         # What ended the run is what gets reported.
         print(f"eventpound: {unwritten}", file=sys.stderr)

@@ -18,7 +18,7 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.separation import absolute_sum, correlation, cqc, srss
 from eventpound.scene.spring import GROUND, Backfill, BoucWen, Hysteretic, Slider
 from eventpound.scene.structures import structures_of
-from eventpound.solvers.base import Extremes
+from eventpound.solvers.base import Extremes, Recording
 
 
 def is_hysteretic(scene: Scene, i: int) -> bool:
@@ -155,15 +155,23 @@ def passive_force(many: Runs, i: int) -> Floats:
 
 def slip_path(many: Runs, i: int) -> Floats:
     """Length of all slips of a slider (m): from row to row, with one wherever it turns or stops."""
-    between, found = many.scene.springs[i].between, np.full(many.t.shape, np.nan)
+    found = np.full(many.t.shape, np.nan)
     for n, run in enumerate(many.recordings):
-        h = run.history
-        place = {GROUND: np.zeros(h.t.size)}
-        place |= {body.name: h.u[:, b] for b, body in enumerate(many.scene.bodies)}
-        if run.supports is not None:
-            place |= {s.name: run.supports.s[:, k] for k, s in enumerate(many.scene.supports)}
-        found[n] = np.abs(np.diff(place[between[1]] - place[between[0]])).sum()
+        found[n] = np.abs(np.diff(motion_of_spring(many.scene, run, i)[0])).sum()
     return found
+
+
+def motion_of_spring(scene: Scene, run: Recording, i: int) -> Floats:
+    """Elongation of spring i (m) and its rate (m/s) at every row of the history, shape (2, n)."""
+    h = run.history
+    motion = {GROUND: np.zeros((2, h.t.size))}
+    for k, body in enumerate(scene.bodies):
+        motion[body.name] = np.array((h.u[:, k], h.v[:, k]))
+    if run.supports is not None:
+        for k, support in enumerate(scene.supports):
+            motion[support.name] = np.array((run.supports.s[:, k], run.supports.sv[:, k]))
+    first, second = scene.springs[i].between
+    return motion[second] - motion[first]
 
 
 def friction_work(many: Runs, i: int) -> Floats:

@@ -26,7 +26,9 @@ def plain_name(text: str) -> str:
     return re.sub(r"[^\w.+#()=,-]+", "-", text).lstrip(".")[:_LONGEST_NAME]
 
 
-def write_together(directory: str | os.PathLike[str], contents: Mapping[str, bytes]) -> list[Path]:
+def write_together(
+    directory: str | os.PathLike[str], contents: Mapping[str, bytes], gone: Iterable[str] = ()
+) -> list[Path]:
     """Write files of one directory together, making the directory where it is missing.
 
     Ctrl-C and termination wait until the set is whole.
@@ -37,6 +39,8 @@ def write_together(directory: str | os.PathLike[str], contents: Mapping[str, byt
         Where they go.
     contents : mapping of str to bytes
         File names and what they hold; the last one is put in place last.
+    gone : iterable of str
+        Files of an earlier set that this one has not.
 
     Returns
     -------
@@ -64,6 +68,8 @@ def write_together(directory: str | os.PathLike[str], contents: Mapping[str, byt
                 for name, path in temporary.items():
                     path.replace(folder / name)
                     placed.append(folder / name)
+                for name in gone:
+                    _remove(folder / name)
         except BaseException as error:
             for path in (*temporary.values(), *placed):
                 _remove(path)

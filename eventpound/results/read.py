@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 HISTORY, EVENTS, SHOCKS = "history.csv", "events.csv", "shocks.csv"
+SPRING_EVENTS = "spring_events.csv"
 MANIFEST = "manifest.json"
 _WORDS, _COUNTS = ("kind", "contact"), ("group", "count")
 

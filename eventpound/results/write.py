@@ -8,11 +8,12 @@ from datetime import datetime
 
 from eventpound.case.case import Case
 from eventpound.given import checked
+from eventpound.quantities.spring_events import SpringEvent, spring_events
 from eventpound.response import EVENT_COLUMNS, Response
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import describe_run, sha256
-from eventpound.results.read import EVENTS, HISTORY, MANIFEST, SHOCKS, SUMMARY
+from eventpound.results.read import EVENTS, HISTORY, MANIFEST, SHOCKS, SPRING_EVENTS, SUMMARY
 from eventpound.results.summary import summarise
 from eventpound.results.tables import rows_csv, table_csv
 
@@ -28,7 +29,8 @@ def write(
 ) -> None:
     """Write history.csv, events.csv, summary.json and manifest.json, all or none.
 
-    Of a sequence of records shocks.csv, too.
+    Of a sequence of records shocks.csv, too, and spring_events.csv where `events` asks for it;
+    those of an earlier run go.
 
     A run that ended before its time is written too: ``success`` of the summary
     and ``complete`` of the manifest are then false.
@@ -61,6 +63,9 @@ def write(
     }
     if response.success and response.shock_rows:
         contents[SHOCKS] = table_csv(response.shocks)
+    if words := response.stated.events:
+        listed = spring_events(response.scene, response.recording, words)
+        contents[SPRING_EVENTS] = rows_csv([SpringEvent._fields, *listed])
     hashes = {name: sha256(content) for name, content in contents.items()}
     contents[MANIFEST] = to_json(describe_run(response, case, started) | {"files": hashes})
-    write_together(directory, contents)
+    write_together(directory, contents, {SHOCKS, SPRING_EVENTS} - contents.keys())

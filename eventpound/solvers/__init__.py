@@ -6,6 +6,7 @@ from collections.abc import Collection
 from functools import cache
 from pkgutil import resolve_name
 
+from eventpound.case.options import LISTED
 from eventpound.errors import InputError
 from eventpound.plugins import Plugins
 from eventpound.scene.scene import Scene
@@ -62,6 +63,12 @@ def unknown_springs(solver: Solver, scene: Scene) -> dict[str, LawName]:
 def knows_springs(solver: Solver, scene: Scene) -> bool:
     """Whether a solver knows the law of every spring of a scene."""
     return not unknown_springs(solver, scene)
+
+
+def lists_springs(solver: Solver, scene: Scene) -> bool:
+    """Whether a solver tells the events of the springs of a scene, if any has some to list."""
+    listed = set(LISTED.values()) & set(scene.branched_springs.values())
+    return not listed or getattr(solver, "lists_springs", False)
 
 
 def knows_scene(solver: Solver, scene: Scene) -> bool:

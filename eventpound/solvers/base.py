@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -235,6 +235,17 @@ class LawRecording:
     longest_contact: Floats
 
 
+class Stick(NamedTuple):
+    """When a slider begins to stick, or no longer does.
+
+    t: time (s). spring: position in ``scene.springs``. begins: whether it sticks from then on.
+    """
+
+    t: float
+    spring: int
+    begins: bool
+
+
 @dataclass(frozen=True, slots=True)
 class Recording:
     """Everything a solver returns.
@@ -279,6 +290,8 @@ class Recording:
         events the rest of it; None where the solver has one way only.
     largest_gap : ndarray, shape (K,), optional
         Largest value of each gap (m).
+    sticks : tuple of Stick
+        Of sliders, in order of time.
     """
 
     success: bool
@@ -304,6 +317,7 @@ class Recording:
     laws: LawRecording | None = None
     integrated: float | None = None
     largest_gap: Floats | None = None
+    sticks: tuple[Stick, ...] = ()
 
 
 class ReadyTask(Protocol):
@@ -345,7 +359,8 @@ class Solver(Protocol):
     scenes with others are refused. One that takes contacts at points between bodies, with more
     than two bodies in a column of W, says so by ``takes_points = True``. One that knows spring laws
     whose memory has branches or a second number (`eventpound.scene.spring.Hysteretic`) has their
-    words in an attribute ``memories``.
+    words in an attribute ``memories``. One that keeps `Recording.sticks`, and in the history the
+    state before and after the end of each branch, says so by ``lists_springs = True``.
     Settings that it had once are in a mapping ``given_up``, each with what to do instead. One that
     can do once what many runs of a scene have in common has a function ``ready(task)``, which
     returns a `ReadyTask`, or None for a scene of which it cannot.

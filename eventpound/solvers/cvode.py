@@ -60,6 +60,7 @@ class Cvode:
     takes_supports = True
     takes_points = True
     memories = frozenset(LawName)
+    lists_springs = True
     contact_laws = tuple(BY_WORD)
 
     def check_settings(self, settings: Settings) -> None:

@@ -38,6 +38,7 @@ class Ida:
     counts_steps = True
     takes_supports = True
     memories = frozenset(LawName)
+    lists_springs = True
     finest_rtol = FINEST_RTOL / LOCAL_SHARE
     """Below it the steps get no finer."""
 

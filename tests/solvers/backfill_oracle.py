@@ -76,12 +76,16 @@ class Soil:
 
 @dataclass
 class Answer:
-    """Final state, times of changes of soils (s) and of impacts (s), the soils at the end."""
+    """Final state, times of changes of soils (s) and of impacts (s), the soils at the end.
+
+    Also when which soil was touched (-1) or left (1).
+    """
 
     u: np.ndarray
     v: np.ndarray
     turns: list[float] = field(default_factory=list)
     impacts: list[float] = field(default_factory=list)
+    touched: list[tuple[float, int, int]] = field(default_factory=list)
     soils: list[Soil] = field(default_factory=list)
 
 
@@ -146,8 +150,11 @@ def solved(scene: Scene, end: float, corners: tuple[float, ...] = ()) -> Answer:
                 if times.size == 0:
                     continue
                 if kind == "soil":
+                    apart = soils[i].state == APART
                     soils[i].turn(which, y[:n])
                     answer.turns.append(t)
+                    if apart != (soils[i].state == APART):
+                        answer.touched.append((t, i, -1 if apart else 1))
                 else:
                     W, _, restitution = contacts[i]
                     impulse = -(1.0 + restitution) * float(W @ y[n:]) / float(W @ (W / mass))

@@ -35,6 +35,7 @@ from eventpound.solvers.base import (
     History,
     LawRecording,
     Recording,
+    Stick,
 )
 from eventpound.solvers.events.scales import SceneScales
 
@@ -208,7 +209,10 @@ def kept(table: Floats, events: Sequence[Event], end: float, model: Model) -> di
 
 
 def own_recording(recording: Recording, model: Model) -> Recording:
-    """A recording without the contacts that stand for sliders, and with every z at its end."""
+    """A recording without the contacts that stand for sliders, and with every z at its end.
+
+    What happened at these is `Recording.sticks`.
+    """
     if model.sliders.size == 0:
         return recording
     own = model.own_contacts
@@ -224,6 +228,11 @@ def own_recording(recording: Recording, model: Model) -> Recording:
         z=z,
         history=replace(h, gap=h.gap[:, :own], contact_force=h.contact_force[:, :own]),
         events=tuple(event for event in recording.events if event.contact < own),
+        sticks=tuple(
+            Stick(event.t, int(model.sliders[event.contact - own]), event.kind is _REST)
+            for event in recording.events
+            if event.contact >= own
+        ),
         smallest_gap=recording.smallest_gap[:own],
         largest_gap=recording.largest_gap[:own],
         resting_time=recording.resting_time[:own],

@@ -106,6 +106,7 @@ class Fast:
     counts_steps = True
     takes_supports = True
     memories = FAST_KNOWS
+    lists_springs = True
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
