@@ -28,6 +28,12 @@ _SINUSOIDS = int(Family.SINUSOIDS)
 _GAUSSIAN = int(Family.GAUSSIAN)
 _SAMPLES = int(Family.SAMPLES)
 _LOADED = int(Family.LOADED)
+GAUSSIAN_STEP = 0.5
+"""Longest step under a Gaussian pulse, in its own time 1/sqrt(q)."""
+_QUIET = 8.0
+"""Distance from its center, in the same time, at which a Gaussian is nothing yet: 1.6e-28."""
+_SAMPLES_AT_ONCE = 8
+"""Time steps of a record that one step may pass over."""
 
 
 class Formula(Protocol):
@@ -169,6 +175,41 @@ def _next_corner_of_any(coefficients: Floats, t: float, stop: float) -> float:
         if coefficients[at] == _SAMPLES:
             stop = next_sample(coefficients[int(coefficients[at + 1]) :], t, stop)
     return stop
+
+
+@scalar_kernel
+def time_to_look(piece: Formula, t: float) -> float:
+    """Longest step from t (s) that misses nothing of what comes, inf where nothing can be missed.
+
+    What an integrator knows of a step are its ends: after a rest, when steps are as long as can be,
+    a whole pulse or a record behind its leading zeros may lie between them.
+    """
+    if piece.family == _LOADED:
+        return _time_to_look_at_any(piece.coefficients, t)
+    return _time_to_look_at(piece.family, piece.coefficients, t)
+
+
+@deferred_kernel
+def _time_to_look_at_any(coefficients: Floats, t: float) -> float:
+    """`time_to_look` of a LOADED piece."""
+    shortest = math.inf
+    for row in range(int(coefficients[0]) + 1):
+        family, low, _, _, _ = places_of(row, coefficients)
+        shortest = min(shortest, _time_to_look_at(family, coefficients[low:], t))
+    return shortest
+
+
+@scalar_kernel
+def _time_to_look_at(family: int, coefficients: Floats, t: float) -> float:
+    """`time_to_look` of one signal."""
+    if family == _SAMPLES:
+        return _SAMPLES_AT_ONCE * coefficients[1]
+    if family != _GAUSSIAN or coefficients[1] <= 0.0:
+        return math.inf
+    width, to_center = 1.0 / math.sqrt(coefficients[1]), coefficients[0] - t
+    if abs(to_center) < (_QUIET + GAUSSIAN_STEP) * width:
+        return GAUSSIAN_STEP * width
+    return to_center - _QUIET * width if to_center > 0.0 else math.inf
 
 
 @scalar_kernel

@@ -20,7 +20,7 @@ from eventpound.contact.instant import any_may_rest, decide_rests, settle_impact
 from eventpound.contact.kinks import lacks_branch, pass_kinks
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
-from eventpound.motion.forcing import CurrentPiece, next_corner
+from eventpound.motion.forcing import CurrentPiece, next_corner, time_to_look
 from eventpound.numerics.compiled import by_python, in_python, kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, look
@@ -63,7 +63,7 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     rules, state, record, happened = run.rules, run.state, run.record, run.happened
     clock, count = state.clock, state.count
     t = clock[T]
-    stop = next_corner(piece, t, piece.stop)
+    stop = min(next_corner(piece, t, piece.stop), t + time_to_look(piece, t))
     forcing = lend(forcing_now(piece, t))
     series = local_series(run, forcing, mode, stop - t)
     if not series.finite:

@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
-from eventpound.motion.forcing import next_corner
+from eventpound.motion.forcing import next_corner, time_to_look
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.solvers.events.dense import Dense
@@ -47,10 +47,10 @@ class Bounds(NamedTuple):
 @scalar_kernel
 def last_time(start: float, at_samples: bool, bounds: Bounds, forcing: Forcing) -> float:
     """Local time (s) beyond which a step from `start` (s) may not go."""
-    stop, origin = min(bounds.stop, start + bounds.longest), forcing.start
-    if at_samples:
-        stop = next_corner(forcing, origin + start, origin + stop) - origin
-    return stop
+    origin = forcing.start
+    longest = min(bounds.longest, time_to_look(forcing, origin + start))
+    stop = min(bounds.stop, start + longest)
+    return next_corner(forcing, origin + start, origin + stop) - origin if at_samples else stop
 
 
 class StepsTaken(NamedTuple):

@@ -84,7 +84,7 @@ def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
         value, rate, _ = motion_of(i, step.dynamics.watched.at, seen)
         return Sample(tau, value, rate)
     room, rate = room_on_branch(i, step.dynamics.watched, seen.elongation)
-    return Sample(tau, room, rate)
+    return Sample(tau, room - sought.level, rate)
 
 
 @kernel
@@ -235,7 +235,7 @@ def first_event(
     float
         When (s, local); inf where nothing happens.
     """
-    kept = happened.released.copy()
+    released, kinked = happened.released.copy(), happened.kinked.copy()
     forget(happened)
     first = step.dense.end
     any_event = False
@@ -247,10 +247,12 @@ def first_event(
             if not marks[i]:
                 continue
             noise = watched.force_noise if kind == _FORCE else rules.length_noise
-            level = _level_of_kept(i, watched, step) if kind == _FORCE and kept[i] else 0.0
             if kind == _KINK:
                 noise = noise_on_branch(i, watched, rules.length, rules.time)
-            tau = first_below(Sought(kind, i, noise, level), first, step)
+            sought = Sought(kind, i, noise, 0.0)
+            if (kind == _FORCE and released[i]) or (kind == _KINK and kinked[i]):
+                sought = Sought(kind, i, noise, _level_of_kept(sought, step))
+            tau = first_below(sought, first, step)
             if tau == np.inf:
                 continue
             if tau < first:
@@ -270,15 +272,14 @@ def first_event(
 
 
 @kernel
-def _level_of_kept(j: int, watched: Watched, step: DenseStep) -> float:
-    """What counts as zero of the force of a contact that was released, and rests still (N).
+def _level_of_kept(sought: Sought, step: DenseStep) -> float:
+    """What counts as zero of a force or room that has just passed zero and is as it was before.
 
-    Where the acceleration problem decides nothing a force that is below zero is so by rounding:
+    Where an instant decides nothing, or decides otherwise, what is below zero is so by rounding:
     it must fall further, or the same instant would come again for ever.
     """
-    look(step.dense.start, step)
-    force = room_at_rest(j, watched, step.seen.contact_force)[0]
-    return force - watched.force_noise if force < 0.0 else 0.0
+    value = _sample(step.dense.start, sought, step).value
+    return value - sought.noise if value < 0.0 else 0.0
 
 
 @scalar_kernel

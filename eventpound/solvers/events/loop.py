@@ -13,7 +13,7 @@ import numpy as np
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME, moving_frame
 from eventpound.motion.base import Family, Piece
-from eventpound.motion.forcing import CurrentPiece
+from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
@@ -53,8 +53,8 @@ MOST_HALVINGS = 40
 """Times a step is halved before the run gives up."""
 STEPS_AT_ONCE = 256
 """Steps after which the integrator comes back although nothing was marked: a run can be stopped."""
-GAUSSIAN_STEP, SINUSOID_STEP = 0.5, 1.0
-"""Longest step while contacts rest, in 1/sqrt(q) of a Gaussian and radians: contact forces follow
+SINUSOID_STEP = 1.0
+"""Longest step while contacts rest, in radians of a sinusoid: contact forces follow the
 ground and loads that may move no body, which no error of a step shows. Hermite's cubic through its
 ends is off by h^4/384 of a fourth derivative, by 3e-3 of the load at most."""
 

@@ -18,7 +18,7 @@ import numpy as np
 from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import INVERSE, pull_per_z
-from eventpound.motion.forcing import CurrentPiece, ground_taylor
+from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece, ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.alone import (
@@ -271,8 +271,6 @@ def wrong_way(order: int, run: FastRun) -> bool:
     return turned
 
 
-GAUSSIAN_STEP = 0.5
-"""Longest step under a Gaussian pulse, in its own time 1/sqrt(q)."""
 SINUSOID_STEP = 1.5
 """Longest step under a sinusoid, in its radians."""
 

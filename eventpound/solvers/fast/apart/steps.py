@@ -18,7 +18,7 @@ import numpy as np
 from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T, is_fleeting
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import CurrentPiece
+from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.apart.between import (
     A_HIGH,
@@ -31,7 +31,6 @@ from eventpound.solvers.fast.apart.between import (
     write_rows,
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.expansion import GAUSSIAN_STEP
 from eventpound.solvers.fast.extremes import flat_time, followers
 from eventpound.solvers.fast.links import CORE, gap_of
 from eventpound.solvers.fast.run import (

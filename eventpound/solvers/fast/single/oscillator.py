@@ -25,6 +25,7 @@ from eventpound.contact.rest import ORDER as MOST_DECIDING
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import (
+    GAUSSIAN_STEP,
     CurrentPiece,
     decay_time,
     ground_acceleration,
@@ -39,7 +40,6 @@ from eventpound.solvers.fast.compiled import (
     compiled_deferred_loop,
     compiled_loop,
 )
-from eventpound.solvers.fast.expansion import GAUSSIAN_STEP
 from eventpound.solvers.fast.links import turns_back
 from eventpound.solvers.fast.record import has_room_for
 from eventpound.solvers.fast.run import (
