@@ -135,7 +135,7 @@ def checked(function: _Function) -> _Function:
             # Says what is wrong, which takes it long to tell where nothing is.
             signature.bind(*args, **kwargs)
         for name, kind in _kinds_of_arguments(function):
-            if name in given:
+            if name in given and type(given[name]) not in kind.as_it_is:
                 given[name] = _read(f"{called}: {name}", kind, given[name])
         return function(**given)
 

@@ -76,7 +76,8 @@ def made_ready(
     number = positive("rtol", rtol, Dimension.NUMBER)
     if solver is not None:
         options = solver_instead(options, name_of(solver), "solver")
-    options = replace(options, rtol=number or options.rtol)
+    if number is not None:
+        options = replace(options, rtol=number)
     if settings is not None:
         if isinstance(solver, str) and ":" in solver:
             raise InputError(f"settings: found beside solver = {solver!r}; accepted: one of them")
@@ -200,14 +201,16 @@ def options_of(
     """Options of the case, or defaults for a checked scene, with what was given instead."""
     if isinstance(case, Case):
         refuse_suite(case)
-        run, solver = case.run, case.solver
+        given = {"duration": duration, "output_step": output_step, "energy": energy}
+        changes: dict[str, Any] = {key: v for key, v in given.items() if v is not None}
+        run = replace(case.run, **changes)
+        solver = case.solver
     else:
         check_scene(case)
         length = duration or default_duration(case, 0.0)
-        run = RunOptions(0.0, length, default_output_step(case.motion, length))
+        step = output_step or default_output_step(case.motion, length)
+        run = RunOptions(0.0, length, step, bool(energy))
         solver = SolverOptions()
-    changes: dict[str, Any] = {"duration": duration, "output_step": output_step, "energy": energy}
-    run = replace(run, **{key: v for key, v in changes.items() if v is not None})
     problems = [*run_problems(run.start_time, run.duration, run.output_step)]
     if events is not None:
         run = replace(run, stated=replace(run.stated, events=tuple(events)))
@@ -279,6 +282,11 @@ def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[st
 
 def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
     """What of a scene a solver cannot take, with the solvers that take all of it."""
+    wanted = [knows_laws, knows_springs, takes_points, takes_loads]
+    if events:
+        wanted.append(lists_springs)
+    if all(can(solver, scene) for can in wanted):
+        return []
     laws = ", ".join(f"{c.name!r} ({c.law.kind})" for c in scene.contacts if c.law is not None)
     unknown = unknown_springs(solver, scene).items()
     springs = ", ".join(f"{spring!r} ({law})" for spring, law in unknown)
@@ -286,17 +294,20 @@ def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
     kinds = (("supports", scene.supports), ("forces", scene.forces))
     loads = " and ".join(word for word, given in kinds if given)
     name = solver.name
-    asked = (
-        (knows_laws, f"{name} does not know the laws of contacts {laws}"),
-        (knows_springs, f"{name} does not know the laws of springs {springs}"),
-        (takes_points, f"{name} does not take contacts at a point between bodies ({points})"),
-        (takes_loads, f"name: the solver {name!r} cannot take {loads}"),
-        *([(lists_springs, f"{name} does not list events of springs")] if events else []),
+    problems = (
+        f"{name} does not know the laws of contacts {laws}",
+        f"{name} does not know the laws of springs {springs}",
+        f"{name} does not take contacts at a point between bodies ({points})",
+        f"name: the solver {name!r} cannot take {loads}",
+        f"{name} does not list events of springs",
     )
-    problems = [problem for can, problem in asked if not can(solver, scene)]
-    able = available().items() if problems else ()
-    accepted = ", ".join(key for key, other in able if all(can(other, scene) for can, _ in asked))
-    return [f"[solver]: {problem}; accepted: {accepted}" for problem in problems]
+    able = (key for key, other in available().items() if all(can(other, scene) for can in wanted))
+    accepted = ", ".join(able)
+    return [
+        f"[solver]: {problem}; accepted: {accepted}"
+        for can, problem in zip(wanted, problems, strict=False)
+        if not can(solver, scene)
+    ]
 
 
 def task_with(

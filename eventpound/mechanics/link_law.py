@@ -23,6 +23,7 @@ KIND, BESIDE, STRENGTH, YIELD, EXPONENT, BETA, GAMMA, DELTA_NU, DELTA_ETA = rang
 ELASTIC, BOUC_WEN, BACKFILL, YIELDING_SOIL, SLIDER = 0.0, 1.0, 2.0, 3.0, 4.0
 DEGRADING, ITS_ENERGY = 5.0, 6.0
 """Kinds of links; that of a contact element is its code, which is negative."""
+_NO_MEMORY = np.array([ELASTIC, 0.0, 0.0, 1.0, 20.0, 0.5, 0.5, 0.0, 0.0])
 NONE_FURTHER: Mapping[int, int] = MappingProxyType({})
 APART, CLOSED, YIELDING = 1, -1, -2
 """Branches of a link: above its kink, below it, and below it on the backbone of a memory."""
@@ -58,7 +59,7 @@ def link_law(
     But for links with the second number of a memory, which `further` has by the link of the first.
     """
     rows = np.empty((len(damping), len(CONSTANTS)))
-    rows[:] = (ELASTIC, 0.0, 0.0, 1.0, 20.0, 0.5, 0.5, 0.0, 0.0)
+    rows[:] = _NO_MEMORY
     rows[:, BESIDE] = np.arange(len(damping))
     for row, law in zip(rows, laws, strict=False):
         if isinstance(law, BoucWen):

@@ -31,10 +31,11 @@ from eventpound.mechanics.link_law import (
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact import BARRIER
-from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, reduced
+from eventpound.scene.elastic_laws import ElasticLaws, as_arrays
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Hysteretic
 
+_SLACK = BilinearElastic(0.0, 0.0)
 WORK_OF_SUPPORTS = 3
 """Entries of the energy ledger before those of supports: input, viscous and hysteretic work."""
 
@@ -280,19 +281,18 @@ def assemble(scene: Scene) -> Model:
         return np.array(values, dtype=np.float64)
 
     mass, u0 = (column([getattr(b, key) for b in scene.bodies]) for key in ("mass", "displacement"))
-    start = differences(u0, *np.array(ends, np.int64).reshape(-1, 2).T)
+    link_ends = np.array(ends, np.int64).reshape(-1, 2)
+    start = differences(u0, *link_ends.T)
     points = np.array([i for i, c in enumerate(scene.contacts) if c.at_point], np.int64)
-    at = [(-1, -1) if c.at_point else (index[c.ends[0]], index[c.ends[1]]) for c in scene.contacts]
+    at = [[-1, -1] if c.at_point else [index[name] for name in c.ends] for c in scene.contacts]
     left, right = np.array(at, np.int64).reshape(-1, 2).T.copy()
     return Model(
         mass=mass,
         u0=u0,
         v0=column([b.velocity for b in scene.bodies]),
-        link_ends=np.array(ends, np.int64).reshape(-1, 2),
+        link_ends=link_ends,
         law=link_law(laws, damping, further),
-        elastic=as_arrays(
-            [*map(reduced, laws)] + [BilinearElastic(0.0, 0.0)] * (len(ends) - len(laws))
-        ),
+        elastic=as_arrays(laws + [_SLACK] * (len(ends) - len(laws))),
         hysteretic=np.array([*loops, *further.values()], np.int64),
         z0=column(
             [law.z_at(start[i]) for i, law in loops.items()] + [loops[i].second_at for i in further]

@@ -9,7 +9,7 @@ whole is again of that form with ``o = Σ o_i``, ``1/k = Σ 1/k_i`` on each side
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -39,9 +39,9 @@ class ElasticLaws(NamedTuple):
         return stiffness, -stiffness * self.offset
 
 
-def as_arrays(laws: Iterable[BilinearElastic]) -> ElasticLaws:
-    """Laws as arrays."""
-    columns = np.array([(x.compression, x.extension, x.offset) for x in laws], float)
+def as_arrays(laws: Iterable[Law | Hysteretic]) -> ElasticLaws:
+    """Laws as arrays, as `reduced`."""
+    columns = np.array([*map(_constants, laws)], float)
     return ElasticLaws(*columns.reshape(-1, 3).T.copy())
 
 
@@ -58,18 +58,19 @@ def reduced(law: Law | Hysteretic) -> BilinearElastic:
     BilinearElastic
         The same force for every elongation.
     """
+    return BilinearElastic(*_constants(law))
+
+
+def _constants(law: Law | Hysteretic) -> tuple[float, float, float]:
+    """Stiffnesses below and above the offset (N/m), and the offset (m)."""
     if isinstance(law, Linear | BoucWen | Slider):
-        return BilinearElastic(law.stiffness, law.stiffness, 0.0)
+        return law.stiffness, law.stiffness, 0.0
     if isinstance(law, Hysteretic):
-        return BilinearElastic(0.0, 0.0, law.offset)
+        return 0.0, 0.0, law.offset
     if isinstance(law, BilinearElastic):
-        return law
-    parts = [reduced(part) for part in law.parts]
-    return BilinearElastic(
-        compression=_in_series([part.compression for part in parts]),
-        extension=_in_series([part.extension for part in parts]),
-        offset=sum(part.offset for part in parts),
-    )
+        return law.compression, law.extension, law.offset
+    compression, extension, offset = zip(*map(_constants, law.parts), strict=True)
+    return _in_series(compression), _in_series(extension), sum(offset)
 
 
 def elastic_force(law: BilinearElastic | ElasticLaws, x: Floats) -> tuple[Floats, Floats]:
@@ -81,7 +82,7 @@ def elastic_force(law: BilinearElastic | ElasticLaws, x: Floats) -> tuple[Floats
     return stiffness * (x - law.offset), stiffness
 
 
-def _in_series(stiffnesses: list[float]) -> float:
+def _in_series(stiffnesses: Sequence[float]) -> float:
     if min(stiffnesses) == 0.0:
         return 0.0
     return 1.0 / sum(1.0 / k for k in stiffnesses)

@@ -15,7 +15,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.check import starts_of_supports
-from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, elastic_force, reduced
+from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, elastic_force
 from eventpound.scene.equilibrium import NoEquilibriumError, Potential, equilibrium
 from eventpound.scene.loaded_straight import Loops, not_convex
 from eventpound.scene.scene import Scene
@@ -95,7 +95,7 @@ class _Springs:
         laws = [spring.law for spring in scene.springs]
         loops = {i: law for i, law in enumerate(laws) if isinstance(law, Hysteretic)}
         return cls(
-            as_arrays(map(reduced, laws)),
+            as_arrays(laws),
             np.array([*loops], np.int64),
             # No other law passes the check.
             Loops.of([law for law in loops.values() if isinstance(law, BoucWen)]),

@@ -128,7 +128,7 @@ class Ready:
 
     def __init__(self, task: Task) -> None:
         self._scene, self._model = task.scene, assemble(task.scene)
-        self._own = Block(list(numbers_of(self._model).values())).data
+        self._own = b"".join(numbers.tobytes() for numbers in numbers_of(self._model).values())
         self._shape = task.rtol, task.energy, *shape_of(self._model)
 
     def run(self, values: Mapping[Place, float], task: Task) -> Callable[[], Recording]:
@@ -136,7 +136,7 @@ class Ready:
         known = _last_of_thread.arrays
         # Who watches a run may begin another.
         arrays = known.pop(self._shape, None) or Arrays(self._model)
-        arrays.numbers.data[:] = self._own
+        arrays.numbers.data[:] = np.frombuffer(self._own, np.uint8)
         if values:
             columns = {place: np.array((value,)) for place, value in values.items()}
             put_numbers(self._scene, self._model, columns, arrays.rows)
