@@ -207,6 +207,16 @@ def test_rounding_does_not_close_what_has_just_opened() -> None:
     assert is_none(2, -1e-13, 1e-14, 0.0, 1.0)
 
 
+@pytest.mark.usefixtures("interpreted")
+def test_a_gap_that_rounding_has_put_below_zero_closes_though_it_seems_to_open() -> None:
+    bodies = SimpleNamespace(of_body=np.array([0, 1]), left=np.array([0]), right=np.array([1]))
+    state = SimpleNamespace(gap=np.array([-5.2e-18]), gap_rate=np.array([1.4e-17]))
+    Y = np.zeros((5, 2))
+    Y[2] = 0.0, -0.7
+    C = gap_series(Y, SimpleNamespace(iq=np.arange(2)), bodies, state, 0.0, 1e-13, 1.0)
+    assert first_closings(C, np.ones(1, bool), 1.0)[0] == pytest.approx(1.4e-17 / 0.7)
+
+
 def test_a_cascade_given_up_names_its_contacts() -> None:
     contacts = [Contact(name, "a", "b", 0.0, 0.5) for name in ("early", "late", "slow")]
     early = [Event(0.1, EventKind.IMPACT, 0, 0, -1.0)] * WINDOW

@@ -72,7 +72,8 @@ def gap_series(
     of_body = bodies.of_body
     C = np.zeros((gap.size, order + 1))
     for j in range(gap.size):
-        C[j, 0], C[j, 1] = gap[j], gap_rate[j]
+        # One that rounding has put below zero, and that opens as if by rounding, may close at once.
+        C[j, 0], C[j, 1] = max(gap[j], 0.0), gap_rate[j]
         none = gap_rate[j] > 0.0 or (gap[j] == 0.0 and gap_rate[j] == 0.0)
         for k in range(2, order + 1):
             level = 0.0

@@ -117,7 +117,7 @@ def gap_polynomial(
     first = series.of_body[left] if left >= 0 else -1
     second = series.of_body[right] if right >= 0 else -1
     relative(first, second, order, series, c)
-    c[0], c[1] = state.gap[j], state.gap_rate[j]
+    c[0], c[1] = max(state.gap[j], 0.0), state.gap_rate[j]
     opening = c[0] == 0.0 and c[1] == 0.0
     if not (opening or c[1] > 0.0 > c[2]):
         return
