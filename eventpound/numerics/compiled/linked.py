@@ -21,10 +21,9 @@ does without this module.
 
 from __future__ import annotations
 
-import inspect
 import threading
 from collections.abc import Callable, Iterator
-from functools import cache, cached_property
+from functools import cache, cached_property, update_wrapper
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -365,13 +364,24 @@ class Entry(CPUDispatcher):
     def __init__(
         self, function: Callable[..., Any], options: dict[str, Any], recipe: Recipe, store: Any
     ) -> None:
-        # Found out once, for hundreds of functions; Numba would do so three times.
-        function.__signature__ = inspect.signature(function)
-        super().__init__(function, {}, options)
-        pipeline = _pipeline(EntryLibrary, recipe)
-        self._compiler = _EntryCompiler(function, self.targetdescr, options, {}, pipeline)
-        self._options, self._recipe = options, recipe
-        self._cache = store
+        self.py_func, self._options, self._recipe, self._store = function, options, recipe, store
+        update_wrapper(self, function)
+
+    def __getattr__(self, name: str) -> Any:
+        """What Numba's dispatcher has: of most entries nobody ever asks for it."""
+        self._make()
+        return object.__getattribute__(self, name)
+
+    def _make(self) -> None:
+        """Make the dispatcher, once."""
+        with global_compiler_lock:
+            store = self.__dict__.pop("_store", None)
+            if store is not None:
+                function, options = self.py_func, self._options
+                super().__init__(function, {}, options)
+                pipeline = _pipeline(EntryLibrary, self._recipe)
+                self._compiler = _EntryCompiler(function, self.targetdescr, options, {}, pipeline)
+                self._cache = store
 
     @cached_property
     def part(self) -> KernelPart:
@@ -393,6 +403,8 @@ class Entry(CPUDispatcher):
         """
         if in_this_thread.interprets:
             return self.py_func(*arguments)
+        if "_store" in self.__dict__:
+            self._make()
         try:
             return super().__call__(*arguments)
         except SystemError as error:

@@ -13,8 +13,11 @@ import re
 from functools import cache
 
 PACKAGE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
-_IMPORT = re.compile(r"^\s*from eventpound((?:\.\w+)*) import (\([^)]*\)|.*)", re.MULTILINE)
+# What begins with a text is looked for quickly.
+_IMPORT = re.compile(r"from eventpound((?:\.\w+)*) import (\([^)]*\)|.*)")
 _NAME = re.compile(r"\w+")
+# Most modules are imported by several.
+_is_file, _is_folder = cache(os.path.isfile), cache(os.path.isdir)
 
 
 @cache
@@ -41,13 +44,13 @@ def source_stamp(file: str) -> str:
 @cache
 def _text_and_imports(file: str) -> tuple[bytes, frozenset[str]]:
     """Hash of the text of a module, and the files of this package that it imports."""
-    with open(file, encoding="utf-8") as opened:
-        text = opened.read()
+    with open(file, "rb") as opened:
+        content = opened.read()
     candidates = []
-    for dotted, names in _IMPORT.findall(text):
+    for dotted, names in _IMPORT.findall(content.decode()):
         module = PACKAGE + dotted.replace(".", os.sep)
         # A name may be one of a module, or a module of a package.
         candidates += [module + ".py", f"{module}{os.sep}__init__.py"]
-        if os.path.isdir(module):
+        if _is_folder(module):
             candidates += [f"{module}{os.sep}{name}.py" for name in _NAME.findall(names)]
-    return hashlib.blake2b(text.encode()).digest(), frozenset(filter(os.path.isfile, candidates))
+    return hashlib.blake2b(content).digest(), frozenset(filter(_is_file, candidates))
