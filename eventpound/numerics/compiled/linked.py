@@ -375,13 +375,13 @@ class Entry(CPUDispatcher):
     def _make(self) -> None:
         """Make the dispatcher, once."""
         with global_compiler_lock:
-            store = self.__dict__.pop("_store", None)
-            if store is not None:
+            if "_store" in self.__dict__:
                 function, options = self.py_func, self._options
                 super().__init__(function, {}, options)
                 pipeline = _pipeline(EntryLibrary, self._recipe)
                 self._compiler = _EntryCompiler(function, self.targetdescr, options, {}, pipeline)
-                self._cache = store
+                # At last: no other thread calls it before.
+                self._cache = self.__dict__.pop("_store")
 
     @cached_property
     def part(self) -> KernelPart:
@@ -414,6 +414,7 @@ class Entry(CPUDispatcher):
 
     def compile(self, signature: Any) -> Any:
         """Make the function ready for arguments of these types."""
+        self._make()
         with getting_ready(self.py_func), global_compiler_lock, quick_front_end():
             return super().compile(signature)
 
