@@ -14,7 +14,13 @@ from eventpound.scene import Scene
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.constants import blank_happened, blank_series, blank_state, plan_of
+from eventpound.solvers.fast.constants import (
+    begin_state,
+    blank_happened,
+    blank_series,
+    plan_of,
+    zero_state,
+)
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.run import FastPlan, FastRecord, FastRun, FastSeries, FastState
@@ -44,13 +50,20 @@ class Stepper(NamedTuple):
         return self.run.series
 
 
+def state_of(plan: FastPlan, model: Model, z: Floats) -> FastState:
+    """The state of a scene before a run from 0 s on, its springs at z."""
+    state = zero_state(model.counts)
+    begin_state(plan, model.u0, model.v0, z, 0.0, state)
+    return state
+
+
 def stepper_of(scene: Scene, z: Floats, rtol: float, dt: float = 1.0) -> Stepper:
     """A scene at the start of a run of 2 s, its springs at z, steps of dt (s) before it."""
     task = Task(scene, 0.0, 2.0, rtol)
     model = assemble(task.scene)
     scales = scene_scales(task.scene, model, task.end)
     plan = plan_of(task, model, scales)
-    state = blank_state(plan, model.u0, model.v0, z, task.start)
+    state = state_of(plan, model, z)
     at = places_in(model)
     table = blank_extremes(at, scales)
     room = np.zeros((9, EVENT_WIDTH)), np.zeros((9, row_width(model)))

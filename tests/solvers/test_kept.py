@@ -11,7 +11,7 @@ from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Sc
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.single.oscillator import oscillate
+from eventpound.solvers.fast.single.oscillator import oscillate_alone
 from eventpound.solvers.fast.solver import kernels_kept
 
 ALONE = Scene(
@@ -31,7 +31,7 @@ def test_kept_after_a_run(scene: Scene, tmp_path: Path, monkeypatch: pytest.Monk
     task = Task(scene, 0.0, 1.0, 1e-6)
     solver_named("fast").solve(task)
     assert kernels_kept(task)
-    for kernel in (oscillate, advance):
+    for kernel in (oscillate_alone, advance):
         monkeypatch.setattr(kernel, "overloads", {})
     # As a process finds it that has not run yet: by the files alone.
     assert kernels_kept(task)

@@ -20,11 +20,12 @@ from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spri
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.constants import blank_series, blank_state, plan_of
+from eventpound.solvers.fast.constants import blank_series, plan_of
 from eventpound.solvers.fast.run import FastPlan, FastRecord, FastState
 from eventpound.solvers.fast.single.body import SingleRun, enter
 from eventpound.solvers.fast.single.oscillator import settle_single, stays_closed
 from eventpound.tolerances import LAST_SPEED
+from tests.solvers.stepping import state_of
 from tests.solvers.test_modes import TABLE
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -47,7 +48,7 @@ def blank_record(task: Task, model: Model) -> FastRecord:
 def prepared(task: Task) -> tuple[Model, FastPlan, FastState]:
     model = assemble(task.scene)
     plan = plan_of(task, model, scene_scales(task.scene, model, task.end - task.start))
-    return model, plan, blank_state(plan, model.u0, model.v0, model.z0, task.start)
+    return model, plan, state_of(plan, model, model.z0)
 
 
 def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False) -> SingleRun:

@@ -35,11 +35,12 @@ from eventpound.solvers.events.scales import (
     z_tolerance,
 )
 from eventpound.solvers.fast.constants import (
-    blank_state,
+    begin_state,
     ground_of,
     links_of,
     order_for,
     small_difference,
+    zero_state,
 )
 from eventpound.solvers.fast.run import Contacts, FastPlan, FastState, Ground, Limits
 from eventpound.solvers.fast.single.body import oscillators_of
@@ -149,7 +150,8 @@ def rows_of(variants: Variants, low: int, high: int) -> VariantArrays:
         np.empty(0),
         oscillators_of(model, numbers["gap"], scales.length, links, energy=False),
     )
-    state = blank_state(plan, numbers["u0"], numbers["v0"], numbers["z0"], task.start)
+    state = zero_state(model.counts, runs=(high - low,))
+    begin_state(plan, numbers["u0"], numbers["v0"], numbers["z0"], task.start, state)
     scales = scales._replace(force=mass * scales.length / scales.squared_time)
     return VariantArrays(plan, state, motions, blank_extremes(places_in(model), scales))
 

@@ -191,32 +191,8 @@ def blank_happened(plan: FastPlan) -> FastMarks:
     return FastMarks(*(np.zeros(size, np.bool_) for size in sizes))
 
 
-def blank_state(
-    plan: FastPlan, u0: Floats, v0: Floats, z0: Floats, start: float, ledger: int = WORK_OF_SUPPORTS
-) -> FastState:
-    """State arrays before the start of a run, which opens gaps, or with a leading axis of many.
-
-    Parameters
-    ----------
-    plan : FastPlan
-        Constants of the run; with a leading axis where the others have one.
-    u0, v0 : ndarray, shape (..., N)
-        Displacements (m) and velocities (m/s).
-    z0 : ndarray, shape (..., H)
-        Hysteretic variables.
-    start : float
-        Time (s).
-    ledger : int
-        Entries of the energy ledger.
-    """
-    counts = u0.shape[-1], plan.links.ends.shape[0], plan.contacts.left.size, z0.shape[-1]
-    state = zero_state(counts, ledger, u0.shape[:-1])
-    begin_state(plan, u0, v0, z0, start, state)
-    return state
-
-
 def zero_state(
-    counts: tuple[int, int, int, int], ledger: int, runs: tuple[int, ...] = ()
+    counts: tuple[int, int, int, int], ledger: int = WORK_OF_SUPPORTS, runs: tuple[int, ...] = ()
 ) -> FastState:
     """A state of zeros; `counts`: N, L, K and H, `runs`: the leading axes."""
     bodies, links, contacts, hysteretic = ((*runs, count) for count in counts)
@@ -242,7 +218,11 @@ def zero_state(
 def begin_state(
     plan: FastPlan, u0: Floats, v0: Floats, z0: Floats, start: float, state: FastState
 ) -> None:
-    """Fill in what of a state is not zero; as `blank_state`."""
+    """Fill in what of a state of zeros is not zero before a run starts at a time (s).
+
+    u0, v0 (..., N), z0 (..., H): displacements (m), velocities (m/s) and hysteretic variables.
+    The run itself opens the gaps.
+    """
     clock, time = state.clock, plan.limits.time
     state.u[:], state.v[:], state.xi_r[:] = u0, v0, z0 / plan.hysteresis.bound
     clock[..., T] = start

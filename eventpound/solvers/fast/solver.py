@@ -37,9 +37,10 @@ from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.numerics.latest import Latest
 from eventpound.numerics.lending import change_first, on_loan
+from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.parameters import Place
-from eventpound.scene.spring import Hysteretic, Linear
+from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Energy, History, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.recorder import (
     energy_ledger,
@@ -295,26 +296,9 @@ def put_start(
 class Left(NamedTuple):
     """What a run has left, from which a recording is made when it is asked for.
 
-    Parameters
-    ----------
-    contacts : tuple of Contact
-        Of the scene.
-    model : Model
-        Of which only the shape counts: its numbers may be those of a later run.
-    ended : int
-        How the run ended.
-    moving : Block
-        `moving_of`, as it was last.
-    hysteresis : Hysteresis
-        Of the plan.
-    events, rows : ndarray
-        Of `FastRecord`.
-    history : History, optional
-        Where forces were not, so that it takes the numbers of the model.
-    energy : Energy, optional
-        The ledger, where it was kept.
-    seconds, compilation : float
-        Of `Work`.
+    Of `model` only the shape counts: its numbers may be those of a later run. So `history` is
+    made at once where forces were not unique. `moving`: `moving_of`, as it was last. `events`,
+    `rows`: of `FastRecord`. `seconds`, `compilation`: of `Work`.
     """
 
     contacts: tuple[Contact, ...]
@@ -426,30 +410,23 @@ def _longer(rows: Floats) -> Floats:
 def kernels_kept(task: Task) -> bool:
     """Whether a run of a task would compile none of the large kernels.
 
-    Nothing is compiled to tell: types do not depend on numbers, so the scene stands here with
-    linear springs in the place of hysteretic ones, for which no backbone is made, and a kernel
-    that has run in this process serves every scene. So do those that follow a z.
+    Nothing is compiled to tell. A kernel that has run in this process serves every scene, and so
+    do those that follow a z; types are those of a run of any scene.
     """
     if task.scene.branched_springs and not getattr(follow, "overloads", ()):
         return False
-    curved = [isinstance(spring.law, Hysteretic) for spring in task.scene.springs]
-    springs = tuple(
-        replace(spring, law=Linear(1.0)) if bends else spring
-        for spring, bends in zip(task.scene.springs, curved, strict=True)
-    )
-    scene = lowered(replace(task.scene, springs=springs), task.start)
-    task = replace(task, scene=scene, progress=None)
-    model = assemble(task.scene)
-    scales = scene_scales(task.scene, model, task.end - task.start)
-    one = oscillator_of(model, scales.length, links_of(model), energy=task.energy)
-    needed: Callable[..., Any] = advance
-    if one.alone and sum(curved) <= 1:
-        needed = oscillate_alone
+    scene = lowered(task.scene, task.start)
+    model = assemble(scene)
+    length, _, _ = scale_units(scene.motion, model, task.end - task.start)
+    one = oscillator_of(model, length, links_of(model), energy=task.energy)
+    needed: Callable[..., Any] = oscillate_alone if one.alone else advance
     if not isinstance(needed, Entry):
         return False
     if needed.overloads:
         return True
-    plan = plan_of(task, model, scales)
+    scene = Scene((Body("any", 1.0),))
+    model = assemble(scene)
+    plan = plan_of(replace(task, scene=scene), model, scene_scales(scene, model, 1.0))
     run = on_loan(run_of(plan, moving_of(model), model))
     types = tuple(needed.typeof_pyval(each) for each in (BUDGET, run))
     return needed._cache.has(types, needed.targetctx)
