@@ -68,8 +68,6 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
         The state as the scene gives it where an impact changes it at once; elsewhere the line
         of the settled state says the same.
     """
-    if not model.v0.any():
-        return np.empty((0, row_width(model)))
     gap, rate = initial_gaps(model, scales.length), model.rates(model.v0)
     if not ((model.elements.kind == NO_LAW) & (gap == 0.0) & (rate < 0.0)).any():
         return np.empty((0, row_width(model)))

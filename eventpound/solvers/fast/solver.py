@@ -250,6 +250,7 @@ class Arrays:
             terms = impact_terms(model, task.scene.motion, events_of(events))
             energy = energy_ledger(model, scales, state.u, state.v, state.ledger, *terms)
         rows = record.rows[: state.count[ROWS]].copy()
+        # Elsewhere no impact can come at once.
         if any(model.v0.tolist()):
             rows = np.vstack((lines_before(task, model, scales), rows))
         unique = record.unique
