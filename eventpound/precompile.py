@@ -39,6 +39,7 @@ from eventpound.scene import (
     Linear,
     Point,
     Scene,
+    Slider,
     Spring,
     Support,
 )
@@ -126,10 +127,11 @@ def _moved(motion: GroundMotion) -> Scene:
 
 
 def _remembering(scene: Scene) -> Scene:
-    """The scene with springs whose memory is more than Bouc-Wen's in the place of two."""
+    """The scene with springs whose memory is more than Bouc-Wen's in the place of three."""
     laws: dict[str, Law] = {
         "sa": Backfill(2.0, 0.3, 0.7, 0.01),
         "sb": DegradingBoucWen(1.0, 0.3, 0.05),
+        "ab": Slider(0.5, 0.2),
     }
     springs = (replace(s, law=laws.get(s.name, s.law)) for s in scene.springs)
     return replace(scene, springs=tuple(springs))

@@ -25,7 +25,7 @@ from eventpound.units import TOLD, USUAL, Dimension
 
 REFERENCE, FAST = "cvode", "fast"
 """The solver of one run, and that of many, where none is named."""
-FAST_KNOWS = frozenset((LawName.BACKFILL, LawName.DEGRADING_BOUC_WEN))
+FAST_KNOWS = frozenset((LawName.BACKFILL, LawName.DEGRADING_BOUC_WEN, LawName.SLIDER))
 """Laws of springs with a memory, beside Bouc-Wen's, that the second one knows."""
 LISTED = {"slip": LawName.SLIDER, "soil": LawName.BACKFILL}
 """Words of ``events``, each with the law of the springs whose events it lists."""

@@ -25,6 +25,7 @@ from eventpound.contact.event import Event, EventKind
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.contact import Contact
+from eventpound.scene.spring import Spring
 from eventpound.tolerances import CASCADE_OVER, FLEETING, LAST_SPEED, LISTED_SPEED, LOSSLESS
 
 CLOCK_PLACES = 9
@@ -111,7 +112,7 @@ def is_over(clock: Floats, count: Ints, time: float) -> bool:
     return bool(count[IN_A_ROW] > 0 and clock[SINCE_IMPACT] > CASCADE_OVER * time)
 
 
-def crowded_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:
+def crowded_message(events: Sequence[Event], contacts: Sequence[Contact | Spring]) -> str:
     """What to say of a run that gives up since it has too many events."""
     j, count = Counter(event.contact for event in events).most_common(1)[0]
     return (
@@ -121,7 +122,7 @@ def crowded_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str
     )
 
 
-def endless_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:
+def endless_message(events: Sequence[Event], contacts: Sequence[Contact | Spring]) -> str:
     """What to say of impacts in one instant that do not end, the last of `events` among them."""
     names, _ = _last_impacts(events, contacts)
     return (
@@ -130,7 +131,7 @@ def endless_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str
     )
 
 
-def long_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:
+def long_message(events: Sequence[Event], contacts: Sequence[Contact | Spring]) -> str:
     """What to say of a cascade that is followed no further, the last of `events` in it."""
     names, speed = _last_impacts(events, contacts)
     return (
@@ -140,7 +141,9 @@ def long_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:
     )
 
 
-def _last_impacts(events: Sequence[Event], contacts: Sequence[Contact]) -> tuple[str, float]:
+def _last_impacts(
+    events: Sequence[Event], contacts: Sequence[Contact | Spring]
+) -> tuple[str, float]:
     """Contacts of the last impacts listed, as words, and the fastest closing speed (m/s)."""
     last = [event for event in events if event.kind is EventKind.IMPACT][-WINDOW:]
     names = [contacts[j].name for j in sorted({event.contact for event in last})]

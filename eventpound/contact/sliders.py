@@ -29,7 +29,7 @@ from eventpound.contact.instant import any_may_rest, settle_impacts, take_rests,
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import ORDER, Touching, rest_contacts, take_noise
 from eventpound.contact.state import Instant
-from eventpound.mechanics.clusters import form_clusters, form_clusters_of_few
+from eventpound.mechanics.clusters import Clusters, form_clusters, form_clusters_of_few
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
@@ -88,12 +88,24 @@ def decide_sticks(z: Floats, forcing: Forcing, noise: float, at: Instant, model:
     if force is None:
         return int(in_python(take_rests)(touching.undecided, at.pressed, False, at))
     pressed = _take_sides(members, force, noise, at, model)
-    touching = in_python(touching_of)(z, forcing, at)
-    touching = touching._replace(undecided=touching.undecided & ~pressed, pressed=pressed)
-    found = in_python(rest_contacts)(_on_sides(touching, at.branch, model))
+    found = _decide_others(pressed, z, forcing, at, model)
+    if not found[2]:
+        # What of the motion of supports is rounding beside forces is more than that here.
+        slips = model.sliders[(touching.undecided & ~pressed)[own:]]
+        at.branch[slips] *= -1
+        found = _decide_others(pressed, z, forcing, at, model)
     ended = in_python(take_rests)(*found, at)
     at.gap[own:][~at.resting[own:]] = np.inf
     return int(ended)
+
+
+def _decide_others(
+    pressed: Bools, z: Floats, forcing: Forcing, at: Instant, model: Model
+) -> tuple[Bools, Bools, bool]:
+    """Who rests beside contacts (K,) that are known to be pressed; returns as `rest_contacts`."""
+    touching = in_python(touching_of)(z, forcing, at)
+    touching = touching._replace(undecided=touching.undecided & ~pressed, pressed=pressed)
+    return in_python(rest_contacts)(_on_sides(touching, at.branch, model))
 
 
 def _end_sticks_and_slips(force: Floats, kinked: Bools, at: Instant, model: Model) -> None:
@@ -206,3 +218,13 @@ def _on_sides(touching: Touching, branch: Ints, model: Model) -> Touching:
     back = model.own_contacts + np.flatnonzero(branch[model.sliders] < 0)
     left[back], right[back], gap[back] = right[back], left[back], -gap[back]
     return touching._replace(left=left, right=right, gap=gap)
+
+
+def locked_beside_sliders(model: Model, resting: Bools, clusters: Clusters) -> Bools:
+    """Resting contacts (R,) that cannot open: a slider gives way in either direction."""
+    own = resting.copy()
+    own[model.own_contacts :] = False
+    alone = form_clusters_of_few(model.left, model.right, model.gap, own, own, model.mass)
+    locked = np.zeros(model.contacts, np.bool_)
+    locked[alone.resting] = alone.locked
+    return locked[clusters.resting]

@@ -218,12 +218,18 @@ def has_branches(a: int, memory: Floats) -> bool:
     return bool(memory[a, KIND] == BACKFILL or memory[a, KIND] == SLIDER)
 
 
+@_part
+def slides(a: int, memory: Floats) -> bool:
+    """Whether link a is a slider, whose branches end where its slip does."""
+    return bool(memory[a, KIND] == SLIDER)
+
+
 @kernel
 def memory_on_branches(memory: Floats, branch: Ints) -> Floats:
     """Constants of links (L, ·) on their present branches (L,); the same array where none has."""
     found, any_changed = memory, False
     for a in range(branch.size):
-        if memory[a, KIND] == SLIDER and branch[a] < 0:
+        if slides(a, memory) and branch[a] < 0:
             found, any_changed = found if any_changed else memory.copy(), True
             found[a, STRENGTH] = -memory[a, STRENGTH]
         elif memory[a, KIND] == BACKFILL and branch[a] != CLOSED:
@@ -256,7 +262,7 @@ def branch_ends(
 
     That of YIELDING ends where x' rises above zero: then they are of x'. So are those of a slip.
     """
-    if memory[a, KIND] == SLIDER:
+    if slides(a, memory):
         return (0.0, np.inf) if branch > 0 else (-np.inf, 0.0)
     apart = x - memory[a, YIELD] * z
     if branch == YIELDING:
@@ -271,7 +277,7 @@ def next_branch(
     a: int, memory: Floats, branch: int, offset: float, x: float, z: float, noise: float
 ) -> int:
     """The branch of link a where one has ended, at x (m) and z; lengths below `noise` are none."""
-    if memory[a, KIND] == SLIDER:
+    if slides(a, memory):
         # What follows a slip the accelerations decide.
         return branch
     if not has_branches(a, memory):
@@ -285,11 +291,15 @@ def next_branch(
 
 
 @scalar_kernel
-def branch_within(a: int, memory: Floats, offset: float, x: float, z: float, noise: float) -> int:
+def branch_within(
+    a: int, memory: Floats, offset: float, x: float, x_rate: float, z: float, noise: float
+) -> int:
     """The branch of link a inside the backbone that it left, at x (m) and z; 0 where it is on it.
 
-    On it, or where it was never pushed in, the motion decides.
+    On it, or where it was never pushed in, the motion decides. That of a slider is the sign of x'.
     """
+    if slides(a, memory):
+        return -1 if x_rate < 0.0 else 1
     knee = 0.0
     if memory[a, KIND] == BACKFILL:
         knee = _knee(a, memory, offset, x, z)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.mechanics.link_law import CONSTANTS, LinkLaw
-from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.model import Model, assemble, with_sliders
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.elastic_laws import ElasticLaws, reduced
 from eventpound.scene.parameters import Place, with_values
@@ -92,7 +92,7 @@ def _put_all(scene: Scene, values: Mapping[Place, Floats], rows: Mapping[str, Fl
     own = {place: column for place, column in values.items() if place.kind != "excitation"}
     for i in range(rows["mass"].shape[0] if own else 0):
         variant = with_values(scene, {place: float(column[i]) for place, column in own.items()})
-        for key, array in numbers_of(assemble(variant)).items():
+        for key, array in numbers_of(with_sliders(assemble(variant))).items():
             rows[key][i] = array
 
 

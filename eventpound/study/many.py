@@ -42,7 +42,8 @@ def simulate_many(
 
     Every variant is computed exactly as ``simulate(variant, solver="fast")``
     would, to the last bit, whatever the number of workers. Contacts with laws of their own or at
-    points between bodies are not for that: ``"cvode"`` then, one by one.
+    points between bodies are not for that: ``"cvode"`` then, one by one. So are scenes with
+    sliders, by ``"fast"``.
 
     Parameters
     ----------

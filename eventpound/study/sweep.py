@@ -36,6 +36,7 @@ from eventpound.quantities.lookup import needs_energy, needs_one
 from eventpound.response import Response
 from eventpound.scene.check import check_scene, motion_problems
 from eventpound.scene.parameters import Place, motion_with, places_of, with_values
+from eventpound.scene.spring import LawName
 from eventpound.scene.worst_variants import worst_variants
 from eventpound.simulation import ReadyScene, options_of, output_times, task_with
 from eventpound.solvers import solver_named
@@ -114,7 +115,9 @@ class Sweep:
         )
         self.seconds = np.full(rows.count, np.nan)
         driven = scene.supports or scene.forces
-        several = wanted.keep is None and not driven and not one_by_one
+        # What is settled by Python is no part of one compiled call.
+        slides = LawName.SLIDER in scene.branched_springs.values()
+        several = wanted.keep is None and not (driven or slides or one_by_one)
         self._in_one_call = wanted.solver == FAST and several
 
     def run(self, workers: int = 1, progress: Callable[[int], None] | None = None) -> BatchResponse:

@@ -69,7 +69,7 @@ def test_block_on_a_shaken_plane_sticks_and_slips_when_the_closed_form_says(
     assert set(found["spring"]) == {"bearing"}
 
 
-@pytest.mark.parametrize("solver", ["cvode", "ida"])
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 def test_swing_slips_back_each_half_period_until_it_sticks(solver: str) -> None:
     found = run(swing(), 3.0, solver).spring_events
     half, dead = math.pi * math.sqrt(1000.0 / 4.0e5), 0.1 * g / 400.0
@@ -80,7 +80,7 @@ def test_swing_slips_back_each_half_period_until_it_sticks(solver: str) -> None:
     np.testing.assert_allclose(found["elongation_m"], ends, rtol=0.0, atol=CLOSE * 0.05)
 
 
-@pytest.mark.parametrize("solver", ["cvode", "ida"])
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 def test_an_impact_that_breaks_a_stick_is_an_impact_and_a_slip(solver: str) -> None:
     response = run(broken_stick(), 6.0, solver)
     found = response.spring_events

@@ -14,7 +14,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene import GROUND, Body, Dashpot, Scene, Slider, Spring
 from eventpound.solvers.base import Recording
 
-SOLVERS = ["cvode", "ida"]
+SOLVERS = ["cvode", "ida", "fast"]
 RTOL = 1e-10
 # siconos-tutorials (2024), mechanics/FrictionOscillator: time, place and speed from its .ref file.
 SICONOS = (

@@ -61,7 +61,7 @@ def written(folder: Path, text: str) -> Path:
 
 @pytest.mark.parametrize(
     ("text", "many"),
-    [(CASE, "fast"), (SOIL, "fast"), (AT_POINT, "cvode"), (WITH_LAW, "cvode"), (SLIDER, "cvode")],
+    [(CASE, "fast"), (SOIL, "fast"), (AT_POINT, "cvode"), (WITH_LAW, "cvode"), (SLIDER, "fast")],
 )
 def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
     tmp_path: Path, text: str, many: str
@@ -77,15 +77,21 @@ def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
     )
 
 
-@pytest.mark.parametrize("text", [AT_POINT, WITH_LAW], ids=["at a point", "with a law"])
-def test_what_the_fast_solver_does_not_take_runs_where_no_solver_is_named(
-    tmp_path: Path, text: str
+@pytest.mark.parametrize(
+    ("text", "solver"),
+    [(AT_POINT, "cvode"), (WITH_LAW, "cvode"), (SLIDER, "fast")],
+    ids=["at a point", "with a law", "with a slider"],
+)
+def test_what_no_compiled_call_takes_at_once_runs_where_no_solver_is_named(
+    tmp_path: Path, text: str, solver: str
 ) -> None:
     """Rows of a suite, of a study and of `simulate_many` are those of single runs."""
     case = load_case(written(tmp_path, text))
     names = ["impacts", "peaks.floor.abs_max"]
     one = [
-        simulate(with_gap(case, gap), rtol=1e-6, error_estimate=False).summary[names].tolist()
+        simulate(with_gap(case, gap), solver, rtol=1e-6, error_estimate=False)
+        .summary[names]
+        .tolist()
         for gap in GAPS["contact.joint.gap"]
     ]
     assert one[0][0] > 0

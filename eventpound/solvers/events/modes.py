@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from eventpound.contact.sliders import locked_beside_sliders
 from eventpound.mechanics.clusters import Clusters, form_clusters_of_few
 from eventpound.mechanics.elements import branch_ends, has_branches, memory_on_branches
 from eventpound.mechanics.link_law import STRENGTH, YIELDING
@@ -152,7 +153,7 @@ class ModeTable:
         bodies = on_loan(view(model, clusters, system, *branches, frozen))
         system = on_loan(system)
         if model.sliders.size > 0 and not clusters.tree:
-            clusters = clusters._replace(locked=_locked_beside_sliders(model, ordinary, clusters))
+            clusters = clusters._replace(locked=locked_beside_sliders(model, ordinary, clusters))
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
         opened = ~resting
@@ -188,13 +189,3 @@ def _force_limits(model: Model) -> tuple[Floats, Floats]:
     own = model.own_contacts
     low[own:], high[own:] = np.minimum(twice, 0.0), np.maximum(twice, 0.0)
     return low, high
-
-
-def _locked_beside_sliders(model: Model, resting: Bools, clusters: Clusters) -> Bools:
-    """Resting contacts (R,) that cannot open: a slider gives way in either direction."""
-    own = resting.copy()
-    own[model.own_contacts :] = False
-    alone = form_clusters_of_few(model.left, model.right, model.gap, own, own, model.mass)
-    locked = np.zeros(model.contacts, np.bool_)
-    locked[alone.resting] = alone.locked
-    return locked[clusters.resting]

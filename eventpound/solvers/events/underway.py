@@ -298,8 +298,7 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
     gap = initial_gaps(model, scales.length)
     # These take no part in impacts and rests.
     gap[model.laws] = gap[model.own_contacts :] = np.inf
-    branch, rates = _first_branches(model, LENGTH * scales.length), model.elongations(model.v0)
-    branch[model.sliders] = np.where(rates[model.sliders] < 0.0, -1, 1)
+    branch = _first_branches(model, LENGTH * scales.length)
     clock, count = np.zeros(CLOCK_PLACES), np.zeros(COUNT_SIZE, np.int64)
     clock[T], clock[INTERVAL], clock[SINCE_IMPACT] = task.start, scales.time, scales.time
     clock[RESTED_AT] = clock[SETTLED_AT] = -np.inf
@@ -319,11 +318,12 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
 
 
 def _first_branches(model: Model, noise: float) -> Ints:
-    """Branches that z alone decides (L,), else 0; lengths (m) below `noise` are none."""
-    branch, x = np.zeros(model.links, np.int64), model.elongations(model.u0)
+    """Branches that z or x' alone decides (L,), else 0; lengths (m) below `noise` are none."""
+    branch, within = np.zeros(model.links, np.int64), in_python(branch_within)
+    x, rate = model.elongations(model.u0), model.elongations(model.v0)
+    memory, offset = model.law.memory, model.elastic.offset
     for a, z in zip(model.hysteretic.tolist(), model.z0.tolist(), strict=True):
-        within = in_python(branch_within)
-        branch[a] = within(a, model.law.memory, model.elastic.offset[a], x[a], z, noise)
+        branch[a] = within(a, memory, offset[a], x[a], rate[a], z, noise)
     return branch
 
 

@@ -28,13 +28,16 @@ from eventpound.solvers.fast.record import has_room, hold, write_row
 from eventpound.solvers.fast.run import (
     DUE,
     GOING_ON,
+    IN_PYTHON,
     PIECE,
+    SETTLED,
     STARTED,
     STEPS,
     FastRun,
     piece_of,
 )
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
+from eventpound.solvers.fast.sliding import any_slider
 from eventpound.solvers.fast.step import take_step
 from eventpound.tolerances import LENGTH
 
@@ -55,8 +58,8 @@ def advance(budget: int, run: FastRun) -> int:
     Returns
     -------
     int
-        How it ended: FINISHED, GOING_ON, FULL (the record needs more room), or
-        an error; the state says when and where.
+        How it ended: FINISHED, GOING_ON, FULL (the record needs more room), IN_PYTHON (an instant
+        is to be settled by `settle_sliders`), or an error; the state says when and where.
     """
     return carry_on(budget, lend(run))
 
@@ -80,7 +83,7 @@ def carry_on(budget: int, run: FastRun) -> int:
             return FULL
         if ground.family[count[PIECE]] == LOADED and count[STEPS] > 0:
             _put_supports(lend(piece_of(count[PIECE], ground)), run)
-        if clock[T] >= end or count[DUE] == 1:
+        if clock[T] >= end or count[DUE] != 0:
             ended = _settle_instant(run)
             if ended != DONE or clock[T] >= end:
                 return ended
@@ -157,7 +160,6 @@ def _settle_instant(run: FastRun) -> int:
         forcing = lend(Forcing(piece.family, piece.coefficients, piece.samples, t))
         at = lend(instant_of(run))
         pass_kinks(run.happened.kinked, seen.z, at)
-        run.happened.kinked[:] = False
         if lacks_branch(at):
             choose_clear_branches(at)
             if follows(run):
@@ -165,9 +167,14 @@ def _settle_instant(run: FastRun) -> int:
             look_apart(0.0, order, g, run)
             onset = ground_onset(piece, t, order, series.ground)
             choose_branches(seen.a, g, onset, at)
+        if any_slider(run):
+            return IN_PYTHON
+        run.happened.kinked[:] = False
         ended = settle(forcing, seen.z, at, run)
         if ended != DONE:
             return ended
+        count[DUE] = SETTLED
+    if count[DUE] == SETTLED:
         count[DUE] = 0
         hold(run)
         run.happened.released[:] = False

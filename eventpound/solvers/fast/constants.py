@@ -69,6 +69,7 @@ def links_of(model: Model) -> Links:
         springs=model.springs,
         kinked=bool((model.elastic.compression != model.elastic.extension).any()),
         grounded=grounded,
+        sliders=model.sliders,
     )
 
 

@@ -30,6 +30,7 @@ from eventpound.solvers.fast.run import (
     piece_of,
 )
 from eventpound.solvers.fast.search import gap_polynomial
+from eventpound.solvers.fast.sliding import any_slider, see_friction
 from eventpound.tolerances import OWN_GAP
 
 
@@ -70,6 +71,8 @@ def look(tau: float, order: int, ground: float, run: FastRun) -> None:
     _gaps(tau, order, run)
     if state.count[RESTING] > 0:
         _contact_forces(run)
+        if any_slider(run):
+            see_friction(run)
     else:
         seen.contact_force[:] = 0.0
 
@@ -146,7 +149,7 @@ def _gaps(tau: float, order: int, run: FastRun) -> None:
         if state.resting[j]:
             seen.gap[j] = seen.gap_rate[j] = 0.0
             continue
-        if tau == 0.0:
+        if tau == 0.0 or state.gap[j] == np.inf:
             seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]
             continue
         gap, rate = gap_of(j, contacts, seen.u, seen.v)

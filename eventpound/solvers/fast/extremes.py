@@ -21,6 +21,7 @@ from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.run import RESTING, FastPlan, FastRun, FastSeries
 from eventpound.solvers.fast.search import relative, stays_above
+from eventpound.solvers.fast.sliding import add_held_shear, any_slider
 from eventpound.tolerances import FLAT_WITHIN
 
 
@@ -234,6 +235,8 @@ def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bo
             looked = _turns(c, tau, order, run) or looked
     if held:
         value = _base_shear(order, plan, series)
+        if any_slider(run):
+            value += add_held_shear(order, run)
         if not _settled(at.base_shear, value, tau, order, series, running):
             looked = _turns(-1, tau, order, run) or looked
     elif _may_turn(at.base_shear, shear, end, rate, bend, tau, running):
@@ -276,8 +279,11 @@ def _turns(c: int, tau: float, order: int, run: FastRun) -> bool:
     plan, state, series, seen, running = run.plan, run.state, run.series, run.seen, run.running
     turns = turning_times(series.d, order - 2, tau, series.turns, series.work)
     for m in range(turns):
-        # No acceleration of the ground is needed there.
-        look_apart(series.turns[m], order, 0.0, run)
+        # No acceleration of the ground is needed there, but by what sticks to it.
+        ground = 0.0
+        if any_slider(run):
+            ground, _ = value_and_slope(series.ground[: order + 1], series.turns[m])
+        look_apart(series.turns[m], order, ground, run)
         t, near = state.clock[T] + series.turns[m], flat_time(plan)
         if c < 0:
             update_turning_point(running.at.base_shear, seen.base[1], t, near, running)

@@ -12,6 +12,8 @@ of z', which leaves h/p of itself in z.
 
 from __future__ import annotations
 
+import numpy as np
+
 from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.elements import (
     branch_within,
@@ -42,13 +44,16 @@ def follows(run: FastRun) -> bool:
 
 @compiled_deferred
 def find_branches(run: FastRun) -> None:
-    """Branches that z alone decides, as a run begins."""
+    """Branches that z or x' alone decides, as a run begins, and the gaps of sliders."""
     plan, state, series = run.plan, run.state, run.series
-    links, noise = plan.links, LENGTH * plan.limits.length
+    links, memory, noise = plan.links, plan.links.law.memory, LENGTH * plan.limits.length
     for h in plan.hysteresis.followed:
         a, z = plan.hysteresis.link[h], state.xi_r[h]
         state.sigma[h] = 1.0
-        state.branch[a] = branch_within(a, links.law.memory, links.offset[a], series.x[a], z, noise)
+        x, x_rate = series.x[a], series.x_rate[a]
+        state.branch[a] = branch_within(a, memory, links.offset[a], x, x_rate, z, noise)
+    # The contacts of sliders take no part in impacts.
+    state.gap[state.gap.size - links.sliders.size :] = np.inf
 
 
 @compiled_deferred

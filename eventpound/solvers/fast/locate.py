@@ -16,8 +16,10 @@ from eventpound.mechanics.elements import (
     has_branches,
     number_beside,
     reversal_jump,
+    slides,
 )
 from eventpound.mechanics.link_law import YIELDING
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.numerics.power_series import sign_after
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
@@ -46,6 +48,7 @@ from eventpound.solvers.fast.search import (
     release_time,
     stays_above,
 )
+from eventpound.solvers.fast.sliding import end_of_slip, of_slider, set_room
 from eventpound.tolerances import (
     GAP_COEFFICIENT,
     LENGTH,
@@ -284,9 +287,11 @@ def _of_followed(order: int, h: float, first: float, run: FastRun) -> float:
 def _end_of_branch(order: int, h: float, limit: float, a: int, z: int, run: FastRun) -> float:
     """When a link comes to an end of its branch within h, up to `limit` (s), or inf."""
     links, series, branch = run.plan.links, run.series, run.state.branch[a]
+    x, memory = series.x[a], links.law.memory
+    if slides(a, memory):
+        return end_of_slip(order, h, limit, a, float(branch), run)
     if branch == YIELDING:
         return _reversal(order, limit, a, -1.0, run)
-    x, memory = series.x[a], links.law.memory
     low, high = branch_ends(a, memory, branch, links.offset[a], x, series.z[z, 0])
     first = np.inf
     if low > -np.inf:
@@ -327,41 +332,55 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
     limits, forces = plan.limits, series.contact_force
     any_released = False
     level = force_level(state.count[CLUSTERS], limits, series)
-    for j in range(state.resting.size):
-        if not state.unlocked[j]:
+    for end in range(2 * state.resting.size):
+        j = end // 2
+        if not state.unlocked[j] or not _has_end(end, order, run):
             continue
+        force = series.d if of_slider(j, run) else forces[j]
         spread = 0.0
         for k in range(order - 2, 0, -1):
-            spread = (spread + abs(forces[j, k])) * h
-        if forces[j, 0] > spread:
+            spread = (spread + abs(force[k])) * h
+        if force[0] > spread:
             continue
         # Where the acceleration problem has just kept it, only rounding can let it fall at once.
-        kept = abs(forces[j, 0]) <= level and state.count[STALLED] > 0
+        kept = abs(force[0]) <= level and state.count[STALLED] > 0
         if kept:
-            _drop_rounding(j, order, level, plan, series)
-        tau = release_time(forces[j], order - 1, h, min(h, first), level, kept, series.work)
+            _drop_rounding(force, order, level, plan, series)
+        tau = release_time(force, order - 1, h, min(h, first), level, kept, series.work)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.released[j] = True
             any_released = True
     if any_released:
-        for j in range(state.resting.size):
-            if state.unlocked[j]:
-                value, slope = value_and_slope(forces[j, : order - 1], first)
+        for end in range(2 * state.resting.size):
+            j = end // 2
+            if state.unlocked[j] and _has_end(end, order, run):
+                force = series.d if of_slider(j, run) else forces[j]
+                value, slope = value_and_slope(force[: order - 1], first)
                 vanishes = force_vanishes(value, slope, level, limits.time)
                 happened.released[j] = happened.released[j] or vanishes
     return first
 
 
+@compiled
+def _has_end(end: int, order: int, run: FastRun) -> bool:
+    """Whether the rest of contact end // 2 can end there: at a second one a slider's alone."""
+    slides = of_slider(end // 2, run)
+    if slides:
+        set_room(end // 2, end % 2, order, run)
+    return slides or end % 2 == 0
+
+
 @compiled_apart
-def _drop_rounding(j: int, order: int, level: float, plan: FastPlan, series: FastSeries) -> None:
+def _drop_rounding(
+    force: Floats, order: int, level: float, plan: FastPlan, series: FastSeries
+) -> None:
     """Clear the first coefficients of a contact force that are no more than rounding.
 
     `level` (N) is that of the force itself; those of higher order err like the
     accelerations they are differences of.
     """
-    force, scale = series.contact_force[j], level
-    mass = plan.limits.mass
+    scale, mass = level, plan.limits.mass
     for k in range(order - 1):
         largest = 0.0
         for c in range(plan.mass.size):

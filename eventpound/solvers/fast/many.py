@@ -69,6 +69,7 @@ def _ground_of(i: int, motions: Motions) -> Ground:
 _SHARED = frozenset(
     (
         *("links.ends", "links.z_of_link", "links.springs", "links.grounded"),
+        "links.sliders",
         *("hysteresis.link", "hysteresis.tables", "hysteresis.followed"),
         *("contacts.left", "contacts.right"),
         *("limits.rtol", "limits.order", "limits.ledger", "output_times"),

@@ -29,6 +29,7 @@ from eventpound.solvers.events.recorder import put_line
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, FastRun
+from eventpound.solvers.fast.sliding import any_slider, see_z_of_sliders
 
 
 @compiled
@@ -72,6 +73,8 @@ def put_row(t: float, run: FastRun) -> None:
     plan, state, record, seen = run.plan, run.state, run.record, run.seen
     if not takes_rows(record.rows):
         return
+    if any_slider(run):
+        see_z_of_sliders(run)
     row = record.rows[state.count[ROWS]]
     state.count[ROWS] += 1
     force = seen.force[: plan.links.springs]

@@ -24,6 +24,10 @@ PULL = 17
 """How a call of `advance` ends, beside the ends of settling."""
 CROWDED = 18
 """How a run ends, though no call of `advance`, that has too many events."""
+IN_PYTHON = 19
+"""How a call of `advance` ends at an instant of a scene with sliders."""
+SETTLED = 2
+"""In `count[DUE]`: the duties of an instant are done, and it is to be written down."""
 MESSAGES = {
     FINISHED: "reached the end of the run",
     NO_IMPACT: "an impact problem has no solution",
@@ -31,7 +35,8 @@ MESSAGES = {
     ENDLESS: "impacts in one instant do not end",
     NOT_FINITE: "the motion is no longer finite",
     PENETRATION: "a contact penetrates and no impact was found; try a smaller rtol",
-    PULL: "a resting contact pulls and no detachment was found; try a smaller rtol",
+    PULL: "a resting contact pulls and no detachment was found, or a slider sticks with more than "
+    "it can; try a smaller rtol",
     DRIFT: "a gap no longer agrees with the displacements of its bodies; try another rtol",
     STUCK: "events follow each other without an end",
     NO_STEP: "no step is short enough for the equations of motion; try a larger rtol",
@@ -49,7 +54,8 @@ class Links(NamedTuple):
     """Links: ends (L, 2), laws, elastic branches (L,), and which z (L,), -1 for none.
 
     `springs`: the first of them; `kinked`: whether one has a kink. `grounded` (N,): the z of a
-    link from the ground to the body, -1 for none.
+    link from the ground to the body, -1 for none. `sliders` (J,): those that slide, whose contacts
+    are the last J.
     """
 
     ends: Ints
@@ -61,6 +67,7 @@ class Links(NamedTuple):
     springs: int
     kinked: bool
     grounded: Ints
+    sliders: Ints
 
 
 class Contacts(NamedTuple):

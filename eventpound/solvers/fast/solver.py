@@ -24,7 +24,7 @@ from eventpound.contact.event_rows import EVENT_WIDTH, events_of, events_wanted
 from eventpound.contact.impacts import ENDLESS, FULL
 from eventpound.errors import ComputationError
 from eventpound.mechanics.backbone import Hysteresis
-from eventpound.mechanics.model import Model, assemble, shape_of
+from eventpound.mechanics.model import Model, assemble, shape_of, with_sliders
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.numbers import OF_CONTACTS, numbers_of, put_numbers, with_numbers
 from eventpound.mechanics.supported import lowered
@@ -41,12 +41,14 @@ from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
+from eventpound.scene.spring import Spring
 from eventpound.solvers.base import Energy, History, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.recorder import (
     energy_ledger,
     history_of,
     impact_terms,
     kept,
+    own_recording,
     row_width,
 )
 from eventpound.solvers.events.scales import SceneScales, scale_units, scales_by, scene_scales
@@ -71,6 +73,7 @@ from eventpound.solvers.fast.run import (
     EXPANSIONS,
     FINISHED,
     GOING_ON,
+    IN_PYTHON,
     MESSAGES,
     ROWS,
     STEPS,
@@ -82,7 +85,9 @@ from eventpound.solvers.fast.run import (
 )
 from eventpound.solvers.fast.single.body import has_play, oscillator_of
 from eventpound.solvers.fast.single.oscillator import oscillate_alone
+from eventpound.solvers.fast.sliding import settle_sliders
 from eventpound.solvers.supported import with_supports
+from eventpound.tolerances import FORCE
 
 BUDGET = 20_000
 """Steps between two reports of progress."""
@@ -128,7 +133,7 @@ class Ready:
     """
 
     def __init__(self, task: Task) -> None:
-        self._scene, self._model = task.scene, assemble(task.scene)
+        self._scene, self._model = task.scene, with_sliders(assemble(task.scene))
         self._own = b"".join(numbers.tobytes() for numbers in numbers_of(self._model).values())
         self._shape = task.rtol, task.energy, *shape_of(self._model)
 
@@ -192,7 +197,8 @@ class Arrays:
     def run(self, task: Task) -> Left:
         """Run a task of the present numbers, but for the motion, which is that of its scene."""
         clock, begun = Stopwatch(), self._begun(task)
-        run, ended, stopped = _run(task, self._blank_run(begun))
+        noise = FORCE * begun.scales.force
+        run, ended, stopped = _run(task, self._blank_run(begun), self._model, noise)
         left = self._left(task, begun.scales, run, ended, clock)
         self._run = run if run.record.rows.nbytes <= MOST_KEPT else None
         if stopped is not None:
@@ -255,7 +261,7 @@ class Arrays:
             rows = np.vstack((lines_before(task, model, scales), rows))
         unique = record.unique
         return Left(
-            task.scene.contacts,
+            (*task.scene.contacts, *(task.scene.springs[a] for a in model.sliders)),
             model,
             ended,
             self._moving.copy(),
@@ -297,12 +303,13 @@ def put_start(
 class Left(NamedTuple):
     """What a run has left, from which a recording is made when it is asked for.
 
-    Of `model` only the shape counts: its numbers may be those of a later run. So `history` is
-    made at once where forces were not unique. `moving`: `moving_of`, as it was last. `events`,
-    `rows`: of `FastRecord`. `seconds`, `compilation`: of `Work`.
+    Behind the `contacts` of the scene are its sliders. Of `model` only the shape counts: its
+    numbers may be those of a later run. So `history` is made at once where forces were not unique.
+    `moving`: `moving_of`, as it was last. `events`, `rows`: of `FastRecord`. `seconds`,
+    `compilation`: of `Work`.
     """
 
-    contacts: tuple[Contact, ...]
+    contacts: tuple[Contact | Spring, ...]
     model: Model
     ended: int
     moving: Block
@@ -332,7 +339,7 @@ class Left(NamedTuple):
         elif self.ended == CROWDED:
             message = crowded_message(events, self.contacts)
         work = int(count[EXPANSIONS]), 0, int(count[STEPS]), int(count[GROUPS])
-        return Recording(
+        recording = Recording(
             self.ended == FINISHED,
             message,
             t,
@@ -346,6 +353,7 @@ class Left(NamedTuple):
             energy=self.energy,
             **kept(extremes, events, t, self.model),
         )
+        return own_recording(recording, self.model)
 
 
 def run_of(plan: FastPlan, moving: Block, model: Model) -> FastRun:
@@ -368,13 +376,17 @@ def run_of(plan: FastPlan, moving: Block, model: Model) -> FastRun:
     )
 
 
-def _run(task: Task, run: FastRun) -> tuple[FastRun, int, ComputationError | None]:
+def _run(
+    task: Task, run: FastRun, model: Model, noise: float
+) -> tuple[FastRun, int, ComputationError | None]:
     """Advance to the end, with progress and room for the record; how it ended, who stopped it."""
     plan, state, most = run.plan, run.state, task.max_steps
     carry = oscillate_alone if plan.oscillator.alone else advance
     while True:
         budget = BUDGET if most is None else min(BUDGET, most - int(state.count[STEPS]))
         ended = carry(budget, run)
+        if ended == IN_PYTHON:
+            ended = settle_sliders(noise, run, model) or GOING_ON
         if ended == FULL:
             if state.count[EVENTS] > MOST_EVENTS:
                 return run, CROWDED, None

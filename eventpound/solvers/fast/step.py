@@ -65,6 +65,7 @@ from eventpound.solvers.fast.run import (
     Seen,
 )
 from eventpound.solvers.fast.search import force_level, set_travel
+from eventpound.solvers.fast.sliding import room_at_rest
 from eventpound.tolerances import DRIFTED, FORCE, PENETRATED, PULLED, RELEASED_AT
 
 _SAMPLES = int(Family.SAMPLES)
@@ -168,7 +169,7 @@ def _still_pressed(tau: float, run: FastRun) -> bool:
         return False
     weak = force_level(state.count[CLUSTERS], plan.limits, series)
     for j in range(seen.gap.size):
-        if happened.released[j] and seen.contact_force[j] > weak:
+        if happened.released[j] and room_at_rest(j, seen.contact_force[j], run) > weak:
             return True
     return False
 
@@ -197,7 +198,8 @@ def audit(error: float, run: FastRun) -> int:
             gap -= seen.u[left]
         if not seen.gap[j] >= -PENETRATED * length:
             return PENETRATION
-        if not abs(gap - seen.gap[j]) <= DRIFTED * largest:
+        # One of a slider that slips is inf.
+        if not (abs(gap - seen.gap[j]) <= DRIFTED * largest or seen.gap[j] == np.inf):
             return DRIFT
     return DONE
 
@@ -240,7 +242,7 @@ def _pulls(ends: bool, run: FastRun) -> bool:
     level = PULLED * force_level(state.count[CLUSTERS], run.plan.limits, run.series)
     for j in range(seen.gap.size):
         held = state.unlocked[j] and not (ends and happened.released[j])
-        if held and not seen.contact_force[j] >= -level:
+        if held and not room_at_rest(j, seen.contact_force[j], run) >= -level:
             return True
     return False
 

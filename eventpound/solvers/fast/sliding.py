@@ -1,0 +1,203 @@
+"""Sliders: what fast's series tell of slips and sticks, and instants that Python settles.
+
+A slider that slips is a link with the constant force of its branch, until x' vanishes; one that
+sticks rests as a contact does, whose force λ is what friction lacks of that of a slip, ``Q - λ``.
+With Q = σ F, it holds while ``σ λ > 0`` and ``2 F - σ λ > 0``.
+
+What an instant demands `eventpound.contact.sliders` tells, in Python: some milliseconds.
+"""
+
+from __future__ import annotations
+
+from eventpound.contact.cascade import T
+from eventpound.contact.impacts import DONE
+from eventpound.contact.kinks import still_rate
+from eventpound.contact.sliders import (
+    decide_sticks,
+    locked_beside_sliders,
+    settle_beside_sliders,
+)
+from eventpound.mechanics.clusters import form_clusters_of_few
+from eventpound.mechanics.elements import pull_per_z
+from eventpound.mechanics.model import Model
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import CurrentPiece
+from eventpound.motion.loads import support_motion
+from eventpound.numerics.compiled import by_python
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.followed import put_on_branches
+from eventpound.solvers.fast.instant import choose_directions, enter_mode, instant_of
+from eventpound.solvers.fast.links import all_variables
+from eventpound.solvers.fast.run import CLUSTERS, DUE, PIECE, SETTLED, FastRun, piece_of
+from eventpound.solvers.fast.search import (
+    acceleration_level,
+    distance_coefficient,
+    force_level,
+    release_time,
+)
+from eventpound.tolerances import GAP_COEFFICIENT
+
+
+@compiled
+def any_slider(run: FastRun) -> bool:
+    """Whether the scene has a slider."""
+    return bool(run.plan.links.sliders.size > 0)
+
+
+@compiled
+def of_slider(j: int, run: FastRun) -> bool:
+    """Whether contact j is that of a slider."""
+    return bool(j >= run.state.gap.size - run.plan.links.sliders.size)
+
+
+@compiled
+def _slip_force(j: int, run: FastRun) -> float:
+    """Force of the slip, on its branch, of the slider of contact j (N)."""
+    sliders = run.plan.links.sliders
+    return pull_per_z(sliders[j - run.state.gap.size + sliders.size], run.series.memory)
+
+
+@compiled
+def room_at_rest(j: int, force: float, run: FastRun) -> float:
+    """How far the force of a contact (N) is from where its rest ends, or the stick of a slider."""
+    if not of_slider(j, run):
+        return force
+    slip = _slip_force(j, run)
+    return abs(slip) - abs(slip - force)
+
+
+@compiled_deferred
+def set_room(j: int, beyond: int, order: int, run: FastRun) -> None:
+    """Taylor coefficients of how far a slider is from either end of its stick, into `series.d`.
+
+    `beyond`: 1 of the end at which friction is that of a slip against its branch, else 0.
+    """
+    force, slip = run.series.contact_force[j], _slip_force(j, run)
+    sign = 1.0 if (slip > 0.0) == (beyond == 0) else -1.0
+    for k in range(order - 1):
+        run.series.d[k] = sign * force[k]
+    run.series.d[0] += 2.0 * abs(slip) * beyond
+
+
+@compiled_apart
+def end_of_slip(order: int, h: float, limit: float, a: int, side: float, run: FastRun) -> float:
+    """When the slip of link a to a side ends within h, up to `limit` (s), or inf.
+
+    One that has only just begun goes on with the first coefficient that is not rounding.
+    """
+    limits, series, c = run.plan.limits, run.series, run.series.c
+    still = still_rate(limits.length, limits.time)
+    head, tail = series.ends[a, 0], series.ends[a, 1]
+    for k in range(order):
+        c[k] = side * (k + 1) * distance_coefficient(head, tail, k + 1, series)
+    begins = abs(c[0]) <= still
+    # A stick ends where forces are within rounding of its end.
+    let_go = force_level(run.state.count[CLUSTERS], limits, series)
+    for k in range(1, order if begins else 1):
+        level = 0.0
+        for end in (head, tail):
+            if end >= 0 and k == 1:
+                level += acceleration_level(end, limits, series) + let_go * series.inverse_mass[end]
+            elif end >= 0:
+                level += (k + 1) * GAP_COEFFICIENT * abs(series.X[end, k + 1])
+        if abs(c[k]) > level:
+            break
+        c[k] = 0.0
+    return release_time(c, order, h, limit, still, False, series.work)
+
+
+@compiled_deferred
+def see_friction(run: FastRun) -> None:
+    """Take the forces of the contacts of sliders from those of slips that are `seen`."""
+    links, seen = run.plan.links, run.seen
+    for j in range(seen.gap.size - links.sliders.size, seen.gap.size):
+        a = links.sliders[j - seen.gap.size + links.sliders.size]
+        seen.force[a] -= seen.contact_force[j]
+        seen.base[1] -= _to_ground(a, run) * seen.contact_force[j]
+
+
+@compiled_deferred
+def see_z_of_sliders(run: FastRun) -> None:
+    """Put friction over that of a slip into the z that are `seen`, for a line of the history."""
+    links, seen = run.plan.links, run.seen
+    for j in range(seen.gap.size - links.sliders.size, seen.gap.size):
+        slip = _slip_force(j, run)
+        z = links.z_of_link[links.sliders[j - seen.gap.size + links.sliders.size]]
+        seen.z[z] = (slip - seen.contact_force[j]) / abs(slip)
+
+
+@compiled
+def _to_ground(a: int, run: FastRun) -> float:
+    """By what the force of link a counts in the base shear."""
+    ends = run.plan.links.ends
+    return (1.0 if ends[a, 0] < 0 else 0.0) - (1.0 if ends[a, 1] < 0 else 0.0)
+
+
+@compiled_deferred
+def add_held_shear(order: int, run: FastRun) -> float:
+    """What sliders that stick add to the base shear (N), and to its rate in `series.d`."""
+    links, series, value = run.plan.links, run.series, 0.0
+    first = run.state.gap.size - links.sliders.size
+    for i in range(links.sliders.size):
+        sign = _to_ground(links.sliders[i], run)
+        if run.state.resting[first + i] and sign != 0.0:
+            force = series.contact_force[first + i]
+            value -= sign * force[0]
+            for k in range(order - 2):
+                series.d[k] -= sign * (k + 1) * force[k + 1]
+    return value
+
+
+def settle_sliders(noise: float, run: FastRun, model: Model) -> int:
+    """Do the duties of the present instant of a scene with sliders; ends as `settle`.
+
+    Parameters
+    ----------
+    noise : float
+        Contact forces below this (N) have no meaningful sign.
+    run : FastRun
+        The run, which `advance` has left IN_PYTHON.
+    model : Model
+        The scene, its sliders with contacts of their own.
+    """
+    state, seen = run.state, run.seen
+    with by_python():
+        at, piece = instant_of(run), piece_of(state.count[PIECE], run.plan.ground)
+        _put_velocities(piece, run, model)
+        ended = settle_beside_sliders(seen.contact_force, run.happened.kinked, at, model)
+        run.happened.kinked[:] = False
+        if ended != DONE:
+            return ended
+        choose_directions(run)
+        all_variables(run.series.x, run.plan.hysteresis, state, seen.z)
+        forcing = Forcing(piece.family, piece.coefficients, piece.samples, float(state.clock[T]))
+        ended = decide_sticks(seen.z, forcing, noise, at, model)
+        if ended == DONE:
+            put_on_branches(run)
+            enter_mode(run)
+            _unlock(run, model)
+            state.count[DUE] = SETTLED
+    return ended
+
+
+def _put_velocities(piece: CurrentPiece, run: FastRun, model: Model) -> None:
+    """Give supports, and what rests on them, their velocities, which tell whether a slip ends."""
+    state, of_body = run.state, run.series.of_body
+    for s in range(model.supports):
+        # The load of a support has its number, from 1.
+        _, v = support_motion(s + 1, piece, float(state.clock[T]))
+        state.v[of_body == of_body[s]] += v - state.v[s]
+
+
+def _unlock(run: FastRun, model: Model) -> None:
+    """Let contacts open that sliders alone lock; forces of sliders are no part of what is told."""
+    state = run.state
+    run.record.unique[model.own_contacts :] = True
+    # Where forces are not unique some contacts have none.
+    run.series.contact_force[:] = 0.0
+    clusters = form_clusters_of_few(
+        model.left, model.right, model.gap, state.resting, state.pressed, model.mass
+    )
+    if not clusters.tree:
+        locked = locked_beside_sliders(model, state.resting, clusters)
+        state.unlocked[clusters.resting] = ~(locked | clusters.redundant)
