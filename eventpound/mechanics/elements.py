@@ -282,12 +282,13 @@ def next_branch(
         return branch
     if not has_branches(a, memory):
         return -branch
-    knee = _knee(a, memory, offset, x, z)
+    knee, pressed = _knee(a, memory, offset, x, z), -z * memory[a, YIELD]
     if branch == APART:
         return CLOSED if knee > noise else YIELDING
+    # Of both lengths z tells whether there is a force: that of the backbone may err beside it.
     if branch == YIELDING:
-        return CLOSED if knee > noise else APART
-    return APART if knee <= noise or -z * memory[a, YIELD] < 0.5 * knee else YIELDING
+        return CLOSED if pressed > noise else APART
+    return APART if pressed <= max(0.5 * knee, noise) else YIELDING
 
 
 @scalar_kernel

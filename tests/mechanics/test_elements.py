@@ -178,6 +178,9 @@ def test_branches_of_soil_end_where_it_was_left_and_where_it_comes_apart() -> No
     assert next_branch(0, law, APART, 0.0, 0.0, 0.0, 1e-13) == YIELDING
     # Touched for the first time and left at once: nothing was pushed in.
     assert next_branch(0, law, CLOSED, 0.0, -1e-15, -1e-15, 1e-13) == APART
+    # A z that errs is a force where the backbone has none: it goes with the motion, not at once.
+    assert next_branch(0, law, YIELDING, 0.0, 1e-15, -1e-9, 1e-13) == CLOSED
+    assert next_branch(0, law, CLOSED, 0.0, 1e-15, -1e-9, 1e-13) == YIELDING
 
 
 def _series_of_z(law: np.ndarray, x: np.ndarray, z_0: float, sigma: float) -> np.ndarray:
