@@ -33,7 +33,7 @@ def certified_quantities(
     """
     scale = np.array([quantity.scale for quantity in found.truth.quantities])
     run = found.stated
-    bounds = bounds_of(found.agreement, conditions, scale, displaced(run))
+    bounds = bounds_of(found.agreement, conditions, scale, displaced(run, task.scene))
     _widen_times(task, found, bounds)
     _widen_limits(found, bounds)
     _refuse_after_parting(found, bounds)

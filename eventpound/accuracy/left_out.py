@@ -4,7 +4,7 @@ A step rounds the state once, an event `ROUNDINGS_OF_EVENT` times (page "accurac
 A cascade has infinitely many impacts; it ends by a rule (`eventpound.contact.cascade`), and
 then its contacts rest with a closing speed taken from them that is at most
 
-    `LAST_SPEED` L/T                                 at its end
+    `LAST_SPEED` L/T                                 at its end (`LAST_SPEED_OF_SLIDERS`)
     10 `FADED` of the fastest, at every contact      where all happens in one instant
     n `LISTED_SPEED` of the fastest                  after n times `TIRED` impacts
 
@@ -21,8 +21,10 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 from eventpound.contact.cascade import TIRED
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import LawName
 from eventpound.solvers.base import Event, EventKind, Recording
-from eventpound.tolerances import EPS, FADED, LAST_SPEED, LISTED_SPEED
+from eventpound.tolerances import EPS, FADED, LAST_SPEED, LAST_SPEED_OF_SLIDERS, LISTED_SPEED
 
 ROUNDINGS_OF_EVENT = 4
 """Of the state at an event: its place in time, the state there, the constraint, the impulse."""
@@ -30,19 +32,23 @@ _BESIDE = 2.0
 """Safety of the limit's time: the acceleration between impacts is not quite constant."""
 
 
-def displaced(recording: Recording) -> float:
+def displaced(recording: Recording, scene: Scene) -> float:
     """By how much the state is put off in all, in parts of its scale.
 
     Parameters
     ----------
     recording : Recording
         The run.
+    scene : Scene
+        What moved.
     """
+    sliders = LawName.SLIDER in scene.branched_springs.values()
+    last_speed = LAST_SPEED_OF_SLIDERS if sliders else LAST_SPEED
     roundings = recording.work.steps + ROUNDINGS_OF_EVENT * sum(e.count for e in recording.events)
-    return EPS * roundings + _taken(recording.events)
+    return EPS * roundings + _taken(recording.events, last_speed)
 
 
-def _taken(events: Sequence[Event]) -> float:
+def _taken(events: Sequence[Event], last_speed: float) -> float:
     """Speeds taken from cascades at their ends, in parts of the fastest."""
     groups: defaultdict[float, set[int]] = defaultdict(set)
     ends: defaultdict[float, int] = defaultdict(int)
@@ -53,7 +59,7 @@ def _taken(events: Sequence[Event]) -> float:
             ends[event.t] += event.count
     taken = 0.0
     for t, count in ends.items():
-        taken += LAST_SPEED
+        taken += last_speed
         if len(groups[t]) > 1:
             taken += 10.0 * FADED
         taken += LISTED_SPEED * (count // TIRED)

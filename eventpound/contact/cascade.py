@@ -7,6 +7,7 @@ without an end while it loses energy, and has a limit; without a loss it has non
 
     what                                                   then
     closing speed below `LAST_SPEED` L/T                   plastic: the contacts rest
+    the same of all contacts, `LAST_SPEED_OF_SLIDERS`      the same, where there are sliders
     below `LISTED_SPEED` of the fastest, `TIRED` problems  plastic; n times after n as many
     below `FADED` of the fastest of the same instant       rounding: no speed at all
     interval below `LAST_INTERVAL` T                       gaps are zero, plastic

@@ -17,15 +17,23 @@ With that a slider has a side, and what these forces leave open, an order of the
 further, is that of contacts alone (`eventpound.contact.rest`).
 
 Friction is bounded and has no impulse: in impacts the gap of every slider counts as infinite, and a
-slider sticks on where they leave it no rate. An instant is run by Python, some milliseconds.
+slider sticks on where they leave it no rate. It ends what bounces without a loss as long as rates
+have a sign: slower impacts are plastic. An instant is run by Python, some milliseconds.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.impacts import DONE, put_as_one
-from eventpound.contact.instant import any_may_rest, settle_impacts, take_rests, touching_of
+from eventpound.contact.cascade import INTERVAL
+from eventpound.contact.impacts import DONE, put_as_one, settle_closed
+from eventpound.contact.instant import (
+    any_may_rest,
+    begin_instant,
+    end_instant,
+    take_rests,
+    touching_of,
+)
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import ORDER, Touching, rest_contacts, take_noise
 from eventpound.contact.state import Instant
@@ -39,7 +47,7 @@ from eventpound.motion.loads import is_sinusoidal, load_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.box import least_in_box
 from eventpound.numerics.compiled import in_python
-from eventpound.tolerances import ACCELERATION
+from eventpound.tolerances import ACCELERATION, LAST_SPEED_OF_SLIDERS
 
 
 def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Model) -> int:
@@ -58,7 +66,12 @@ def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Mode
     """
     _end_sticks_and_slips(force, kinked, at, model)
     at.gap[model.own_contacts :] = np.inf
-    return int(in_python(settle_impacts)(at))
+    in_python(begin_instant)(at)
+    approach = -at.gap_rate[at.gap == 0.0].min(initial=0.0)
+    if 0.0 < approach <= LAST_SPEED_OF_SLIDERS * at.length / at.time:
+        # As after an interval that is none.
+        at.clock[INTERVAL] = 0.0
+    return int(in_python(end_instant)(in_python(settle_closed)(at), at))
 
 
 def decide_sticks(z: Floats, forcing: Forcing, noise: float, at: Instant, model: Model) -> int:

@@ -226,6 +226,32 @@ def test_impact_breaks_a_stick_where_it_strikes_and_nowhere_else(solver: str) ->
     assert [event.kind for event in response.recording.events] == ["impact"]
 
 
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_friction_ends_what_bounces_without_a_loss(solver: str) -> None:
+    # Pressed by P and held by friction F it keeps a part r of its speed from bounce to bounce.
+    P, F, h = 1.0, 0.25, 0.1
+    r = math.sqrt((P - F) / (P + F))
+    scene = Scene(
+        (Body("deck", 1.0),),
+        (Spring("bearing", (GROUND, "deck"), Slider(F, 1.0)),),
+        contacts=(Contact("stop", "deck", "barrier", h, 1.0),),
+        motion=NoMotion(),
+        forces=(Force("deck", Constant(P)),),
+    )
+    response = run(scene, 12.0, solver)
+    speed = math.sqrt(2.0 * h * (P - F))
+    flights = speed * (1.0 / (P + F) + 1.0 / math.sqrt(P**2 - F**2)) / (1.0 - r)
+    limit = speed / (P - F) + flights
+    *_, last, rest = response.recording.events
+    assert (last.kind, rest.kind) == ("accumulation", "rest")
+    np.testing.assert_allclose([last.t, rest.t], limit, rtol=0.0, atol=CLOSE)
+    assert -1e-12 < last.gap_velocity_before < -1e-14
+    bounces = math.log(-last.gap_velocity_before / speed) / math.log(r)
+    assert response.impacts == pytest.approx(1.0 + bounces, abs=0.5)
+    assert response.final["deck"] == {"u": pytest.approx(h, abs=CLOSE), "v": 0.0}
+    assert response.spring_events["kind"].iloc[-1] == "stick"
+
+
 @pytest.mark.parametrize(("solver", "events"), SOLVERS)
 def test_deck_pressed_on_an_abutment_parts_when_pulled_by_more_than_friction(
     solver: str, events: str
