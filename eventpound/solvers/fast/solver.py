@@ -31,10 +31,10 @@ from eventpound.mechanics.supported import lowered
 from eventpound.motion.parametric import Parametric
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Bytes, Floats
-from eventpound.numerics.block import Block
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
+from eventpound.numerics.joined_arrays import JoinedArrays
 from eventpound.numerics.latest import Latest
 from eventpound.numerics.lending import change_first, on_loan
 from eventpound.scene.body import Body
@@ -176,7 +176,7 @@ class Arrays:
 
     Attributes
     ----------
-    numbers : Block
+    numbers : JoinedArrays
         `eventpound.mechanics.numbers.numbers_of` of the next run.
     rows : dict of str to ndarray
         The same, each with a leading axis.
@@ -184,7 +184,7 @@ class Arrays:
 
     def __init__(self, model: Model) -> None:
         own = numbers_of(model)
-        self.numbers = Block(list(own.values()))
+        self.numbers = JoinedArrays(list(own.values()))
         named = dict(zip(own, self.numbers.arrays, strict=True))
         self.rows = {key: array[None] for key, array in named.items()}
         self._model, self._keep = with_numbers(model, named), Latest()
@@ -283,15 +283,15 @@ class _Begun(NamedTuple):
     moving: Bytes
 
 
-def moving_of(model: Model) -> Block:
+def moving_of(model: Model) -> JoinedArrays:
     """Arrays of `FastState`, then extremes and uniqueness of forces of `FastRecord`."""
     extremes = np.zeros((5, places_in(model).end))
     state = zero_state(model.counts, model.ledger_entries)
-    return Block([*state, extremes, np.zeros(model.contacts, np.bool_)])
+    return JoinedArrays([*state, extremes, np.zeros(model.contacts, np.bool_)])
 
 
 def put_start(
-    plan: FastPlan, start: float, model: Model, scales: SceneScales, moving: Block
+    plan: FastPlan, start: float, model: Model, scales: SceneScales, moving: JoinedArrays
 ) -> None:
     """Put what moves at the start of a run (s)."""
     *state, extremes, unique = moving.arrays
@@ -312,7 +312,7 @@ class Left(NamedTuple):
     contacts: tuple[Contact | Spring, ...]
     model: Model
     ended: int
-    moving: Block
+    moving: JoinedArrays
     hysteresis: Hysteresis
     events: Floats
     rows: Floats
@@ -356,7 +356,7 @@ class Left(NamedTuple):
         return own_recording(recording, self.model)
 
 
-def run_of(plan: FastPlan, moving: Block, model: Model) -> FastRun:
+def run_of(plan: FastPlan, moving: JoinedArrays, model: Model) -> FastRun:
     """A run with nothing recorded, in arrays of `moving_of`."""
     *state, extremes, unique = moving.arrays
     record = FastRecord(

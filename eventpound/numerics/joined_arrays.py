@@ -13,7 +13,7 @@ _BOUNDARY = 8
 """Bytes at a multiple of which each array begins."""
 
 
-class Block:
+class JoinedArrays:
     """Contiguous arrays one after the other.
 
     Parameters
@@ -41,8 +41,8 @@ class Block:
         """Each of them, a view of `data`."""
         return [np.ndarray(shape, kind, self.data, first) for shape, kind, first in self._kinds]
 
-    def copy(self) -> Block:
+    def copy(self) -> JoinedArrays:
         """Equal arrays in a block of their own."""
-        other = object.__new__(Block)
+        other = object.__new__(JoinedArrays)
         other._kinds, other.data = self._kinds, self.data.copy()
         return other
