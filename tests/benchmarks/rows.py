@@ -1,11 +1,13 @@
-"""Cost of a row of N bodies: ``python -m tests.benchmarks.rows [--bodies N ...] [--solver NAME]``.
+"""Cost of a row of N bodies: ``python -m tests.benchmarks.rows [--bodies N ...] [--record]``.
 
 Bilinear oscillators of the frequencies omega_i = 3 + 2 sin(i) times that of a
 cosine pulse stand side by side with small gaps between them and a barrier at the
 right end, which the pulse drives them against; so there are as many contacts as
-bodies. Every number of bodies runs in a process of its own: processor time, counts of
-work, and the most memory that the process took. Steps end at impacts, so it is the cost
-of a step that should grow like N: an exponent of one.
+bodies. With ``--record`` they yield under El Centro 1940, in SI, their periods 0.3 to 1 s.
+
+Every number of bodies runs in a process of its own: processor time, counts of work, and the most
+memory that the process took. Steps end at impacts, so it is the cost of a step that should grow
+like N: an exponent of one.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from multiprocessing import get_context
 
@@ -26,11 +28,14 @@ import numpy as np
 from eventpound.motion.pulses import Cosine
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Scene, Spring
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import EventKind, Recording, Task
+from eventpound.solvers.base import EventKind, Task
+from tests.benchmarks.problem import case_problem
 
 PERIOD = 2.0 * math.pi
 """T_p (s); with a_p = 1 the scales L_e and omega_g are one."""
 STRENGTH, YIELD, GAP, RESTITUTION = 0.2, 0.05, 0.05, 0.6
+SHAKEN_YIELD, SHAKEN_GAP = 0.005, 0.02
+"""Of the row under a record (m)."""
 KIB, MIB = 1024, 1024.0**2
 
 
@@ -83,16 +88,27 @@ def row(count: int) -> Scene:
     )
 
 
-def _solve(count: int, end: float, rtol: float, solver: str) -> Recording:
-    return solver_named(solver).solve(Task(row(count), 0.0, end, rtol))
+def shaken(count: int) -> Scene:
+    """As `row`, under a record, the frequencies 2 + sin(i) Hz."""
+    still = row(count)
+    springs = []
+    for i, spring in enumerate(still.springs):
+        k = (2.0 * math.pi * (2.0 + math.sin(i))) ** 2
+        springs.append(replace(spring, law=BoucWen(0.1 * k, 0.9 * k * SHAKEN_YIELD, SHAKEN_YIELD)))
+    contacts = tuple(replace(contact, gap=SHAKEN_GAP) for contact in still.contacts)
+    motion = case_problem("bridge-el-centro").task.scene.motion
+    return replace(still, springs=tuple(springs), contacts=contacts, motion=motion)
 
 
-def measure(count: int, end: float, rtol: float, solver: str) -> Cost:
-    """Run a row of `count` bodies to `end` (s)."""
-    _solve(min(count, 2), end, rtol, solver)
-    began = time.process_time()
-    recording = _solve(count, end, rtol, solver)
-    seconds = time.process_time() - began
+def measure(count: int, end: float, rtol: float, solver: str, record: bool) -> Cost:
+    """Run a row of `count` bodies to `end` (s), after another one; the best of three."""
+    task = Task(shaken(count) if record else row(count), 0.0, end, rtol)
+    solver_named(solver).solve(replace(task, scene=(shaken if record else row)(min(count, 2))))
+    seconds = math.inf
+    for _ in range(3):
+        began = time.process_time()
+        recording = solver_named(solver).solve(task)
+        seconds = min(seconds, time.process_time() - began)
     # Linux counts in KiB.
     resident = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * KIB / MIB
     work = recording.work
@@ -132,12 +148,13 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--end", type=float, default=0.8, help="length of the run (s)")
     parser.add_argument("--rtol", type=float, default=1e-6)
     parser.add_argument("--solver", default="cvode")
+    parser.add_argument("--record", action="store_true", help="under El Centro 1940")
     options = parser.parse_args(arguments)
     costs = []
     with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:
         for count in options.bodies:
             print(f"N = {count}", file=sys.stderr, flush=True)
-            run = (count, options.end, options.rtol, options.solver)
+            run = (count, options.end, options.rtol, options.solver, options.record)
             costs.append(pool.submit(measure, *run).result())
     print(table(costs))
 

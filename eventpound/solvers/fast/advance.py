@@ -90,16 +90,15 @@ def carry_on(budget: int, run: FastRun) -> int:
         i = count[PIECE]
         piece = lend(piece_of(i, ground))
         stop = min(ground.ends[i], end)
-        if piece.family == _SAMPLES and may_go_by_samples(run):
-            sample_steps(last_step - count[STEPS], stop, piece, run)
-            if count[DUE] == 1 or count[STEPS] >= last_step or not has_room(run):
-                continue
         if may_go_apart(piece, run):
             go_apart(last_step - count[STEPS], stop, piece, run)
-            if clock[T] >= stop or count[STEPS] >= last_step or not has_room(run):
-                if clock[T] >= ground.ends[i]:
-                    count[DUE] = 1
-                continue
+        elif piece.family == _SAMPLES and may_go_by_samples(run):
+            sample_steps(last_step - count[STEPS], stop, piece, run)
+        if clock[T] >= ground.ends[i]:
+            count[DUE] = 1
+        due = count[DUE] == 1 or clock[T] >= stop
+        if due or count[STEPS] >= last_step or not has_room(run):
+            continue
         if piece.family >= _SAMPLES:
             stop = next_corner(piece, clock[T], stop)
         ended = take_step(stop, piece, run)

@@ -22,6 +22,7 @@ from eventpound.numerics.latest import Keep, made_anew
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
+from eventpound.solvers.fast.apart.windows import LINE_PLACES
 from eventpound.solvers.fast.compiled import compiled_apart
 from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.run import (
@@ -31,7 +32,6 @@ from eventpound.solvers.fast.run import (
     GUESS,
     MORE_TERMS,
     REST_TERMS,
-    Apart,
     Contacts,
     Each,
     FastMarks,
@@ -235,19 +235,18 @@ def begin_state(
 def _blank_each(plan: FastPlan, loaded: bool) -> Each:
     """What bodies have for themselves, of none where they cannot go apart.
 
-    They may under a formula, each on springs to the ground, one of them hysteretic at most, where
-    no power or force is followed. Where none is hysteretic, nothing would be
-    gained: no body ends the steps of others. No z is followed. Which springs have a kink, a run
-    tells.
+    They may each on springs to the ground, one of them hysteretic at most, where no power or force
+    is followed; under a formula only if one is hysteretic: else no body ends the steps of others,
+    and nothing would be gained. No z is followed. Which springs have a kink, a run tells.
     """
     n, contacts, ends = plan.mass.shape[-1], plan.contacts.left.size, plan.links.ends
-    if n < 2 or plan.hysteresis.link.size == 0 or plan.hysteresis.followed.size > 0 or loaded:
+    if n < 2 or loaded or ends.size == 0 or plan.hysteresis.followed.size > 0:
         return _NOBODY
     yielding = ends[plan.hysteresis.link].max(axis=1)
     fits = (
         ends.min(axis=1).max() < 0
         and np.unique(yielding).size == yielding.size
-        and (plan.ground.family < int(Family.SAMPLES)).any()
+        and (yielding.size > 0 or (plan.ground.family == int(Family.SAMPLES)).any())
         and not plan.limits.ledger
     )
     return _each_of(n, contacts) if fits else _NOBODY
@@ -271,6 +270,9 @@ def _each_of(n: int, contacts: int) -> Each:
         turned=np.zeros(n, np.bool_),
         box=np.zeros((4, n)),
         since=np.zeros(contacts),
+        lines=np.zeros((LINE_PLACES, n)),
+        outside=np.zeros(4),
+        closing=np.zeros(contacts),
     )
 
 
@@ -304,9 +306,6 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         of_body=np.zeros(bodies, np.int64),
         inverse_mass=np.zeros(bodies),
         active=np.zeros(links, np.int64),
-        apart=Apart(
-            np.zeros(bodies, np.int64), np.zeros(bodies + 1, np.int64), np.zeros((3, bodies))
-        ),
         expected=np.zeros(bodies),
         travel=np.zeros(bodies),
         swing=np.zeros(bodies),

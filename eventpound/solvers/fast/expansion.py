@@ -17,40 +17,72 @@ import numpy as np
 
 from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.clusters import is_support
-from eventpound.mechanics.elements import INVERSE, pull_per_z
+from eventpound.mechanics.elements import INVERSE, begin_curve, next_z, pull_per_z
 from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece, ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
-from eventpound.numerics.arrays import Floats
-from eventpound.solvers.fast.alone import (
-    CONVERGED,
-    FEWEST,
-    begin_link,
-    curve_begins,
-    curve_coefficient,
-    expand_alone,
-    gather,
-    on_curve,
-)
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.followed import follow, follows, last_of_followed
 from eventpound.solvers.fast.links import (
     CORE,
+    DOWN,
+    UP,
+    elongation,
+    link_force,
     reverse,
     saturate,
+    tangent,
 )
 from eventpound.solvers.fast.run import (
+    ACTIVE,
     CLUSTERS,
     FURTHER,
     GUESS,
     LOCAL_SHARE,
     RESTING,
-    TIED,
-    TIED_LINKS,
     FastRun,
     FastSeries,
 )
 from eventpound.solvers.fast.search import distance_coefficient
 from eventpound.tolerances import LONGEST_STEP, NO_ERROR, RETRIED
+
+FEWEST = 5
+"""Order of a series, at least."""
+CONVERGED = 0.5
+"""Error of a step, in units of its tolerance, at which no further term is added."""
+
+
+@compiled
+def begin_link(a: int, run: FastRun) -> None:
+    """Elongation of a link, its rate, force and tangent at the start of a step."""
+    links, state, series = run.plan.links, run.state, run.series
+    x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], state.u, state.v)
+    series.x[a], series.x_rate[a] = x, x_rate
+    force, z = link_force(a, x, run)
+    if links.z_of_link[a] >= 0:
+        series.z[links.z_of_link[a], 0] = z
+    series.stiffness[a] = tangent(a, links, state)
+    series.F[a, 0] = force + links.law.damping[a] * x_rate
+
+
+@compiled
+def on_curve(h: int, part: Ints) -> bool:
+    """Whether a hysteretic link is on a curved part of its backbone."""
+    return bool(DOWN <= part[h] <= UP)
+
+
+@compiled
+def curve_begins(a: int, h: int, run: FastRun) -> None:
+    """Make link a, whose z_0 stands, ready for `curve_coefficient`."""
+    series, sign = run.series, 1.0 if run.state.part[h] == UP else -1.0
+    memory, z = run.plan.links.law.memory, series.z[h, 0]
+    begin_curve(a, memory, sign, z, series.power[h], series.curve[h])
+
+
+@compiled
+def curve_coefficient(h: int, k: int, x: float, s: FastSeries) -> float:
+    """Coefficient k of z on a curved part, `x` that of the elongation; those before it stand."""
+    return next_z(k, x, s.z[h], s.power[h], s.speed[h], s.weighted[h], s.curve[h])
 
 
 @compiled_deferred
@@ -81,32 +113,11 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
     What `begin_series` makes stands already. Returned are the highest power and the error of the
     step, in units of its tolerance.
     """
-    state, series = run.state, run.series
-    clusters, order, error = state.count[CLUSTERS], 0, 0.0
-    alone = 0
-    for c in range(clusters):
-        if series.apart.hysteretic[c] != TIED:
-            gather(c, run)
-            reached, its = expand_alone(c, h, most, run)
-            order, error, alone = max(order, reached), max(error, its), alone + 1
-    # Where all bodies rest on barriers there is no cluster, but the ground's terms count.
-    if alone < clusters or clusters == 0:
-        reached, its = _expand_together(h, most, run)
-        for c in range(clusters):
-            if series.apart.hysteretic[c] == TIED:
-                series.X[c, reached + 1 : most + 1] = 0.0
-        order, error = max(order, reached), max(error, its)
-    return order, error
-
-
-@compiled
-def _expand_together(h: float, most: int, run: FastRun) -> tuple[int, float]:
-    """Terms of all clusters that do not go by themselves."""
     plan, state, series = run.plan, run.state, run.series
     links, law, further = plan.links, plan.links.law, state.count[FURTHER] > 0
     others = further or state.count[RESTING] > 0
     X, F, acceleration = series.X, series.F, series.force
-    clusters, active = state.count[CLUSTERS], state.count[TIED_LINKS]
+    clusters, active = state.count[CLUSTERS], state.count[ACTIVE]
     for i in range(active):
         a = series.active[i]
         h_of_a = links.z_of_link[a]
@@ -134,8 +145,7 @@ def _expand_together(h: float, most: int, run: FastRun) -> tuple[int, float]:
             _add_further(k, run)
         scale = INVERSE[k + 1] * INVERSE[k + 2]
         for c in range(clusters):
-            if series.apart.hysteretic[c] == TIED:
-                X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
+            X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
         if further:
             drive_clusters(k, plan.mass, series)
         power *= h
@@ -147,6 +157,8 @@ def _expand_together(h: float, most: int, run: FastRun) -> tuple[int, float]:
             error = max(error, _last_of_others(order, power * over, over, run))
         if error <= CONVERGED:
             break
+    for c in range(clusters):
+        X[c, order + 1 : most + 1] = 0.0
     return order, error
 
 
@@ -179,7 +191,7 @@ def _last_of_others(order: int, power: float, over: float, run: FastRun) -> floa
     for b in range(plan.mass.size if series.load.shape[0] > 0 else 0):
         of_load = max(abs(series.load[order - 1, b]), over * abs(series.load[order - 2, b]))
         last = max(last, power * of_load / plan.mass[b])
-    for i in range(run.state.count[TIED_LINKS]):
+    for i in range(run.state.count[ACTIVE]):
         a = series.active[i]
         of_link = max(abs(series.F[a, order - 2]), over * abs(series.F[a, order - 3]))
         for side in range(2):

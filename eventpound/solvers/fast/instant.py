@@ -34,18 +34,7 @@ from eventpound.solvers.fast.links import (
     set_curve,
     turns_back,
 )
-from eventpound.solvers.fast.run import (
-    ACTIVE,
-    CLUSTERS,
-    EDGES,
-    FURTHER,
-    LINEAR,
-    RESTING,
-    TIED,
-    TIED_LINKS,
-    Contacts,
-    FastRun,
-)
+from eventpound.solvers.fast.run import ACTIVE, CLUSTERS, EDGES, FURTHER, RESTING, Contacts, FastRun
 
 
 @compiled
@@ -64,62 +53,14 @@ def enter_mode(run: FastRun) -> None:
             series.inverse_mass[b] = 1.0 / mass[b]
     else:
         _enter_rest(run)
+    count[ACTIVE] = 0
     for a in range(links.offset.size):
         for side in range(2):
             b = links.ends[a, side]
             series.ends[a, side] = series.of_body[b] if b >= 0 else -1
-    _find_apart(run)
-    _sort_active(run)
-
-
-@compiled_apart
-def _find_apart(run: FastRun) -> None:
-    """Clusters that go by themselves: on links to the ground only, one of them hysteretic at most.
-
-    There are none where the forces of contacts or of loads are followed, or a z is.
-    """
-    series, links, count = run.series, run.plan.links, run.state.count
-    hysteretic = series.apart.hysteretic
-    none = count[RESTING] > 0 or count[FURTHER] > 0
-    hysteretic[:] = TIED if none else LINEAR
-    for a in range(0 if none else links.offset.size):
-        first, second = series.ends[a, 0], series.ends[a, 1]
-        if min(first, second) >= 0:
-            hysteretic[first] = hysteretic[second] = TIED
-        elif links.z_of_link[a] >= 0:
-            c = max(first, second)
-            hysteretic[c] = a if hysteretic[c] == LINEAR else TIED
-
-
-@compiled_apart
-def _sort_active(run: FastRun) -> None:
-    """Links that move: of clusters that go together, then of each that goes by itself."""
-    series, count = run.series, run.state.count
-    first_of, hysteretic, clusters = series.apart.links, series.apart.hysteretic, count[CLUSTERS]
-    first_of[:] = 0
-    count[ACTIVE] = 0
-    for a in range(series.ends.shape[0]):
-        first, second = series.ends[a, 0], series.ends[a, 1]
-        if first == second:
-            continue
-        if hysteretic[max(first, second)] == TIED:
+        if series.ends[a, 0] != series.ends[a, 1]:
             series.active[count[ACTIVE]] = a
             count[ACTIVE] += 1
-        else:
-            first_of[max(first, second) + 1] += 1
-    count[TIED_LINKS] = first_of[0] = count[ACTIVE]
-    for c in range(clusters):
-        first_of[c + 1] += first_of[c]
-    for a in range(series.ends.shape[0]):
-        c = max(series.ends[a, 0], series.ends[a, 1])
-        if min(series.ends[a, 0], series.ends[a, 1]) < c and hysteretic[c] != TIED:
-            series.active[first_of[c]] = a
-            first_of[c] += 1
-            count[ACTIVE] += 1
-    # Each has come to where the next one begins.
-    for c in range(clusters, 0, -1):
-        first_of[c] = first_of[c - 1]
-    first_of[0] = count[TIED_LINKS]
 
 
 @compiled_deferred

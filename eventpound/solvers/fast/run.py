@@ -174,19 +174,6 @@ class Single(NamedTuple):
     work: Floats
 
 
-class Apart(NamedTuple):
-    """Of clusters (N,) that go by themselves, on links to the ground of which one is hysteretic.
-
-    hysteretic: which, LINEAR for none, TIED of clusters that do not go by themselves. links
-    (N + 1,): where in `FastSeries.active` those of each begin. sums (3, N): the force of the links
-    at the start (N), their stiffness (N/m) and damping (N s/m).
-    """
-
-    hysteretic: Ints
-    links: Ints
-    sums: Floats
-
-
 class Each(NamedTuple):
     """What bodies have for themselves while they go apart; no rows for scenes where they never do.
 
@@ -195,8 +182,11 @@ class Each(NamedTuple):
     base shear that nobody looks at. until, length (N,): end of its step (s), and how long that is
     (s). order, event, turned (N,): of the series of the step, how that ends, and whether the body
     turns there.
-    box (4, N): bounds of displacement and acceleration within the step. since (K,): until when
-    extremes of a gap have been looked for (s).
+    box (4, N): bounds of displacement and acceleration within the step. since, closing (K,): until
+    when extremes of a gap have been looked for, and when it closes (s).
+
+    Under a record some go by exact steps, and have no end of one: lines (places, N), of what
+    `eventpound.solvers.fast.apart.windows` says, outside (4,): what they are together.
     """
 
     body: Any
@@ -210,6 +200,9 @@ class Each(NamedTuple):
     turned: Bools
     box: Floats
     since: Floats
+    closing: Floats
+    lines: Floats
+    outside: Floats
 
 
 class FollowedMemories(NamedTuple):
@@ -235,10 +228,9 @@ class FastSeries(NamedTuple):
     multiplied by. ground (p + 3,). x, x_rate (L,):
     elongations at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
-    (L,): links that move, those of clusters that go together first. apart: of clusters that go by
-    themselves. expected (N,): relative acceleration of clusters by their series, where they have
-    been looked at last (m/s²). travel, swing, reach, bend (N,): bounds of the motion over a step;
-    end (N,): absolute accelerations there (m/s²).
+    (L,): links that move. expected (N,): relative acceleration of clusters by their series, where
+    they have been looked at last (m/s²). travel, swing, reach, bend (N,): bounds of the motion over
+    a step; end (N,): absolute accelerations there (m/s²).
     c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,). load
     (p + 3, N): of the loads on bodies, empty without any.
     Where contacts rest: contact_force (K, p + 3), rests (K,) and elimination (K, 4) as in
@@ -264,7 +256,6 @@ class FastSeries(NamedTuple):
     of_body: Ints
     inverse_mass: Floats
     active: Ints
-    apart: Apart
     expected: Floats
     travel: Floats
     swing: Floats
@@ -363,15 +354,11 @@ CLOCK_SIZE = CLOCK_PLACES + 2
 (PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, DUE) = range(COUNT_PLACES, COUNT_PLACES + 6)
 """Behind those in `FastState.count`: piece of the ground motion, steps, expansions, rows of the
 history, next output time, and whether an instant has duties."""
-(ACTIVE, TIED_LINKS, CLUSTERS, STALLED, RESTING, EDGES, HELD, FURTHER, STARTED) = range(
-    DUE + 1, DUE + 10
-)
-"""Active links, those among them of clusters that go together, clusters, events without progress
+(ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, HELD, FURTHER, STARTED) = range(DUE + 1, DUE + 9)
+"""Active links, clusters, events without progress
 of time, resting contacts, rows of the elimination, rows of the history before a mode that may be
 none, whether loads or followed z add to what links make, and whether the run has begun."""
 COUNT_SIZE = STARTED + 1
-LINEAR, TIED = -1, -2
-"""In `Apart.hysteretic`: no such link, and not by itself."""
 MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
 REST_TERMS = 16

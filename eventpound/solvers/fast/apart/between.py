@@ -13,7 +13,7 @@ from eventpound.mechanics.monitored import update_extreme, update_turning_point
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import see_forces
 from eventpound.solvers.fast.extremes import (
     flat_time,
@@ -29,10 +29,12 @@ from eventpound.solvers.fast.run import OUTPUT, FastRun
 from eventpound.solvers.fast.search import stays_above
 from eventpound.solvers.fast.single.record import acceleration_coefficient
 from eventpound.solvers.fast.single.series import motion
-from eventpound.tolerances import OWN_GAP
 
 (U_LOW, U_HIGH, A_LOW, A_HIGH) = range(4)
 """Rows of `Each.box`."""
+(COUNT, BEFORE, AFTER, STRAY) = range(4)
+"""Places in `Each.outside`: how many bodies go by exact steps; their base shear at both ends of the
+window, and how far it strays from between these at most (N)."""
 
 
 @compiled
@@ -48,7 +50,15 @@ def _gap_box(j: int, run: FastRun) -> tuple[float, float]:
 
 
 @compiled
-def _gap_at(j: int, t: float, run: FastRun) -> tuple[float, float]:
+def takes_part(j: int, run: FastRun) -> bool:
+    """Whether no body of a contact goes by an exact step."""
+    contacts, until = run.plan.contacts, run.series.each.until
+    left, right = contacts.left[j], contacts.right[j]
+    return (left < 0 or until[left] < np.inf) and (right < 0 or until[right] < np.inf)
+
+
+@compiled
+def gap_at(j: int, t: float, run: FastRun) -> tuple[float, float]:
     """A gap (m) and its rate (m/s) at a time (s) that the series of its bodies reach."""
     contacts, each = run.plan.contacts, run.series.each
     gap, rate = contacts.gap[j], 0.0
@@ -72,22 +82,21 @@ def _bends(j: int, run: FastRun) -> tuple[float, float]:
 
 
 @compiled
-def time_of_fall(j: int, now: float, run: FastRun) -> float:
-    """When a gap falls to where it is a variable of its own, as far as both series reach (s)."""
+def time_of_closing(j: int, now: float, run: FastRun) -> float:
+    """When a gap closes, as far as both series reach (s)."""
     contacts, until, c = run.plan.contacts, run.series.each.until, run.series.c
-    least, end = OWN_GAP * run.plan.limits.length, np.inf
-    if _gap_box(j, run)[0] >= least:
+    end = np.inf
+    if _gap_box(j, run)[0] > 0.0:
         return np.inf
     for b in (contacts.left[j], contacts.right[j]):
         if b >= 0:
             end = min(end, until[b])
-    h, (gap, rate) = end - now, _gap_at(j, now, run)
-    if stays_above(gap - least, rate, 0.5 * _bends(j, run)[0], 0.0, h):
+    h, (gap, rate) = end - now, gap_at(j, now, run)
+    if stays_above(gap, rate, 0.5 * _bends(j, run)[0], 0.0, h):
         return np.inf
-    order, rest = _set_gap(j, now, run), 0.0
+    order, rest = set_gap(j, now, run), 0.0
     for k in range(order, 2, -1):
         rest = (rest + abs(c[k])) * h
-    c[0] -= least
     if c[0] <= 0.0:
         return now
     if stays_above(c[0], c[1], c[2], rest * h * h, h):
@@ -96,7 +105,7 @@ def time_of_fall(j: int, now: float, run: FastRun) -> float:
 
 
 @compiled
-def _set_gap(j: int, now: float, run: FastRun) -> int:
+def set_gap(j: int, now: float, run: FastRun) -> int:
     """Coefficients of a gap about a time (s) into `series.c`; their highest power."""
     contacts, c, order = run.plan.contacts, run.series.c, 3
     c[:] = 0.0
@@ -131,16 +140,20 @@ def _add_later(order: int, factor: float, since: float, c: Floats, d: Floats) ->
 
 @compiled
 def take_gaps_of(who: int, now: float, run: FastRun) -> None:
-    """Extremes of the gaps between a body, or any for -1, and others, up to a time (s)."""
-    plan, each, running = run.plan, run.series.each, run.running
-    contacts, first = plan.contacts, running.at.gap
+    """Extremes of the gaps between a body, or any for -1, and others, up to a time (s).
+
+    That they are open is known, and all bodies are that take part.
+    """
+    each, contacts, running = run.series.each, run.plan.contacts, run.running
+    first = running.at.gap
     for j in range(contacts.gap.size):
         left, right = contacts.left[j], contacts.right[j]
         if min(left, right) < 0 or (who >= 0 and who not in (left, right)):
             continue
+        if not takes_part(j, run):
+            continue
         low, high = _gap_box(j, run)
-        # That it stays above this is known by now.
-        low = max(low, OWN_GAP * plan.limits.length)
+        low = max(low, 0.0)
         if each.since[j] < now and not stays_within(first + j, low, high, running):
             _take_gap(first + j, j, now, run)
         each.since[j] = now
@@ -150,31 +163,41 @@ def take_gaps_of(who: int, now: float, run: FastRun) -> None:
 def _take_gap(place: int, j: int, now: float, run: FastRun) -> None:
     """Turning points of a gap since it was looked at last, and its value at a time (s)."""
     series, running, since = run.series, run.running, run.series.each.since[j]
-    h, (_, rate), (low, high) = now - since, _gap_at(j, since, run), _bends(j, run)
+    h, (_, rate), (low, high) = now - since, gap_at(j, since, run), _bends(j, run)
     if not (rate + min(low, 0.0) * h > 0.0 or rate + max(high, 0.0) * h < 0.0):
-        order = _set_gap(j, since, run)
+        order = set_gap(j, since, run)
         set_rate(series.c, order, series.d)
         take_turns(place, series.c, order, since, h, run)
-    update_extreme(place, _gap_at(j, now, run)[0], now, running)
+    update_extreme(place, max(gap_at(j, now, run)[0], 0.0), now, running)
+
+
+@compiled
+def shear_stays(run: FastRun) -> bool:
+    """Whether the base shear stays within its extremes during the present steps."""
+    mass, box, outside = run.plan.mass, run.series.each.box, run.series.each.outside
+    low = min(outside[BEFORE], outside[AFTER]) - outside[STRAY]
+    high = max(outside[BEFORE], outside[AFTER]) + outside[STRAY]
+    for b in range(mass.size):
+        low, high = low - mass[b] * box[A_HIGH, b], high - mass[b] * box[A_LOW, b]
+    return stays_within(run.running.at.base_shear, low, high, run.running)
 
 
 @compiled
 def take_shear(now: float, then: float, piece: CurrentPiece, run: FastRun) -> None:
     """Turning points of the base shear between two times (s), and its value at the second."""
-    mass, box, running = run.plan.mass, run.series.each.box, run.running
-    low = high = 0.0
-    for b in range(mass.size):
-        low, high = low - mass[b] * box[A_HIGH, b], high - mass[b] * box[A_LOW, b]
-    place = running.at.base_shear
-    if then <= now or stays_within(place, low, high, running):
-        return
-    start, down, up = _shear_between(now, then, piece, run)
-    if stays_within(place, start + down, start + up, running):
+    place, (start, down, up) = run.running.at.base_shear, _shear_between(now, then, piece, run)
+    if stays_within(place, start + down, start + up, run.running):
         return
     if down < 0.0 < up:
         _follow_shear(place, now, then, run)
-    _look(then, 0.0, run)
-    update_extreme(place, run.seen.base[1], then, running)
+    take_shear_at(then, run)
+
+
+@compiled
+def take_shear_at(t: float, run: FastRun) -> None:
+    """Take the base shear at a time (s) that all series reach."""
+    _look(t, 0.0, run)
+    update_extreme(run.running.at.base_shear, run.seen.base[1], t, run.running)
 
 
 @compiled
@@ -244,19 +267,31 @@ def _look(t: float, ground: float, run: FastRun) -> None:
 
 
 @compiled
+def is_row_due(then: float, run: FastRun) -> bool:
+    """Whether a row of the history is due before a time (s)."""
+    count, times = run.state.count, run.plan.output_times
+    return count[OUTPUT] < times.size and times[count[OUTPUT]] < then
+
+
+@compiled
 def write_rows(now: float, then: float, piece: CurrentPiece, run: FastRun) -> None:
     """History at the output times between two times (s)."""
-    contacts, seen, state, count = run.plan.contacts, run.seen, run.state, run.state.count
-    times = run.plan.output_times
-    while count[OUTPUT] < times.size and times[count[OUTPUT]] < then:
-        at = times[count[OUTPUT]]
-        if at >= now:
-            _look(at, ground_acceleration(piece, at), run)
-            for j in range(contacts.gap.size):
-                seen.gap[j], seen.gap_rate[j] = gap_of(j, contacts, seen.u, seen.v)
-                if at == state.clock[T]:
-                    # Where they set out there is a row already, which is to be the same.
-                    seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]
-                seen.contact_force[j] = 0.0
-            write_row(at, run)
+    count, times = run.state.count, run.plan.output_times
+    while is_row_due(then, run):
+        if times[count[OUTPUT]] >= now:
+            write_row_at(times[count[OUTPUT]], piece, run)
         count[OUTPUT] += 1
+
+
+@compiled_apart
+def write_row_at(t: float, piece: CurrentPiece, run: FastRun) -> None:
+    """A row of the history at a time (s) that all series reach."""
+    contacts, seen, state = run.plan.contacts, run.seen, run.state
+    _look(t, ground_acceleration(piece, t), run)
+    for j in range(contacts.gap.size):
+        seen.gap[j], seen.gap_rate[j] = gap_of(j, contacts, seen.u, seen.v)
+        if t == state.clock[T]:
+            # Where they set out there is a row already, which is to be the same.
+            seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]
+        seen.contact_force[j] = 0.0
+    write_row(t, run)

@@ -15,14 +15,15 @@ and, since the ground moves on a straight line, the second derivative of the abs
 from __future__ import annotations
 
 from eventpound.mechanics.elements import INVERSE, pull_per_z
-from eventpound.solvers.fast.alone import (
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.expansion import (
     CONVERGED,
     curve_begins,
     curve_coefficient,
+    last_terms,
     on_curve,
+    set_weights,
 )
-from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.expansion import last_terms, set_weights
 from eventpound.solvers.fast.run import FastRun, FastSeries, FastState
 from eventpound.solvers.fast.search import distance_coefficient
 

@@ -198,6 +198,12 @@ def tangent(body: SingleBody) -> float:
 
 
 @compiled
+def steepest(body: SingleBody) -> float:
+    """Largest tangent stiffness for each unit of mass (1/s²)."""
+    return body.stiffness + body.strength * body.per_scale * (1.0 + max(0.0, -body.kappa_down))
+
+
+@compiled
 def gap_to(way: float, body: SingleBody) -> float:
     """Gap to the barrier in one direction (m)."""
     return body.right if way > 0.0 else body.left

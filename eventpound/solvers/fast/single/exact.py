@@ -236,7 +236,7 @@ ROW_ORDER = 16
 
 
 @compiled_apart
-def _fill_table(stiffness: float, damping: float, dt: float, step: Floats) -> None:
+def fill_table(stiffness: float, damping: float, dt: float, step: Floats) -> None:
     """Numbers of a step of length dt (s): dt, α, β, and 1 / (1 - C dt - K_t dt²), 0 if unfit."""
     step[0] = dt
     turn = damping * dt + stiffness * dt * dt
@@ -265,7 +265,7 @@ def sample_steps(
     samples, origin, dt = piece.samples, piece.coefficients[0], piece.coefficients[1]
     step = body.saturated if part == SATURATED else body.on_line
     if step[0] != dt:
-        _fill_table(stiffness, body.damping, dt, step)
+        fill_table(stiffness, body.damping, dt, step)
     if step[7] == 0.0:
         return segment
     of_v, of_a, of_slope = step[1], step[2], step[3]
