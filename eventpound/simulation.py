@@ -294,18 +294,18 @@ def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
     kinds = (("supports", scene.supports), ("forces", scene.forces))
     loads = " and ".join(word for word, given in kinds if given)
     name = solver.name
-    problems = (
-        f"{name} does not know the laws of contacts {laws}",
-        f"{name} does not know the laws of springs {springs}",
-        f"{name} does not take contacts at a point between bodies ({points})",
-        f"name: the solver {name!r} cannot take {loads}",
-        f"{name} does not list events of springs",
-    )
+    problems = {
+        knows_laws: f"{name} does not know the laws of contacts {laws}",
+        knows_springs: f"{name} does not know the laws of springs {springs}",
+        takes_points: f"{name} does not take contacts at a point between bodies ({points})",
+        takes_loads: f"name: the solver {name!r} cannot take {loads}",
+        lists_springs: f"{name} does not list events of springs",
+    }
     able = (key for key, other in available().items() if all(can(other, scene) for can in wanted))
     accepted = ", ".join(able)
     return [
-        f"[solver]: {problem}; accepted: {accepted}"
-        for can, problem in zip(wanted, problems, strict=False)
+        f"[solver]: {problems[can]}; accepted: {accepted}"
+        for can in wanted
         if not can(solver, scene)
     ]
 
