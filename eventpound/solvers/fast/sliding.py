@@ -51,10 +51,16 @@ def of_slider(j: int, run: FastRun) -> bool:
 
 
 @compiled
+def _link_of(j: int, run: FastRun) -> int:
+    """The slider, a link, of contact j."""
+    sliders = run.plan.links.sliders
+    return int(sliders[j - run.state.gap.size + sliders.size])
+
+
+@compiled
 def _slip_force(j: int, run: FastRun) -> float:
     """Force of the slip, on its branch, of the slider of contact j (N)."""
-    sliders = run.plan.links.sliders
-    return pull_per_z(sliders[j - run.state.gap.size + sliders.size], run.series.memory)
+    return pull_per_z(_link_of(j, run), run.series.memory)
 
 
 @compiled
@@ -111,7 +117,7 @@ def see_friction(run: FastRun) -> None:
     """Take the forces of the contacts of sliders from those of slips that are `seen`."""
     links, seen = run.plan.links, run.seen
     for j in range(seen.gap.size - links.sliders.size, seen.gap.size):
-        a = links.sliders[j - seen.gap.size + links.sliders.size]
+        a = _link_of(j, run)
         seen.force[a] -= seen.contact_force[j]
         seen.base[1] -= _to_ground(a, run) * seen.contact_force[j]
 
@@ -122,7 +128,7 @@ def see_z_of_sliders(run: FastRun) -> None:
     links, seen = run.plan.links, run.seen
     for j in range(seen.gap.size - links.sliders.size, seen.gap.size):
         slip = _slip_force(j, run)
-        z = links.z_of_link[links.sliders[j - seen.gap.size + links.sliders.size]]
+        z = links.z_of_link[_link_of(j, run)]
         seen.z[z] = (slip - seen.contact_force[j]) / abs(slip)
 
 
