@@ -61,19 +61,20 @@ def _enter(
         P = np.flatnonzero(passive)
         along = np.zeros(passive.size)
         along[P], along[j] = -np.linalg.solve(G[np.ix_(P, P)], G[P, j]) * way, way
+        along = _without_rounding(along, LCP_ROUNDING * np.abs(along).max())
         curvature = float(G[j] @ along) * way
         stops = []
         if curvature > SINGULAR * G[j, j]:
-            stops.append((-1, 0.0, -w_j * way / curvature))
+            stops.append((-1, 0.0, -w_j * way, curvature))
         for i in (*P, j):
             bound = box[0][i] if along[i] < 0.0 else box[1][i]
             if along[i] != 0.0 and np.isfinite(bound):
                 room = -x[i].copy()
                 room[0] += bound
-                stops.append((int(i), float(bound), room / along[i]))
+                stops.append((int(i), float(bound), room * np.sign(along[i]), abs(along[i])))
         if not stops:
             return False
-        blocking, bound, step = _first(stops)
+        blocking, bound, step = _first(stops, np.abs(x).max(axis=0))
         x += along[:, None] * step
         if blocking < 0:
             passive[j] = True
@@ -86,13 +87,24 @@ def _enter(
         w_j = w_j + curvature * way * step
 
 
-def _first(stops: list[tuple[int, float, Floats]]) -> tuple[int, float, Floats]:
-    """The first of some stops, by the coefficients of their steps one after the other."""
-    for c in range(stops[0][2].size):
-        least = min(step[c] for _, _, step in stops)
-        noise = LCP_ROUNDING * max(abs(step[c]) for _, _, step in stops)
-        stops = [stop for stop in stops if stop[2][c] <= least + noise]
-    return stops[0]
+def _first(
+    stops: list[tuple[int, float, Floats, float]], size: Floats
+) -> tuple[int, float, Floats]:
+    """The first of some stops, by the coefficients of their steps one after the other.
+
+    Of each: its unknown, its bound, the room before it (m,), and how much of that a step of one
+    takes. size (m,): of the unknowns, whose rounding is that of rooms.
+    """
+    for c in range(size.size):
+        steps = [(room[c] / speed, LCP_ROUNDING * size[c] / speed) for *_, room, speed in stops]
+        least, noise = min(steps)
+        stops = [
+            stop
+            for stop, (step, own) in zip(stops, steps, strict=True)
+            if step <= least + noise + own
+        ]
+    blocking, bound, room, speed = stops[0]
+    return blocking, bound, room / speed
 
 
 def _without_rounding(values: Floats, noise: Floats) -> Floats:

@@ -64,6 +64,28 @@ def test_limit_is_that_of_small_changes_tried_in_every_way() -> None:
     assert none > 3
 
 
+def test_joints_beside_each_other_end_nothing_by_rounding() -> None:
+    # Forces that a joint does not change at all are moved by rounding, and some rounding is large
+    # beside that.
+    rng = np.random.default_rng(6)
+    for _ in range(300):
+        bodies = int(rng.integers(2, 6))
+        W = np.zeros((2 * bodies, bodies))
+        for row in W:
+            one, other = rng.choice(bodies + 1, 2, replace=False)
+            ends = np.array([one, other])
+            row[ends[ends < bodies]] = np.array([-1.0, 1.0])[ends < bodies]
+        G = W / rng.uniform(0.1, 3.0, bodies) @ W.T
+        q = W @ rng.normal(size=bodies)
+        high = np.where(rng.random(q.size) < 0.3, np.inf, rng.uniform(0.01, 1.0, q.size))
+        low = np.where(np.isinf(high), 0.0, -high)
+        x = least_in_box(G, q[:, None], low, high, low.copy())
+        assert x is not None
+        w = G @ x + q
+        assert (w[x < high] > -1e-11).all()
+        assert (w[x > low] < 1e-11).all()
+
+
 def test_a_number_that_nothing_moves_stays_at_its_start() -> None:
     G, low, high = np.ones((2, 2)), np.full(2, -1.0), np.ones(2)
     x = least_in_box(G, np.zeros((2, 1)), low, high, np.array([1.0, -1.0]))
