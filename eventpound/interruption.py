@@ -1,8 +1,8 @@
 """Signals that end a program, noted and answered where nothing is half done.
 
-Ctrl-C (SIGINT) and termination (SIGTERM) can come at any instruction. Within
-`Deferred` they are noted only; whoever works asks `noted` where it can stop, and
-a signal that nobody answered is raised again at the end of the block.
+Ctrl-C (SIGINT), termination (SIGTERM) and the end of a time limit (SIGALRM) can come at any
+instruction. Within `Deferred` they are noted only; whoever works asks `noted`, or for an `answer`,
+where it can stop, and a signal that nobody answered is raised again at the end of the block.
 """
 
 from __future__ import annotations
@@ -12,7 +12,12 @@ import threading
 from types import FrameType, TracebackType
 from typing import Any, Self
 
-_ENDING = (signal.SIGINT, signal.SIGTERM)
+_ENDING = (
+    signal.SIGINT,
+    signal.SIGTERM,
+    # Windows has none.
+    *(getattr(signal, name) for name in ("SIGALRM",) if hasattr(signal, name)),
+)
 
 
 class Deferred:
@@ -34,7 +39,12 @@ class Deferred:
     def __enter__(self) -> Self:
         # Python answers signals in the main thread only; no other can be interrupted.
         if threading.current_thread() is threading.main_thread():
-            self._before = {number: signal.signal(number, self._note) for number in _ENDING}
+            self._before = {
+                number: signal.signal(number, self._note)
+                for number in _ENDING
+                # Another language's handler could not be put back.
+                if signal.getsignal(number) is not None
+            }
         return self
 
     def __exit__(
@@ -45,8 +55,15 @@ class Deferred:
     ) -> None:
         for number, handler in self._before.items():
             signal.signal(number, handler)
-        if self.noted is not None and error is None:
-            signal.raise_signal(self.noted)
+        noted, self.noted = self.noted, None
+        if noted is not None and error is None:
+            signal.raise_signal(noted)
+
+    def answer(self) -> None:
+        """Answer a signal that has come as if it came now."""
+        if self.noted is not None:
+            self.__exit__(None, None, None)
+            self.__enter__()
 
     def _note(self, number: int, frame: FrameType | None) -> None:
         if self.noted is not None and not self._patient:

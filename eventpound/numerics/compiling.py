@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from types import CodeType
 from typing import Any
 
+from eventpound.interruption import Deferred
+
 
 @dataclass(frozen=True)
 class Compiling:
@@ -46,6 +48,7 @@ class _Mine(threading.local):
         self.began = 0.0
         self.read: set[CodeType] = set()
         self.total = 0
+        self.signals = Deferred(patient=True)
 
 
 _mine = _Mine()
@@ -64,14 +67,22 @@ def watched(watcher: Watcher) -> Iterator[None]:
 
 @contextmanager
 def getting_ready(function: Callable[..., Any]) -> Iterator[None]:
-    """While a kernel is loaded or compiled, which counts as compilation."""
+    """While a kernel is loaded or compiled, which counts as compilation.
+
+    A signal that came at any instruction would leave a compiler that is half in C between two
+    states, and kernels made thereafter wrong. It is answered where a function has been read.
+    """
     outermost = _mine.depth == 0
     _mine.depth += 1
     if outermost:
         _mine.function, _mine.began = function, time.perf_counter()
         _mine.read, _mine.total = set(), 0
     try:
-        yield
+        if outermost:
+            with _mine.signals:
+                yield
+        else:
+            yield
     finally:
         _mine.depth -= 1
         if outermost:
@@ -90,6 +101,7 @@ def compilation_begins() -> None:
 
 def function_read(function: Callable[..., Any]) -> None:
     """Say that a function of the kernel has been read."""
+    _mine.signals.answer()
     if _mine.total > 0 and function.__code__ not in _mine.read:
         _mine.read.add(function.__code__)
         _tell()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import signal
 import threading
 import tomllib
 from pathlib import Path
@@ -105,6 +106,31 @@ def test_a_compilation_is_watched_and_timed(tmp_path):
     with watched(seen.append):
         pass
     assert seen.count(None) == 1
+
+
+@linked
+def test_an_interrupt_leaves_no_part_half_made(tmp_path, monkeypatch):
+    from eventpound.numerics.compiled.linked import PartLibrary
+
+    file, whole, add = written(tmp_path), [], PartLibrary.add_ir_module
+
+    def interrupted(self, module):
+        signal.raise_signal(signal.SIGINT)
+        add(self, module)
+        whole.append(self)
+
+    # A process that was started in the background ignores it.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with monkeypatch.context() as patch:
+            patch.setattr(PartLibrary, "add_ir_module", interrupted)
+            with pytest.raises(KeyboardInterrupt):
+                imported(file).powers(2.0)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert len(whole) == 1
+    assert imported(file).powers(2.0)[2] == 8.0
 
 
 def test_numba_in_its_own_way_gives_the_same(tmp_path):
