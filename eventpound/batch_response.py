@@ -160,11 +160,10 @@ def keep_rows(many: BatchResponse, low: int, rows: VariantArrays, kept: Kept) ->
     Those that did not reach their end are left without numbers, and marked
     unless they ended for want of room only.
     """
-    from eventpound.contact.cascade import T
     from eventpound.mechanics.monitored import places_of
     from eventpound.numerics.compiled import in_python
     from eventpound.solvers.events.recorder import extremes_of
-    from eventpound.solvers.fast.run import FINISHED, MESSAGES, STEPS
+    from eventpound.solvers.fast.run import FINISHED, MESSAGES
 
     part = slice(low, low + kept.ended.size)
     own: Any = np.flatnonzero(kept.ended == FINISHED)
@@ -172,7 +171,8 @@ def keep_rows(many: BatchResponse, low: int, rows: VariantArrays, kept: Kept) ->
     if own.size == kept.ended.size:
         # Slices copy at once what an index copies row by row.
         own, at = slice(None), part
-    many.t[part], many.steps[part] = rows.state.clock[:, T], rows.state.count[:, STEPS]
+    now, progress = rows.state.now[:, 0], rows.state.progress[:, 0]
+    many.t[part], many.steps[part] = now["t"], progress["steps"]
     many.message[part] = [MESSAGES[FINISHED]] * kept.ended.size
     for i in (low + np.flatnonzero(kept.ended != FINISHED)).tolist():
         ended = int(kept.ended[i - low])

@@ -23,24 +23,11 @@ from collections import Counter
 from collections.abc import Sequence
 
 from eventpound.contact.event import Event, EventKind
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.contact.state import Now
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.contact import Contact
 from eventpound.scene.spring import Spring
 from eventpound.tolerances import CASCADE_OVER, FLEETING, LAST_SPEED, LISTED_SPEED, LOSSLESS
-
-CLOCK_PLACES = 9
-(T, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT, SETTLED_AT) = (
-    range(CLOCK_PLACES)
-)
-"""First places in the `clock` of a run: time (s), fastest closing speed so far (m/s), length of
-the last flight (s), time since the last impact (s); of this instant the fastest closing speed
-(m/s), and what its last impacts lost and passed on (J); when a contact last came to rest, and when
-an instant was last settled (s)."""
-COUNT_PLACES = 5
-(GROUPS, EVENTS, IN_A_ROW, HERE, STALE) = range(COUNT_PLACES)
-"""First places in its `count`: groups of events, rows of events, impact problems of this cascade
-and of this instant, and whether the mode is another by now."""
 
 TIRED = 10_000
 """Impact problems of one cascade after which those too slow to be listed are taken as plastic:
@@ -89,28 +76,28 @@ def is_endless(here: int, lost: float, passed_on: float) -> bool:
 
 
 @scalar_kernel
-def end_flight(clock: Floats) -> None:
+def end_flight(now: Now) -> None:
     """The last flight is over, unless it was none: what happens at once is no interval."""
-    if clock[SINCE_IMPACT] > 0.0:
-        clock[INTERVAL] = clock[SINCE_IMPACT]
+    if now.since_impact > 0.0:
+        now.interval = now.since_impact
 
 
 @scalar_kernel
-def is_fleeting(tau: float, clock: Floats, time: float) -> bool:
+def is_fleeting(tau: float, now: Now, time: float) -> bool:
     """Whether a mode that ends after tau (s) is none: a contact has only just come to rest.
 
     `time`: the scene's own (s).
     """
-    return bool(clock[T] - clock[RESTED_AT] + tau < FLEETING * time)
+    return now.t - now.rested_at + tau < FLEETING * time
 
 
 @scalar_kernel
-def is_over(clock: Floats, count: Ints, time: float) -> bool:
+def is_over(now: Now, time: float) -> bool:
     """Whether a cascade was under way that is over, its last impact long ago.
 
     `time`: the scene's own (s).
     """
-    return bool(count[IN_A_ROW] > 0 and clock[SINCE_IMPACT] > CASCADE_OVER * time)
+    return now.in_a_row > 0 and now.since_impact > CASCADE_OVER * time
 
 
 def crowded_message(events: Sequence[Event], contacts: Sequence[Contact | Spring]) -> str:

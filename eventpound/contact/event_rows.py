@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.contact.cascade import EVENTS, GROUPS, IN_A_ROW, RESTED_AT, T
 from eventpound.contact.event import Event, EventKind
 from eventpound.contact.modes import transition_code
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.contact.state import Now
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
 
 IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED, UNLISTED_LAST = (
@@ -57,16 +57,16 @@ EVENT_WIDTH = len(EventRow._fields)
 
 
 @scalar_kernel
-def events_wanted(contacts: int, count: Ints) -> int:
+def events_wanted(contacts: int, now: Now) -> int:
     """Rows for which there is to be room before an instant: two problems and who rests."""
-    return int(count[EVENTS] + 4 * contacts + 4)
+    return now.events + 4 * contacts + 4
 
 
 @scalar_kernel
-def new_group(count: Ints) -> int:
+def new_group(now: Now) -> int:
     """Number of the next problem."""
-    count[GROUPS] += 1
-    return int(count[GROUPS] - 1)
+    now.groups += 1
+    return now.groups - 1
 
 
 @scalar_kernel
@@ -82,19 +82,17 @@ def kind_of_impact(listed: bool, plastic: bool, before: float, restitution: floa
 
 
 @scalar_kernel
-def write_event(row: EventRow, count: Ints, events: Floats) -> None:
+def write_event(row: EventRow, now: Now, events: Floats) -> None:
     """Add a row."""
-    place = events[count[EVENTS]]
+    place = events[now.events]
     place[0], place[1], place[2], place[3] = row.t, row.kind, row.group, row.contact
     place[4], place[5], place[6] = row.before, row.after, row.impulse
     place[7], place[8] = row.lost, row.impacts
-    count[EVENTS] += 1
+    now.events += 1
 
 
 @scalar_kernel
-def write_changes(
-    before: Any, resting: Bools, gap_rate: Floats, clock: Floats, count: Ints, events: Floats
-) -> None:
+def write_changes(before: Any, resting: Bools, gap_rate: Floats, now: Now, events: Floats) -> None:
     """Write down which contacts changed their mode, one problem.
 
     Parameters
@@ -103,7 +101,7 @@ def write_changes(
         Whether contacts rested before, and do so now.
     gap_rate : ndarray, shape (K,)
         Rates of the gaps (m/s).
-    clock, count, events : ndarray
+    now, events : Now, ndarray
         Of the run.
     """
     group = -1
@@ -112,28 +110,28 @@ def write_changes(
         if code == 0:
             continue
         if group < 0:
-            group = new_group(count)
+            group = new_group(now)
         if code == 1:
-            clock[RESTED_AT] = clock[T]
-        write_change(code, j, group, gap_rate[j], clock[T], count, events)
+            now.rested_at = now.t
+        write_change(code, j, group, gap_rate[j], now, events)
 
 
 @scalar_kernel
 def write_change(
-    code: int, contact: int, group: int, rate: float, t: float, count: Ints, events: Floats
+    code: int, contact: int, group: int, rate: float, now: Now, events: Floats
 ) -> None:
     """Write down that a contact changed its mode, by a code of `transition_code`."""
     kind = REST + code - 1
     if kind == REST:
-        gather_unlisted(contact, count, events)
-    write_event(EventRow(t, kind, group, contact, 0.0, rate, 0.0, 0.0, 1), count, events)
+        gather_unlisted(contact, now, events)
+    write_event(EventRow(now.t, kind, group, contact, 0.0, rate, 0.0, 0.0, 1), now, events)
 
 
 @scalar_kernel
-def gather_unlisted(contact: int, count: Ints, events: Floats) -> None:
+def gather_unlisted(contact: int, now: Now, events: Floats) -> None:
     """Make one accumulation of the unlisted impacts of a contact that rests."""
     impulse, lost, impacts, last = 0.0, 0.0, 0, -1
-    for i in range(count[EVENTS]):
+    for i in range(now.events):
         row = events[i]
         if row[1] <= UNLISTED and row[3] == contact:
             impulse += row[6]
@@ -145,14 +143,14 @@ def gather_unlisted(contact: int, count: Ints, events: Floats) -> None:
         row = events[last]
         t, group, rate = row[0], int(row[2]), row[4]
         whole = EventRow(t, ACCUMULATION, group, contact, rate, 0.0, impulse, lost, impacts)
-        write_event(whole, count, events)
+        write_event(whole, now, events)
 
 
 @scalar_kernel
-def list_all(count: Ints, events: Floats) -> None:
+def list_all(now: Now, events: Floats) -> None:
     """List the impacts that were held back: their cascade has ended otherwise."""
-    count[IN_A_ROW] = 0
-    for i in range(count[EVENTS]):
+    now.in_a_row = 0
+    for i in range(now.events):
         if events[i, 1] == UNLISTED:
             events[i, 1] = IMPACT
         elif events[i, 1] == UNLISTED_LAST:
@@ -160,12 +158,12 @@ def list_all(count: Ints, events: Floats) -> None:
 
 
 @scalar_kernel
-def end_cascade(resting: Bools, count: Ints, events: Floats) -> None:
+def end_cascade(resting: Bools, now: Now, events: Floats) -> None:
     """List the impacts that were held back, or gather them where their contact rests."""
     for j in range(resting.size):
         if resting[j]:
-            gather_unlisted(j, count, events)
-    list_all(count, events)
+            gather_unlisted(j, now, events)
+    list_all(now, events)
 
 
 def events_of(rows: Floats) -> list[Event]:

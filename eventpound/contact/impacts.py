@@ -10,24 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.contact.cascade import (
-    EVENTS,
-    FASTEST,
-    FASTEST_HERE,
-    HERE,
-    IN_A_ROW,
-    INTERVAL,
-    LOST_HERE,
-    PASSED_ON,
-    SINCE_IMPACT,
-    WINDOW,
-    T,
-    is_endless,
-    is_plastic,
-)
+from eventpound.contact.cascade import WINDOW, is_endless, is_plastic
 from eventpound.contact.event_rows import EventRow, kind_of_impact, new_group, write_event
 from eventpound.contact.modes import IMPACT, duty
-from eventpound.contact.state import Instant
+from eventpound.contact.state import Instant, Now
 from eventpound.mechanics.clusters import close_one, form_clusters, is_support
 from eventpound.mechanics.impact import impact_law, inverse_mass, newton, push_apart
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -57,7 +43,7 @@ def settle_closed(at: Instant) -> int:
     elif one == SEVERAL:
         _close_several(at)
         ended = _impacts_of_several(at)
-        if ended == DONE and at.count[HERE] > 0:
+        if ended == DONE and at.now[0].here > 0:
             _still_several(at)
         return ended
     return DONE
@@ -72,9 +58,9 @@ def _collapsed(interval: float, time: float) -> bool:
 @scalar_kernel
 def close_collapsed(at: Instant) -> None:
     """Where an interval was none, close every gap that is none beside it."""
-    if not _collapsed(at.clock[INTERVAL], at.time):
+    if not _collapsed(at.now[0].interval, at.time):
         return
-    none = LAST_INTERVAL * (at.length + at.clock[FASTEST] * at.time)
+    none = LAST_INTERVAL * (at.length + at.now[0].fastest * at.time)
     for j in range(at.gap.size):
         if abs(at.gap[j]) <= none:
             at.gap[j] = 0.0
@@ -137,16 +123,16 @@ def put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
 
 
 @scalar_kernel
-def is_last(approach: float, length: float, time: float, clock: Floats, count: Ints) -> bool:
+def is_last(approach: float, length: float, time: float, now: Now) -> bool:
     """Whether an impact of this closing speed (m/s) is taken as plastic; counts it.
 
     length, time: the scene's own, L (m) and T (s).
     """
-    clock[FASTEST] = max(clock[FASTEST], approach)
-    count[HERE] += 1
-    count[IN_A_ROW] += 1
-    last = is_plastic(approach, clock[FASTEST], length / time, count[IN_A_ROW], count[HERE])
-    return last or _collapsed(clock[INTERVAL], time)
+    now.fastest = max(now.fastest, approach)
+    now.here += 1
+    now.in_a_row += 1
+    last = is_plastic(approach, now.fastest, length / time, now.in_a_row, now.here)
+    return last or _collapsed(now.interval, time)
 
 
 class Meeting(NamedTuple):
@@ -165,7 +151,7 @@ class Meeting(NamedTuple):
 
 
 @scalar_kernel
-def rebound(meeting: Meeting, clock: Floats, count: Ints, events: Floats) -> tuple[float, float]:
+def rebound(meeting: Meeting, now: Now, events: Floats) -> tuple[float, float]:
     """Newton's law at one contact, γ⁺ = -ε γ⁻, and its row: no complementarity problem.
 
     Returns
@@ -174,16 +160,16 @@ def rebound(meeting: Meeting, clock: Floats, count: Ints, events: Floats) -> tup
         γ⁺ (m/s), and Λ (N s).
     """
     before, restitution = meeting.before, meeting.restitution
-    plastic = is_last(-before, meeting.length, meeting.time, clock, count)
-    listed = -before >= LISTED_SPEED * clock[FASTEST]
+    plastic = is_last(-before, meeting.length, meeting.time, now)
+    listed = -before >= LISTED_SPEED * now.fastest
     kind = kind_of_impact(listed, plastic, before, restitution)
     if plastic:
         restitution = 0.0
     after, impulse, lost = newton(before, restitution, meeting.inverse)
-    clock[SINCE_IMPACT] = 0.0
-    t, group = clock[T], new_group(count)
+    now.since_impact = 0.0
+    t, group = now.t, new_group(now)
     write_event(
-        EventRow(t, kind, group, meeting.contact, before, after, impulse, lost, 1), count, events
+        EventRow(t, kind, group, meeting.contact, before, after, impulse, lost, 1), now, events
     )
     return after, impulse
 
@@ -194,7 +180,7 @@ def _impact_of_only(j: int, at: Instant) -> None:
     left, right = at.left[j], at.right[j]
     inverse = inverse_mass(left, right, at.mass)
     meeting = Meeting(j, at.gap_rate[j], at.restitution[j], inverse, at.length, at.time)
-    after, impulse = rebound(meeting, at.clock, at.count, at.events)
+    after, impulse = rebound(meeting, at.now[0], at.events)
     push_apart(j, impulse, at.mass, at.left, at.right, at.gap_rate, at.v)
     at.gap_rate[j] = after
     if after == 0.0:
@@ -216,26 +202,26 @@ def next_problem(shut: Bools, at: Instant) -> tuple[int, bool]:
 
     `shut` (K,): closed contacts.
     """
-    gap_rate, clock, count = at.gap_rate, at.clock, at.count
+    gap_rate, now = at.gap_rate, at.now[0]
     # What the instant has seen so far outlives a pause in which the record gets more room.
-    if count[EVENTS] + 3 * shut.size > at.events.shape[0]:
+    if now.events + 3 * shut.size > at.events.shape[0]:
         return FULL, False
     if not _any_approaches(at.gap, gap_rate):
         return DONE, False
     approach = -np.min(gap_rate[shut])
-    fastest = max(clock[FASTEST_HERE], approach)
-    clock[FASTEST_HERE] = fastest
+    fastest = max(now.fastest_here, approach)
+    now.fastest_here = fastest
     if approach <= FADED * fastest:
         # A row squeezed without play: what is left is rounding of the first speeds.
         for j in range(shut.size):
             if shut[j] and abs(gap_rate[j]) <= 10.0 * FADED * fastest:
                 gap_rate[j] = 0.0
         return DONE, False
-    if is_endless(count[HERE], clock[LOST_HERE], clock[PASSED_ON]):
+    if is_endless(now.here, now.lost_here, now.passed_on):
         return ENDLESS, False
-    if count[HERE] % WINDOW == 0:
-        clock[LOST_HERE] = clock[PASSED_ON] = 0.0
-    return PROBLEM, is_last(approach, at.length, at.time, clock, count)
+    if now.here % WINDOW == 0:
+        now.lost_here = now.passed_on = 0.0
+    return PROBLEM, is_last(approach, at.length, at.time, now)
 
 
 @deferred_kernel
@@ -264,28 +250,28 @@ def list_impacts(
 
     Counts that, and what was passed on.
     """
-    count, clock, gap_rate = at.count, at.clock, at.gap_rate
-    group, speed = new_group(count), 0.0
-    clock[SINCE_IMPACT] = 0.0
-    clock[LOST_HERE] += lost
+    gap_rate, now = at.gap_rate, at.now[0]
+    group, speed = new_group(now), 0.0
+    now.since_impact = 0.0
+    now.lost_here += lost
     for j in range(before.size):
-        clock[PASSED_ON] -= impulse[j] * before[j]
+        now.passed_on -= impulse[j] * before[j]
         if involved[j]:
             speed = max(speed, -before[j])
-    listed = speed >= LISTED_SPEED * clock[FASTEST]
+    listed = speed >= LISTED_SPEED * now.fastest
     for j in range(before.size):
         if not (involved[j] and impulse[j] > 0.0):
             continue
         if plastic:
             gap_rate[j] = 0.0
         kind = kind_of_impact(listed, plastic, before[j], at.restitution[j])
-        row = EventRow(clock[T], kind, group, j, before[j], gap_rate[j], impulse[j], lost, 1)
-        write_event(row, count, at.events)
+        row = EventRow(now.t, kind, group, j, before[j], gap_rate[j], impulse[j], lost, 1)
+        write_event(row, now, at.events)
         lost = 0.0
 
 
 @scalar_kernel
-def end_impacts(clock: Floats, count: Ints) -> None:
+def end_impacts(now: Now) -> None:
     """The last impact of an instant is over."""
-    clock[FASTEST_HERE] = 0.0
-    count[HERE] = 0
+    now.fastest_here = 0.0
+    now.here = 0

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import SETTLED_AT, SINCE_IMPACT, STALE, T, end_flight
+from eventpound.contact.cascade import end_flight
 from eventpound.contact.event_rows import write_changes
 from eventpound.contact.impacts import DONE, NO_FORCES, end_impacts, settle_closed
 from eventpound.contact.kinks import still_rate, turn_at_kinks
@@ -28,7 +28,7 @@ from eventpound.tolerances import OF_A_FLIGHT, TOGETHER
 @scalar_kernel
 def begin_instant(at: Instant) -> None:
     """Close what closes in this instant, and remember what impacts are about to change."""
-    end_flight(at.clock)
+    end_flight(at.now[0])
     close_together(at)
     copy_numbers(at.v, at.before)
 
@@ -41,7 +41,7 @@ def close_together(at: Instant) -> None:
     any such part, a part of the time since the last impact. A gap that stands still and that
     rounding has put below zero is closed, too: bodies that fill the space between two walls.
     """
-    instant = min(TOGETHER * at.time, OF_A_FLIGHT * at.clock[SINCE_IMPACT])
+    instant = min(TOGETHER * at.time, OF_A_FLIGHT * at.now[0].since_impact)
     for j in range(at.gap.size):
         closes = at.gap_rate[j] <= 0.0 and not at.resting[j]
         if closes and at.gap[j] <= -instant * at.gap_rate[j]:
@@ -61,7 +61,7 @@ def end_instant(ended: int, at: Instant) -> int:
     _keep_released(at)
     # It goes on where it stopped once there is more room.
     if ended == DONE:
-        end_impacts(at.clock, at.count)
+        end_impacts(at.now[0])
         turn_at_kinks(at)
     return ended
 
@@ -72,16 +72,16 @@ def _keep_released(at: Instant) -> None:
 
     Not those of bodies whose velocities an impact has changed since.
     """
-    released, vanished = at.released, at.vanished
+    released, vanished, now = at.released, at.vanished, at.now[0]
     for j in range(released.size):
-        if at.clock[SETTLED_AT] != at.clock[T]:
+        if now.settled_at != now.t:
             vanished[j] = False
         released[j] = released[j] or vanished[j]
         for end in (at.left[j], at.right[j]):
             if end >= 0 and at.v[end] != at.before[end]:
                 released[j] = False
         vanished[j] = released[j]
-    at.clock[SETTLED_AT] = at.clock[T]
+    now.settled_at = now.t
 
 
 @scalar_kernel
@@ -149,10 +149,10 @@ def take_rests(resting: Bools, pressed: Bools, solved: bool, at: Instant) -> int
     if not solved:
         copy_numbers(resting, at.resting)
         return NO_FORCES
-    write_changes(at.resting, resting, at.gap_rate, at.clock, at.count, at.events)
+    write_changes(at.resting, resting, at.gap_rate, at.now[0], at.events)
     for j in range(resting.size):
         changed = at.resting[j] != resting[j] or at.pressed[j] != pressed[j]
-        at.count[STALE] |= changed
+        at.now[0].stale |= changed
         at.resting[j], at.pressed[j] = resting[j], pressed[j]
         if resting[j]:
             at.gap_rate[j] = 0.0

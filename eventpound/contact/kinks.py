@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from eventpound.contact.cascade import STALE
 from eventpound.contact.state import Instant
 from eventpound.mechanics.elements import has_branches, next_branch
 from eventpound.mechanics.link_law import CLOSED, YIELDING
@@ -89,7 +88,7 @@ def choose_branches(acceleration: Floats, ground: float, onset: float, at: Insta
         if side == 0.0:
             side = (0.0 if second >= 0 else onset) - (0.0 if first >= 0 else onset)
         at.branch[a] = _first_branch(a, -1.0 if side < 0.0 else 1.0, at)
-        at.count[STALE] = 1
+        at.now[0].stale = True
 
 
 @scalar_kernel
@@ -118,7 +117,7 @@ def turn_at_kinks(at: Instant) -> None:
             side = -1 if rate < 0.0 else 1
             if of_memory:
                 side = CLOSED if at.branch[a] == YIELDING and rate > 0.0 else at.branch[a]
-            at.count[STALE] |= side != at.branch[a]
+            at.now[0].stale |= side != at.branch[a]
             at.branch[a] = side
 
 
@@ -134,4 +133,4 @@ def pass_kinks(passed: Bools, z: Floats, at: Instant) -> None:
                 own = z[h]
         noise = LENGTH * at.length
         at.branch[a] = next_branch(a, at.law.memory, at.branch[a], at.offset[a], x, own, noise)
-        at.count[STALE] = 1
+        at.now[0].stale = True

@@ -25,7 +25,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import INTERVAL
 from eventpound.contact.impacts import DONE, put_as_one, settle_closed
 from eventpound.contact.instant import (
     any_may_rest,
@@ -70,7 +69,7 @@ def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Mode
     approach = -at.gap_rate[at.gap == 0.0].min(initial=0.0)
     if 0.0 < approach <= LAST_SPEED_OF_SLIDERS * at.length / at.time:
         # As after an interval that is none.
-        at.clock[INTERVAL] = 0.0
+        at.now[0].interval = 0.0
     return int(in_python(end_instant)(in_python(settle_closed)(at), at))
 
 

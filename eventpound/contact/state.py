@@ -4,8 +4,36 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from eventpound.mechanics.link_law import LinkLaw
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints, Records
+from eventpound.numerics.records import NamedNumbers
+
+
+class Now(NamedNumbers):
+    """Where a run is, whichever integrator carries it."""
+
+    t: float  # time (s)
+    fastest: float  # closing speed, the fastest so far (m/s)
+    interval: float  # length of the last flight (s)
+    since_impact: float  # time since the last impact (s)
+    fastest_here: float  # closing speed, the fastest of this instant (m/s)
+    lost_here: float  # what the last impacts of this instant lost (J)
+    passed_on: float  # what they passed on (J)
+    rested_at: float  # when a contact last came to rest (s)
+    settled_at: float  # when an instant was last settled (s)
+    groups: int  # groups of events
+    events: int  # rows of events
+    in_a_row: int  # impact problems of this cascade
+    here: int  # impact problems of this instant
+    stale: bool  # whether the mode is another by now
+
+
+def begin(now: Records, start: float, time: Floats | float) -> None:
+    """Fill in records of zeros, of runs that start at a time (s); `time`: the scenes' own (s)."""
+    now["t"], now["interval"], now["since_impact"] = start, time, time
+    now["rested_at"] = now["settled_at"] = -np.inf
 
 
 class Instant(NamedTuple):
@@ -23,7 +51,7 @@ class Instant(NamedTuple):
 
     released (K,): contacts whose force has just passed zero; vanished (K,): those of which it has
     in this instant, by this event or one before it. before (N,): velocities before the impacts
-    (m/s). clock, count: the places of `eventpound.contact.cascade`. events: rows.
+    (m/s). now (1,): a `Now`. events: rows.
     """
 
     mass: Floats
@@ -49,6 +77,5 @@ class Instant(NamedTuple):
     released: Bools
     vanished: Bools
     before: Floats
-    clock: Floats
-    count: Ints  # type: ignore[assignment]  # hides the method of tuples
+    now: Records
     events: Floats

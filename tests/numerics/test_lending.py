@@ -10,16 +10,14 @@ import pytest
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.numerics.lending import change_first, lend, on_loan, whole
+from eventpound.numerics.records import NamedNumbers
 
 
-class Mass(np.record):  # type: ignore[misc]  # final to type checkers only
+class Mass(NamedNumbers, room=3):
     """A record with an array."""
 
     x: float
     terms: Floats
-
-
-LAYOUT = np.dtype((Mass, np.dtype([("x", float), ("terms", float, 3)], align=True)))
 
 
 class Pair(NamedTuple):
@@ -52,7 +50,7 @@ def fill_all(several: Several, y: Floats) -> float:
 
 
 def test_records_are_lent() -> None:
-    masses = np.zeros(2, LAYOUT)
+    masses = np.zeros(2, Mass.layout)
     masses[0].x = 3.0
     assert fill_all(on_loan(Several(masses, 0.5)), np.array([7.0])) == 1.5
     assert masses[1].x == 14.0
@@ -61,7 +59,7 @@ def test_records_are_lent() -> None:
 
 def test_layouts_are_told_apart_by_their_class() -> None:
     other = np.dtype((type("Other", (Mass,), {}), np.dtype([("x", float)])))
-    kinds = {on_loan(Several(np.zeros(2, each), 0.5))._numba_type_ for each in (LAYOUT, other)}  # type: ignore[attr-defined]
+    kinds = {on_loan(Several(np.zeros(2, each), 0.5))._numba_type_ for each in (Mass.layout, other)}  # type: ignore[attr-defined]
     assert len(kinds) == 2
 
 

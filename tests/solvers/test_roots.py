@@ -33,7 +33,6 @@ from eventpound.solvers.events.instant_loop import make_ready
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.loop import EventLoop, Segment
 from eventpound.solvers.events.roots import on_the_root, root_functions
-from eventpound.solvers.events.run import FINDER
 from eventpound.solvers.events.second_look import INTEGRATOR
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
 from eventpound.solvers.sundials import library
@@ -64,7 +63,7 @@ def nothing_else_looks(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def watched(self: Segment, *arguments: object) -> None:
         begin(self, *arguments)  # type: ignore[arg-type]
-        assert self.now.state.count[FINDER] == INTEGRATOR
+        assert self.now.state.progress[0].finder == INTEGRATOR
         watched = self._examined.dynamics.watched
         assert not watched.open_contacts.any()
         assert not watched.unlocked.any()

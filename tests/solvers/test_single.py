@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from eventpound.contact import modes
-from eventpound.contact.cascade import EVENTS
 from eventpound.contact.event_rows import ACCUMULATION, EVENT_WIDTH, IMPACT
 from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.model import Model, assemble
@@ -65,8 +64,8 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
     body, record = series.single.body[0], blank_record(task, model)
     run = SingleRun(
         body,
-        state.clock,
-        state.count,
+        state.now[0],
+        state.progress[0],
         record.events,
         record.rows,
         Running(*record.extremes, places_in(model)),
@@ -101,7 +100,7 @@ def test_duty(before: str, gap: float, gap_rate: float, duty: int, side: float) 
     """The rows of the table of modes; what presses the body on the barrier is the ground."""
     run = at_barrier(side, gap == 0.0, gap_rate, before == "resting")
     settle(run, -side * 3.0)
-    body, kinds = run.body, run.events[: run.count[EVENTS], 1].tolist()
+    body, kinds = run.body, run.events[: run.now.events, 1].tolist()
     after = -side * body.v
     if duty == modes.NONE:
         assert after == gap_rate

@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from eventpound.contact.cascade import LONGEST_CASCADE, SINCE_IMPACT, STALE, T, is_fleeting
+from eventpound.contact.cascade import LONGEST_CASCADE, is_fleeting
 from eventpound.contact.event_rows import end_cascade, events_wanted
 from eventpound.contact.impacts import DONE, FULL
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
@@ -36,7 +36,7 @@ from eventpound.solvers.events.present import (
     take,
 )
 from eventpound.solvers.events.recorder import PASSED, WRITTEN, is_due
-from eventpound.solvers.events.run import KNOTS, PHASE, SHORT_STEPS, STEPS, Dynamics, Run
+from eventpound.solvers.events.run import Dynamics, Run
 from eventpound.solvers.events.second_look import BROKEN, end_of_look, look_again, look_between
 from eventpound.solvers.events.short_series import local_series
 from eventpound.solvers.events.step_check import broken_contact
@@ -61,8 +61,8 @@ NOT_FINITE, UNENDING = 30, 32
 def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
     rules, state, record, happened = run.rules, run.state, run.record, run.happened
-    clock, count = state.clock, state.count
-    t = clock[T]
+    now, progress = state.now[0], state.progress[0]
+    t = now.t
     stop = min(next_corner(piece, t, piece.stop), t + time_to_look(piece, t))
     forcing = lend(forcing_now(piece, t))
     series = local_series(run, forcing, mode, stop - t)
@@ -80,7 +80,7 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         for j in range(series.closing.size):
             happened.closing[j] = series.closing[j]
     any_event = anything(happened)
-    fleeting = any_event and is_fleeting(tau, clock, rules.time)
+    fleeting = any_event and is_fleeting(tau, now, rules.time)
     # Where a mode is none no time passes either.
     end = t if fleeting else t + tau
     if marked or is_due(end, record.journal):
@@ -96,23 +96,23 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     else:
         update_extremes(seen, end, record.running)
     if broken_contact(seen, mode.watched, rules.length_noise) >= 0:
-        clock[T] = end
+        now.t = end
         return BROKEN
-    since = clock[SINCE_IMPACT]
+    since = now.since_impact
     take(evaluate_series(series.dense.Y, tau)[0], end, mode, forcing, state)
     pass_kinks(happened.kinked, state.z, run.instant)
     # The differences of times are none where intervals are short.
-    clock[SINCE_IMPACT] = since + tau
+    now.since_impact = since + tau
     for j in range(state.gap.size):
         if state.gap[j] == np.inf:
             continue
         closes = happened.closing[j]
         state.gap[j], state.gap_rate[j] = 0.0 if closes else seen.gap[0, j], seen.gap[1, j]
-    count[KNOTS] = 0 if any_event else count[KNOTS] + series.knot
-    count[STEPS] += 1
-    count[SHORT_STEPS] += 1
-    count[PHASE] = DUTIES if any_event else FLIGHT
-    again = series.knot and count[KNOTS] <= MOST_KNOTS
+    progress.knots = 0 if any_event else progress.knots + series.knot
+    progress.steps += 1
+    progress.short_steps += 1
+    progress.phase = DUTIES if any_event else FLIGHT
+    again = series.knot and progress.knots <= MOST_KNOTS
     return DONE if any_event or mode.system.mass.size == 0 or again else OVER
 
 
@@ -137,7 +137,7 @@ def proceed(
     most : int
         Steps of the run after which SETTLE pauses.
     run : Run
-        The run; SETTLE goes on where `count[PHASE]` says; on loan.
+        The run; SETTLE goes on where the `phase` of its progress says; on loan.
     mode : Dynamics
         The present mode; on loan.
     piece : CurrentPiece
@@ -168,49 +168,49 @@ def proceed(
 def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """Follow the motion from the present instant until nothing is near; ends as `proceed`."""
     state, at = run.state, run.instant
-    clock, count = state.clock, state.count
+    now, progress = state.now[0], state.progress[0]
     ended = DONE
     while ended == DONE:
         if not _has_room(run):
             return FULL
         by_python = mode.bodies.points.size > 0 or mode.bodies.sliders.size > 0
-        if by_python and count[PHASE] <= RESTS:
+        if by_python and progress.phase <= RESTS:
             return IN_PYTHON
-        if count[PHASE] == DUTIES:
+        if progress.phase == DUTIES:
             ended = settle_impacts(at)
             if ended != DONE:
                 return ended
-            count[PHASE] = RESTS
-        if count[PHASE] == RESTS:
+            progress.phase = RESTS
+        if progress.phase == RESTS:
             if lacks_branch(at):
                 return FIRST_BRANCHES
             if run.laws.contact.size > 0:
                 turn_elements(run.laws, at)
             if any_may_rest(at):
-                ended = decide_rests(state.z, lend(forcing_now(piece, clock[T])), at)
+                ended = decide_rests(state.z, lend(forcing_now(piece, now.t)), at)
                 if ended != DONE:
                     return ended
-            count[PHASE] = ARRIVAL
-        if count[PHASE] == ARRIVAL:
-            if count[STALE]:
+            progress.phase = ARRIVAL
+        if progress.phase == ARRIVAL:
+            if now.stale:
                 return NEW_MODE
-            if is_fleeting(0.0, clock, run.rules.time):
+            if is_fleeting(0.0, now, run.rules.time):
                 hold(run.record)
             make_ready(run, mode, piece)
             put_present(run, True)
-            count[PHASE] = FLIGHT
-        if clock[T] >= piece.stop:
+            progress.phase = FLIGHT
+        if now.t >= piece.stop:
             ended = OVER
-        elif count[STEPS] >= most:
+        elif progress.steps >= most:
             return PAUSED
-        elif count[SHORT_STEPS] >= LONGEST_CASCADE:
+        elif progress.short_steps >= LONGEST_CASCADE:
             return UNENDING
         else:
             ended = _short_step(run, mode, piece)
-            if count[PHASE] == FLIGHT:
+            if progress.phase == FLIGHT:
                 make_ready(run, mode, piece)
     if ended == OVER:
-        end_cascade(state.resting, count, run.record.events)
+        end_cascade(state.resting, now, run.record.events)
     return ended
 
 
@@ -224,26 +224,26 @@ def settle_in_python(run: Run, impacts: Callable[[], int], rests: Callable[[], i
     impacts, rests : callable
         The impacts of the instant, and who rests after them; DONE, or how they fail.
     """
-    count = run.state.count
+    progress = run.state.progress[0]
     with by_python():
-        if count[PHASE] == DUTIES:
+        if progress.phase == DUTIES:
             ended = impacts()
             if ended != DONE:
                 return ended
-            count[PHASE] = RESTS
+            progress.phase = RESTS
         if in_python(lacks_branch)(run.instant):
             return FIRST_BRANCHES
         in_python(turn_elements)(run.laws, run.instant)
         ended = rests()
         if ended == DONE:
-            count[PHASE] = ARRIVAL
+            progress.phase = ARRIVAL
         return ended
 
 
 @kernel
 def _has_room(run: Run) -> bool:
     """Whether the record can take what an instant and a step may write, at the least."""
-    journal, count, events = run.record.journal, run.state.count, run.record.events
+    journal, events = run.record.journal, run.record.events
     rows = journal.cursor[WRITTEN] + journal.times.size - journal.cursor[PASSED] + 4
-    wanted = events_wanted(run.state.gap.size, count)
+    wanted = events_wanted(run.state.gap.size, run.state.now[0])
     return rows <= journal.rows.shape[0] and wanted <= events.shape[0]

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from eventpound.contact.cascade import STALE, endless_message, long_message
+from eventpound.contact.cascade import endless_message, long_message
 from eventpound.contact.impacts import DONE, ENDLESS, FULL, NO_FORCES, NO_IMPACT
 from eventpound.contact.kinks import choose_branches, choose_clear_branches
 from eventpound.contact.rest import ORDER
@@ -38,7 +38,6 @@ from eventpound.solvers.events.instant import (
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.point_instant import settle_points
 from eventpound.solvers.events.present import forcing_now
-from eventpound.solvers.events.run import KNOTS, PHASE, SHORT_STEPS
 from eventpound.solvers.events.second_look import BROKEN, EVENT
 from eventpound.solvers.events.underway import Underway
 
@@ -65,9 +64,9 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
     ComputationError
         Where an instant has no solution or cascades have no end.
     """
-    count = now.state.count
-    count[KNOTS] = count[SHORT_STEPS] = 0
-    count[PHASE] = DUTIES
+    progress = now.state.progress[0]
+    progress.knots = progress.short_steps = 0
+    progress.phase = DUTIES
     most = now.steps
     ended = DONE
     while ended != OVER:
@@ -105,7 +104,7 @@ def _settle_sliders(now: Underway, piece: CurrentPiece) -> int:
     def rests() -> int:
         ended = decide_sticks(run.state.z, forcing_now(piece, now.t), noise, run.instant, model)
         if ended == DONE:
-            run.state.count[STALE] |= bool((run.instant.branch != now.mode.branch).any())
+            run.state.now[0].stale |= bool((run.instant.branch != now.mode.branch).any())
         return ended
 
     return settle_in_python(run, impacts, rests)
@@ -143,11 +142,11 @@ def _choose_branches(now: Underway, piece: CurrentPiece) -> None:
     mode = table.mode(resting, state.branch, state.pressed, now.run.instant.opening)
     now.take_closing_speeds(mode)
     make_ready(now, mode, piece)
-    now.state.count[PHASE] = RESTS
+    now.state.progress[0].phase = RESTS
     seen = now.run.looks[0]
     onset = ground_onset(piece, now.t, ORDER, np.empty(ORDER))
     in_python(choose_branches)(seen.a, 0.0, onset, now.run.instant)
-    state.count[STALE] = 1
+    state.now[0].stale = True
 
 
 def make_ready(now: Underway, mode: Mode, piece: CurrentPiece) -> None:

@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import T
 from eventpound.contact.event_rows import IMPACT, EventRow, new_group, write_event
-from eventpound.contact.state import Instant
+from eventpound.contact.state import Instant, Now
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_in
 from eventpound.mechanics.observables import difference
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Event, EventKind, LawRecording
@@ -80,12 +79,12 @@ def turn(
 
 
 @scalar_kernel
-def write_touch(p: int, rate: float, laws: Laws, count: Ints, events: Floats) -> None:
+def write_touch(p: int, rate: float, laws: Laws, now: Now, events: Floats) -> None:
     """Write down a time in contact that has ended with this rate of the gap (m/s)."""
-    touch, group, contact = laws.touch, new_group(count), laws.contact[p]
+    touch, group, contact = laws.touch, new_group(now), laws.contact[p]
     before, impulse, work = touch[BEFORE, p], touch[IMPULSE, p], touch[WORK, p]
     row = EventRow(touch[SINCE, p], IMPACT, group, contact, before, rate, impulse, work, 1)
-    write_event(row, count, events)
+    write_event(row, now, events)
 
 
 @scalar_kernel
@@ -106,8 +105,8 @@ def turn_elements(laws: Laws, at: Instant) -> None:
         a, j = at.branch.size - laws.contact.size + p, laws.contact[p]
         gap = at.opening[j] + difference(at.u, at.left[j], at.right[j])
         rate = difference(at.v, at.left[j], at.right[j])
-        if turn(p, at.branch[a] < 0, gap, rate, at.length, laws, at.clock[T]):
-            write_touch(p, rate, laws, at.count, at.events)
+        if turn(p, at.branch[a] < 0, gap, rate, at.length, laws, at.now[0].t):
+            write_touch(p, rate, laws, at.now[0], at.events)
         at.law.damping[a] = laws.touch[DRAG, p]
 
 

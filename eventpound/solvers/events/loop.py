@@ -34,7 +34,6 @@ from eventpound.solvers.events.recorder import (
     kept,
     own_recording,
 )
-from eventpound.solvers.events.run import FINDER, STEPS
 from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
@@ -93,7 +92,7 @@ class Segment:
         self._first = self._reached_row = 0
         self._excess = -1.0
         self._length = piece.stop - self.origin
-        now.state.count[FINDER] = INTEGRATOR if integrator.finds_events else OURSELVES
+        now.state.progress[0].finder = INTEGRATOR if integrator.finds_events else OURSELVES
         pressed = self.mode.bodies.resting.size > 0
         self._longest = _longest_under(piece) if pressed else np.inf
         # In a moving frame a step is inspected from sample to sample.
@@ -182,7 +181,7 @@ class Segment:
                 raise
             self._first, self.start, self.end = done.first, done.start, done.end
             self.reached, self._reached_row = done.start, done.first
-            now.state.count[STEPS] += done.steps
+            now.state.progress[0].steps += done.steps
             if done.end <= done.start:
                 raise ComputationError(
                     "the integrator makes no progress; try a larger rtol", self.origin + self.end
@@ -195,7 +194,7 @@ class Segment:
             if done.verdict != BEYOND_BOUND:
                 self._excess = done.excess
                 if done.verdict == HAPPENED and integrator.happened is not None:
-                    now.state.count[FINDER] = FOUND_AT_END
+                    now.state.progress[0].finder = FOUND_AT_END
                     now.mark_happened(*integrator.happened)
                 return done.verdict in (MARKED, HAPPENED)
             tau, first = done.start, done.first

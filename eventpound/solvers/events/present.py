@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import SINCE_IMPACT, T
 from eventpound.contact.kinks import pass_kinks
 from eventpound.mechanics.monitored import copy_extremes, update_extremes, update_settled
 from eventpound.mechanics.observables import (
@@ -63,8 +62,9 @@ def tolerances_of_state(rules: Rules, system: Reduced, bodies: Bodies) -> Floats
 def take(y: Floats, t: float, mode: Dynamics, forcing: Forcing, state: State) -> None:
     """Make a state vector the present state, at the time t (s)."""
     system, bodies = mode.system, mode.bodies
-    state.clock[SINCE_IMPACT] += t - state.clock[T]
-    state.clock[T] = t
+    now = state.now[0]
+    now.since_impact += t - now.t
+    now.t = t
     bodies_motion(placed(t, y, system, forcing), bodies, state.u, state.v)
     for h in range(state.z.size):
         if system.z_of[h] >= 0:
@@ -118,7 +118,7 @@ def make_ready(run: Run, mode: Dynamics, piece: CurrentPiece) -> None:
     """
     system, bodies, state = mode.system, mode.bodies, run.state
     rate = run.rate[: system.size]
-    forcing = lend(forcing_now(piece, state.clock[T]))
+    forcing = lend(forcing_now(piece, state.now[0].t))
     y = packed(state, system, bodies)
     copy_numbers(y, run.y)
     copy_numbers(tolerances_of_state(run.rules, system, bodies), run.atol)
@@ -135,7 +135,7 @@ def put_present(run: Run, settled: bool) -> None:
 
     The bodies of a `settled` one are on their constraints.
     """
-    record, t = run.record, run.state.clock[T]
+    record, t = run.record, run.state.now[0].t
     seen = run.looks[0]
     if settled:
         update_settled(seen.u, seen.elongation[0], seen.gap[0], t, record.running)

@@ -9,20 +9,24 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from eventpound.contact.cascade import COUNT_PLACES
 from eventpound.contact.state import Instant
 from eventpound.mechanics.monitored import Running
 from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints, Records
+from eventpound.numerics.records import NamedNumbers
 from eventpound.solvers.events.event_bounds import Found, Watched
 from eventpound.solvers.events.recorder import Journal
 
-STEPS, KNOTS, SHORT_STEPS, PHASE, FINDER = range(COUNT_PLACES, COUNT_PLACES + 5)
-"""Behind the places of `eventpound.contact.cascade` in `State.count`: steps, reversals followed
-without an event, short steps of this cascade, where an instant goes on, and who finds events in
-a step of an integrator."""
-COUNT_SIZE = COUNT_PLACES + 5
+
+class LoopProgress(NamedNumbers):
+    """What the event loop counts itself."""
+
+    steps: int  # steps so far
+    knots: int  # reversals followed without an event
+    short_steps: int  # short steps of this cascade
+    phase: int  # where an instant goes on, as of `eventpound.solvers.events.instant`
+    finder: int  # who finds events in a step, as of `eventpound.solvers.events.second_look`
 
 
 class Rules(NamedTuple):
@@ -54,7 +58,7 @@ class State(NamedTuple):
     u (m), v (m/s), shape (N,). z (H,). gap (m, exactly zero where closed), gap_rate
     (m/s), resting, pressed (K,): resting contacts that the last acceleration problem
     found pressed. branch (L,): side of the kink each link is on, -1, +1, or 0 where it has
-    none. ledger (E,): work so far (J), see `Model.ledger_entries`. clock, count: numbers.
+    none. ledger (E,): work so far (J), see `Model.ledger_entries`. now, progress (1,).
     """
 
     u: Floats
@@ -66,8 +70,8 @@ class State(NamedTuple):
     pressed: Bools
     branch: Ints
     ledger: Floats
-    clock: Floats
-    count: Ints  # type: ignore[assignment]  # hides the method of tuples
+    now: Records
+    progress: Records
 
 
 class RunRecord(NamedTuple):

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import T
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.observables import Observed
 from eventpound.motion.base import Family
@@ -20,7 +19,7 @@ from eventpound.solvers.events.law_contacts import gather
 from eventpound.solvers.events.location import add_vanished, first_event, update_peaks
 from eventpound.solvers.events.present import close_marked, forcing_now, put_instant, take
 from eventpound.solvers.events.recorder import is_due, write_samples
-from eventpound.solvers.events.run import FINDER, Dynamics, Run
+from eventpound.solvers.events.run import Dynamics, Run
 from eventpound.solvers.events.step_check import broken_contact
 
 CLEAR, EVENT = 40, 41
@@ -55,7 +54,7 @@ def look_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple[f
     rules, marks, watched = run.rules, run.marks, mode.watched
     if not inspect_step(run.looks[0], run.looks[1], h, watched, run.record.running, marks):
         return np.inf, False
-    if not step.dense.own and run.state.count[FINDER] != OURSELVES:
+    if not step.dense.own and run.state.progress[0].finder != OURSELVES:
         return np.inf, True
     if step.dense.own:
         for j in range(marks.closing.size):
@@ -92,7 +91,7 @@ def look_again(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> i
         CLEAR, EVENT or BROKEN; of a broken contact the last of `run.looks` tells.
     """
     rules, state, record = run.rules, run.state, run.record
-    origin = state.clock[T]
+    origin = state.now[0].t
     forcing = lend(forcing_now(piece, origin))
     looks, watched = run.looks, mode.watched
     low, high = dense.start, dense.start
@@ -106,7 +105,7 @@ def look_again(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> i
         look(high, lend(DenseStep(part, mode, forcing, looks[1])))
         step = lend(DenseStep(part, mode, forcing, looks[2]))
         tau, marked = look_between(high - low, run, mode, step)
-        if high == dense.end and state.count[FINDER] == FOUND_AT_END:
+        if high == dense.end and state.progress[0].finder == FOUND_AT_END:
             tau = high
             look(tau, step)
             add_vanished(step.seen, watched, rules, run.happened)
@@ -123,7 +122,7 @@ def look_again(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> i
         after = looks[1]
         if broken_contact(after, watched, rules.length_noise) >= 0:
             look(high, step)
-            state.clock[T] = origin + end
+            state.now[0].t = origin + end
             return BROKEN
         update_extremes(after, origin + end, record.running)
     return CLEAR

@@ -4,19 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import (
-    CLOCK_PLACES,
-    EVENTS,
-    GROUPS,
-    INTERVAL,
-    RESTED_AT,
-    SETTLED_AT,
-    SINCE_IMPACT,
-    STALE,
-    T,
-)
 from eventpound.contact.event_rows import EVENT_WIDTH, events_of
-from eventpound.contact.state import Instant
+from eventpound.contact.state import Instant, Now, begin
 from eventpound.errors import ComputationError
 from eventpound.mechanics.clusters import unique_forces
 from eventpound.mechanics.contact_elements import NO_LAW
@@ -40,7 +29,7 @@ from eventpound.solvers.events.event_bounds import Found
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.modes import Mode, ModeTable
 from eventpound.solvers.events.recorder import PASSED, WRITTEN, Journal, history_of, row_width
-from eventpound.solvers.events.run import COUNT_SIZE, STEPS, Happened, Rules, Run, RunRecord, State
+from eventpound.solvers.events.run import Happened, LoopProgress, Rules, Run, RunRecord, State
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.events.step_check import broken_contact, contact_error
 from eventpound.tolerances import FLAT_WITHIN, FORCE, GAP, LENGTH
@@ -147,7 +136,7 @@ class Underway:
     @property
     def t(self) -> float:
         """The present time (s)."""
-        return float(self.state.clock[T])
+        return float(self.state.now[0].t)
 
     @property
     def names(self) -> list[str]:
@@ -161,14 +150,14 @@ class Underway:
     @property
     def steps(self) -> int:
         """Steps so far."""
-        return int(self.state.count[STEPS])
+        return int(self.state.progress[0].steps)
 
     def enter_mode(self) -> None:
         """Bring `mode` up to date with who rests and on which branches links are."""
         state, model = self.state, self.model
         opening = self.run.instant.opening
         mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed, opening)
-        state.count[STALE] = 0
+        state.now[0].stale = False
         self.table.place_ends(mode, state.u, state.z)
         self.take_closing_speeds(mode)
         if not mode.clusters.tree:
@@ -198,7 +187,7 @@ class Underway:
     def make_room(self) -> None:
         """Double the room for lines and for events, where it is half full."""
         record, journal = self.record, self.record.journal
-        written, taken = int(journal.cursor[WRITTEN]), int(self.state.count[EVENTS])
+        written, taken = int(journal.cursor[WRITTEN]), int(self.state.now[0].events)
         if 2 * (written + journal.times.size - journal.cursor[PASSED]) > journal.rows.shape[0]:
             record = record._replace(journal=journal._replace(rows=_doubled(journal.rows, written)))
         if 2 * taken > record.events.shape[0]:
@@ -209,8 +198,8 @@ class Underway:
 
     def events(self) -> list[Event]:
         """Everything listed so far, in order of time."""
-        listed = events_of(self.record.events[: self.state.count[EVENTS]])
-        group = int(self.state.count[GROUPS])
+        listed = events_of(self.record.events[: self.state.now[0].events])
+        group = int(self.state.now[0].groups)
         return with_unfinished(listed, self.model, self.run.laws, self.state.v, group)
 
     def law_recording(self) -> LawRecording | None:
@@ -299,9 +288,8 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
     # These take no part in impacts and rests.
     gap[model.laws] = gap[model.own_contacts :] = np.inf
     branch = _first_branches(model, LENGTH * scales.length)
-    clock, count = np.zeros(CLOCK_PLACES), np.zeros(COUNT_SIZE, np.int64)
-    clock[T], clock[INTERVAL], clock[SINCE_IMPACT] = task.start, scales.time, scales.time
-    clock[RESTED_AT] = clock[SETTLED_AT] = -np.inf
+    now = np.zeros(1, Now.layout)
+    begin(now, task.start, scales.time)
     return State(
         u=model.u0.copy(),
         v=model.v0.copy(),
@@ -312,8 +300,8 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
         pressed=np.zeros(model.contacts, np.bool_),
         branch=branch,
         ledger=np.zeros(model.ledger_entries),
-        clock=clock,
-        count=count,
+        now=now,
+        progress=np.zeros(1, LoopProgress.layout),
     )
 
 
@@ -381,8 +369,7 @@ def _instant_of(
         released=happened.released,
         vanished=happened.vanished,
         before=np.zeros_like(state.v),
-        clock=state.clock,
-        count=state.count,
+        now=state.now,
         events=events,
     )
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from eventpound.contact.cascade import T
 from eventpound.contact.impacts import DONE, FULL
 from eventpound.contact.kinks import (
     choose_branches,
@@ -25,17 +24,7 @@ from eventpound.solvers.fast.followed import follows, put_on_branches
 from eventpound.solvers.fast.instant import instant_of, settle, start
 from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.record import has_room, hold, write_row
-from eventpound.solvers.fast.run import (
-    DUE,
-    GOING_ON,
-    IN_PYTHON,
-    PIECE,
-    SETTLED,
-    STARTED,
-    STEPS,
-    FastRun,
-    piece_of,
-)
+from eventpound.solvers.fast.run import GOING_ON, IN_PYTHON, SETTLED, FastRun, piece_of
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.sliding import any_slider
 from eventpound.solvers.fast.step import take_step
@@ -67,45 +56,41 @@ def advance(budget: int, run: FastRun) -> int:
 @compiled_whole
 def carry_on(budget: int, run: FastRun) -> int:
     """`advance`, the run lent."""
-    ground, clock, count, end = (
-        run.plan.ground,
-        run.state.clock,
-        run.state.count,
-        run.plan.limits.end,
-    )
-    last_step = count[STEPS] + budget
-    if count[STARTED] == 0:
+    ground, end = run.plan.ground, run.plan.limits.end
+    now, progress = run.state.now[0], run.state.progress[0]
+    last_step = progress.steps + budget
+    if not progress.started:
         start(run)
         forget_each(run.series.each)
-        count[STARTED] = 1
-    while count[STEPS] < last_step:
+        progress.started = True
+    while progress.steps < last_step:
         if not has_room(run):
             return FULL
-        if ground.family[count[PIECE]] == LOADED and count[STEPS] > 0:
-            _put_supports(lend(piece_of(count[PIECE], ground)), run)
-        if clock[T] >= end or count[DUE] != 0:
+        if ground.family[progress.piece] == LOADED and progress.steps > 0:
+            _put_supports(lend(piece_of(progress.piece, ground)), run)
+        if now.t >= end or progress.due != 0:
             ended = _settle_instant(run)
-            if ended != DONE or clock[T] >= end:
+            if ended != DONE or now.t >= end:
                 return ended
-        i = count[PIECE]
+        i = progress.piece
         piece = lend(piece_of(i, ground))
         stop = min(ground.ends[i], end)
         if may_go_apart(piece, run):
-            go_apart(last_step - count[STEPS], stop, piece, run)
+            go_apart(last_step - progress.steps, stop, piece, run)
         elif piece.family == _SAMPLES and may_go_by_samples(run):
-            sample_steps(last_step - count[STEPS], stop, piece, run)
-        if clock[T] >= ground.ends[i]:
-            count[DUE] = 1
-        due = count[DUE] == 1 or clock[T] >= stop
-        if due or count[STEPS] >= last_step or not has_room(run):
+            sample_steps(last_step - progress.steps, stop, piece, run)
+        if now.t >= ground.ends[i]:
+            progress.due = 1
+        due = progress.due == 1 or now.t >= stop
+        if due or progress.steps >= last_step or not has_room(run):
             continue
         if piece.family >= _SAMPLES:
-            stop = next_corner(piece, clock[T], stop)
+            stop = next_corner(piece, now.t, stop)
         ended = take_step(stop, piece, run)
         if ended != DONE:
             return ended
-        if clock[T] >= ground.ends[i]:
-            count[DUE] = 1
+        if now.t >= ground.ends[i]:
+            progress.due = 1
     return GOING_ON
 
 
@@ -122,7 +107,7 @@ def _put_supports(piece: CurrentPiece, run: FastRun) -> None:
         if not is_support(s, mass):
             continue
         # The load of a support has its number, from 1.
-        u, v = support_motion(s + 1, piece, state.clock[T])
+        u, v = support_motion(s + 1, piece, state.now[0].t)
         du, dv, time = u - state.u[s], v - state.v[s], limits.time
         size = limits.length + abs(u) + abs(v) * time
         if max(abs(du), abs(dv) * time) <= LENGTH * size:
@@ -149,13 +134,13 @@ def _goes_with(b: int, s: int, run: FastRun) -> bool:
 def _settle_instant(run: FastRun) -> int:
     """Do the duties of the present instant and write down what follows it."""
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
-    count, ground = state.count, plan.ground
-    t, order = state.clock[T], plan.limits.order
-    while count[DUE] == 1 and ground.ends[count[PIECE]] <= t:
-        count[PIECE] += 1
-    piece = lend(piece_of(count[PIECE], ground))
+    ground, progress = plan.ground, state.progress[0]
+    t, order = state.now[0].t, plan.limits.order
+    while progress.due == 1 and ground.ends[progress.piece] <= t:
+        progress.piece += 1
+    piece = lend(piece_of(progress.piece, ground))
     g = ground_acceleration(piece, t)
-    if count[DUE] == 1:
+    if progress.due == 1:
         forcing = lend(Forcing(piece.family, piece.coefficients, piece.samples, t))
         at = lend(instant_of(run))
         pass_kinks(run.happened.kinked, seen.z, at)
@@ -172,9 +157,9 @@ def _settle_instant(run: FastRun) -> int:
         ended = settle(forcing, seen.z, at, run)
         if ended != DONE:
             return ended
-        count[DUE] = SETTLED
-    if count[DUE] == SETTLED:
-        count[DUE] = 0
+        progress.due = SETTLED
+    if progress.due == SETTLED:
+        progress.due = 0
         hold(run)
         run.happened.released[:] = False
     look_apart(0.0, order, g, run)

@@ -7,7 +7,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from eventpound.contact.cascade import INTERVAL, RESTED_AT, SETTLED_AT, SINCE_IMPACT, T
+from eventpound.contact.state import Now, begin
 from eventpound.mechanics.backbone import hysteresis_of
 from eventpound.mechanics.elements import CURVE_PLACES
 from eventpound.mechanics.link_law import YIELD, yielding
@@ -26,16 +26,13 @@ from eventpound.solvers.fast.apart.windows import LINE_PLACES
 from eventpound.solvers.fast.compiled import compiled_apart
 from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.run import (
-    CLOCK_SIZE,
-    COUNT_SIZE,
-    DUE,
-    GUESS,
     MORE_TERMS,
     REST_TERMS,
     Contacts,
     Each,
     FastMarks,
     FastPlan,
+    FastProgress,
     FastSeries,
     FastState,
     FollowedMemories,
@@ -46,7 +43,7 @@ from eventpound.solvers.fast.run import (
     Single,
 )
 from eventpound.solvers.fast.sampled.exact import blank_tables
-from eventpound.solvers.fast.single.body import BODY, oscillator_of
+from eventpound.solvers.fast.single.body import SingleBody, oscillator_of
 from eventpound.tolerances import OF_BACKBONE
 
 HYSTERESIS_SHARE = 0.01
@@ -211,8 +208,8 @@ def zero_state(
         np.zeros(contacts, np.bool_),
         np.zeros(links, np.int64),
         np.zeros((*runs, ledger)),
-        np.zeros((*runs, CLOCK_SIZE)),
-        np.zeros((*runs, COUNT_SIZE), np.int64),
+        np.zeros((*runs, 1), Now.layout),
+        np.zeros((*runs, 1), FastProgress.layout),
     )
 
 
@@ -224,12 +221,10 @@ def begin_state(
     u0, v0 (..., N), z0 (..., H): displacements (m), velocities (m/s) and hysteretic variables.
     The run itself opens the gaps.
     """
-    clock, time = state.clock, plan.limits.time
+    progress, time = state.progress[..., 0], plan.limits.time
     state.u[:], state.v[:], state.xi_r[:] = u0, v0, z0 / plan.hysteresis.bound
-    clock[..., T] = start
-    clock[..., GUESS] = clock[..., INTERVAL] = clock[..., SINCE_IMPACT] = time
-    clock[..., RESTED_AT] = clock[..., SETTLED_AT] = -np.inf
-    state.count[..., DUE] = 1
+    begin(state.now[..., 0], start, time)
+    progress["guess"], progress["due"] = time, 1
 
 
 def _blank_each(plan: FastPlan, loaded: bool) -> Each:
@@ -259,9 +254,9 @@ def _each_of(n: int, contacts: int) -> Each:
     # The base shear of a body by itself is not looked at.
     extremes[:, 4, at.base_shear] = np.inf
     return Each(
-        body=np.zeros(n, BODY),
-        clock=np.zeros((n, CLOCK_SIZE)),
-        count=np.zeros((n, COUNT_SIZE), np.int64),
+        body=np.zeros(n, SingleBody.layout),
+        now=np.zeros(n, Now.layout),
+        progress=np.zeros(n, FastProgress.layout),
         extremes=extremes,
         until=np.zeros(n),
         length=np.zeros(n),
@@ -321,7 +316,7 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         contact_force=np.zeros((contacts, size)),
         rests=np.zeros(contacts, np.int64),
         elimination=np.zeros((contacts, 4), np.int64),
-        single=Single(np.zeros(1, BODY), np.zeros(most), turns, work),
+        single=Single(np.zeros(1, SingleBody.layout), np.zeros(most), turns, work),
         each=_blank_each(plan, loaded),
         followed=FollowedMemories(np.zeros(followed), np.zeros(followed), np.zeros(1)),
         # Steps from sample to sample follow no z.

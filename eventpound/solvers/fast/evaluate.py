@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import T
 from eventpound.mechanics.clusters import is_support
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
@@ -17,18 +16,7 @@ from eventpound.solvers.fast.links import (
     gap_of,
     link_force,
 )
-from eventpound.solvers.fast.run import (
-    EDGES,
-    FURTHER,
-    PIECE,
-    RESTING,
-    FastPlan,
-    FastRun,
-    FastSeries,
-    FastState,
-    Seen,
-    piece_of,
-)
+from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries, FastState, Seen, piece_of
 from eventpound.solvers.fast.search import gap_polynomial
 from eventpound.solvers.fast.sliding import any_slider, see_friction
 from eventpound.tolerances import OWN_GAP
@@ -65,11 +53,11 @@ def look(tau: float, order: int, ground: float, run: FastRun) -> None:
             change, seen.v[b], series.expected[c] = change_at(c, tau, order, series.X)
             seen.u[b] += change
     see_forces(ground, run)
-    if state.count[FURTHER] > 0:
+    if state.progress[0].further:
         _add_further(tau, order, run)
     _accelerations(run)
     _gaps(tau, order, run)
-    if state.count[RESTING] > 0:
+    if state.progress[0].resting > 0:
         _contact_forces(run)
         if any_slider(run):
             see_friction(run)
@@ -113,14 +101,14 @@ def _add_further(tau: float, order: int, run: FastRun) -> None:
     if tau > 0.0 and follows(run):
         see_followed(tau, order, run)
     if run.series.load.shape[0] > 0:
-        piece = lend(piece_of(run.state.count[PIECE], run.plan.ground))
-        add_body_loads(piece, run.state.clock[T] + tau, run.seen.body_force, run.seen.a)
+        piece = lend(piece_of(run.state.progress[0].piece, run.plan.ground))
+        add_body_loads(piece, run.state.now[0].t + tau, run.seen.body_force, run.seen.a)
 
 
 @compiled
 def _accelerations(run: FastRun) -> None:
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
-    if state.count[RESTING] == 0:
+    if state.progress[0].resting == 0:
         for b in range(plan.mass.size):
             if not is_support(b, plan.mass):
                 seen.a[b] = seen.body_force[b] / plan.mass[b]
@@ -179,7 +167,7 @@ def _contact_forces(run: FastRun) -> None:
 def spread_forces(state: FastState, series: FastSeries, out: Floats) -> None:
     """Contact forces that put `series.force` (N,) on the bodies; it is overwritten."""
     residual = series.force
-    for i in range(state.count[EDGES]):
+    for i in range(state.progress[0].edges):
         b, parent = series.elimination[i, 0], series.elimination[i, 2]
         out[series.elimination[i, 1]] = series.elimination[i, 3] * residual[b]
         if parent >= 0:

@@ -33,16 +33,7 @@ from eventpound.solvers.fast.links import (
     saturate,
     tangent,
 )
-from eventpound.solvers.fast.run import (
-    ACTIVE,
-    CLUSTERS,
-    FURTHER,
-    GUESS,
-    LOCAL_SHARE,
-    RESTING,
-    FastRun,
-    FastSeries,
-)
+from eventpound.solvers.fast.run import LOCAL_SHARE, FastRun, FastSeries
 from eventpound.solvers.fast.search import distance_coefficient
 from eventpound.tolerances import LONGEST_STEP, NO_ERROR, RETRIED
 
@@ -114,10 +105,10 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
     step, in units of its tolerance.
     """
     plan, state, series = run.plan, run.state, run.series
-    links, law, further = plan.links, plan.links.law, state.count[FURTHER] > 0
-    others = further or state.count[RESTING] > 0
+    links, law, progress = plan.links, plan.links.law, state.progress[0]
+    further, others = progress.further, progress.further or progress.resting > 0
     X, F, acceleration = series.X, series.F, series.force
-    clusters, active = state.count[CLUSTERS], state.count[ACTIVE]
+    clusters, active = progress.clusters, progress.active
     for i in range(active):
         a = series.active[i]
         h_of_a = links.z_of_link[a]
@@ -184,14 +175,14 @@ def _last_of_others(order: int, power: float, over: float, run: FastRun) -> floa
     plan, series, of_z = run.plan, run.series, 0.0
     if follows(run):
         of_z = last_of_followed(order, power, over, run)
-    if run.state.count[RESTING] == 0:
+    if run.state.progress[0].resting == 0:
         return of_z
     ground, limits, links = series.ground, plan.limits, plan.links
     last = power * max(abs(ground[order - 1]), over * abs(ground[order - 2]))
     for b in range(plan.mass.size if series.load.shape[0] > 0 else 0):
         of_load = max(abs(series.load[order - 1, b]), over * abs(series.load[order - 2, b]))
         last = max(last, power * of_load / plan.mass[b])
-    for i in range(run.state.count[ACTIVE]):
+    for i in range(run.state.progress[0].active):
         a = series.active[i]
         of_link = max(abs(series.F[a, order - 2]), over * abs(series.F[a, order - 3]))
         for side in range(2):
@@ -313,7 +304,7 @@ def longest_try(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[float,
     if not longest < np.inf:
         longest = run.plan.limits.time * LONGEST_STEP
     # To the next sample a further term costs less than a further step.
-    return longest, longest if sampled else min(longest, 2.0 * run.state.clock[GUESS])
+    return longest, longest if sampled else min(longest, 2.0 * run.state.progress[0].guess)
 
 
 @compiled

@@ -7,7 +7,6 @@ how much.
 
 from __future__ import annotations
 
-from eventpound.contact.cascade import T
 from eventpound.mechanics.monitored import (
     Running,
     update_all,
@@ -19,7 +18,7 @@ from eventpound.numerics.polynomial import first_root, only_root, value_and_slop
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.links import CORE
-from eventpound.solvers.fast.run import RESTING, FastPlan, FastRun, FastSeries
+from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries
 from eventpound.solvers.fast.search import relative, stays_above
 from eventpound.solvers.fast.sliding import add_held_shear, any_slider
 from eventpound.tolerances import FLAT_WITHIN
@@ -158,7 +157,7 @@ def _locate(
     relative(head, tail, order, run.series, run.series.c)
     run.series.c[0] = value
     set_rate(run.series.c, order, run.series.d)
-    take_turns(i, run.series.c, order, run.state.clock[T], tau, run)
+    take_turns(i, run.series.c, order, run.state.now[0].t, tau, run)
 
 
 @compiled
@@ -221,7 +220,7 @@ def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bo
     shear, end, rate, bend = 0.0, 0.0, 0.0, 0.0
     # Where nothing rests on a barrier or is pushed, all links to the ground together pull at all
     # bodies.
-    held = state.count[RESTING] > 0 or series.load.shape[0] > 0
+    held = state.progress[0].resting > 0 or series.load.shape[0] > 0
     looked = False
     for b in range(bodies):
         c, m = series.of_body[b], plan.mass[b]
@@ -242,7 +241,7 @@ def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bo
     elif _may_turn(at.base_shear, shear, end, rate, bend, tau, running):
         _shear_rate_of_bodies(order, plan.mass, series)
         looked = _turns(-1, tau, order, run) or looked
-    if state.count[RESTING] > 0:
+    if state.progress[0].resting > 0:
         _at_rest(tau, order, run)
     return looked
 
@@ -284,7 +283,7 @@ def _turns(c: int, tau: float, order: int, run: FastRun) -> bool:
         if any_slider(run):
             ground, _ = value_and_slope(series.ground[: order + 1], series.turns[m])
         look_apart(series.turns[m], order, ground, run)
-        t, near = state.clock[T] + series.turns[m], flat_time(plan)
+        t, near = state.now[0].t + series.turns[m], flat_time(plan)
         if c < 0:
             update_turning_point(running.at.base_shear, seen.base[1], t, near, running)
             continue
@@ -355,4 +354,4 @@ def _polynomial_turns(i: int, c: Floats, tau: float, order: int, run: FastRun) -
     """Turning points of a quantity known by its own series."""
     set_rate(c, order - 2, run.series.d)
     if not _settled(i, c[0], tau, order, run.series, run.running):
-        take_turns(i, c, order - 2, run.state.clock[T], tau, run)
+        take_turns(i, c, order - 2, run.state.now[0].t, tau, run)

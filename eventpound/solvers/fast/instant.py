@@ -34,39 +34,39 @@ from eventpound.solvers.fast.links import (
     set_curve,
     turns_back,
 )
-from eventpound.solvers.fast.run import ACTIVE, CLUSTERS, EDGES, FURTHER, RESTING, Contacts, FastRun
+from eventpound.solvers.fast.run import Contacts, FastRun
 
 
 @compiled
 def enter_mode(run: FastRun) -> None:
     """Arrays of the mode that the resting contacts make; bodies that touch move as one."""
     plan, state, series = run.plan, run.state, run.series
-    mass, links, count = plan.mass, plan.links, state.count
-    count[RESTING] = 0
+    mass, links, progress = plan.mass, plan.links, state.progress[0]
+    progress.resting = 0
     for j in range(state.resting.size):
         state.unlocked[j] = state.resting[j]
-        count[RESTING] += state.resting[j]
-    if count[RESTING] == 0:
-        count[CLUSTERS] = mass.size
+        progress.resting += state.resting[j]
+    if progress.resting == 0:
+        progress.clusters = mass.size
         for b in range(mass.size):
             series.of_body[b] = b
             series.inverse_mass[b] = 1.0 / mass[b]
     else:
         _enter_rest(run)
-    count[ACTIVE] = 0
+    progress.active = 0
     for a in range(links.offset.size):
         for side in range(2):
             b = links.ends[a, side]
             series.ends[a, side] = series.of_body[b] if b >= 0 else -1
         if series.ends[a, 0] != series.ends[a, 1]:
-            series.active[count[ACTIVE]] = a
-            count[ACTIVE] += 1
+            series.active[progress.active] = a
+            progress.active += 1
 
 
 @compiled_deferred
 def _enter_rest(run: FastRun) -> None:
     """The clusters of bodies that rest on each other, their masses and velocities."""
-    plan, state, series, count = run.plan, run.state, run.series, run.state.count
+    plan, state, series, progress = run.plan, run.state, run.series, run.state.progress[0]
     forces = Resting(
         state.resting,
         state.pressed,
@@ -76,7 +76,7 @@ def _enter_rest(run: FastRun) -> None:
         series.elimination,
         run.record.unique,
     )
-    count[CLUSTERS], count[EDGES] = _form(plan.contacts, plan.mass, state.v, forces)
+    progress.clusters, progress.edges = _form(plan.contacts, plan.mass, state.v, forces)
     total = series.inverse_mass
     total[:] = 0.0
     for b in range(plan.mass.size):
@@ -164,8 +164,7 @@ def instant_of(run: FastRun) -> Instant:
         happened.released,
         happened.vanished,
         run.series.travel,
-        state.clock,
-        state.count,
+        state.now,
         run.record.events,
     )
 
@@ -195,8 +194,7 @@ def start(run: FastRun) -> None:
     open_gaps(plan, state)
     for a in range(plan.links.offset.size):
         copy_numbers(plan.links.law.memory[a], series.memory[a])
-    further = series.load.shape[0] > 0 or follows(run)
-    state.count[FURTHER] = 1 if further else 0
+    state.progress[0].further = series.load.shape[0] > 0 or follows(run)
     enter_mode(run)
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     hysteresis = plan.hysteresis

@@ -25,18 +25,7 @@ from eventpound.numerics.power_series import sign_after
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.followed import follows
 from eventpound.solvers.fast.links import CORE, UNLOADING, UP, place
-from eventpound.solvers.fast.run import (
-    ACTIVE,
-    CLUSTERS,
-    RESTING,
-    STALLED,
-    FastMarks,
-    FastPlan,
-    FastRun,
-    FastSeries,
-    Limits,
-    Links,
-)
+from eventpound.solvers.fast.run import FastMarks, FastPlan, FastRun, FastSeries, Limits, Links
 from eventpound.solvers.fast.search import (
     bound_of_pair,
     distance_coefficient,
@@ -88,7 +77,7 @@ def first_happening(order: int, h: float, run: FastRun) -> float:
     first = _kinks(order, min(h, first), first, run)
     if follows(run):
         first = _of_followed(order, h, first, run)
-    if state.count[RESTING] > 0:
+    if state.progress[0].resting > 0:
         first = _releases(order, min(h, first), first, run)
     return first
 
@@ -199,7 +188,7 @@ def _level(order: int, limit: float, sigma: float, distance: float, i: int, run:
 def _kinks(order: int, h: float, first: float, run: FastRun) -> float:
     plan, state, series, happened = run.plan, run.state, run.series, run.happened
     links: Links = plan.links
-    for i in range(state.count[ACTIVE]):
+    for i in range(state.progress[0].active):
         a = series.active[i]
         if links.compression[a] == links.extension[a]:
             continue
@@ -229,7 +218,7 @@ def _leaves_branch(
     for k in range(1, order + 1):
         c[k] *= side
     c[0] = away
-    kept = run.state.count[STALLED] > 0
+    kept = run.state.progress[0].stalled > 0
     return _passes_end(order, limit, kept, head, tail, run.plan.limits, series)
 
 
@@ -331,7 +320,7 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
     plan, state, series, happened = run.plan, run.state, run.series, run.happened
     limits, forces = plan.limits, series.contact_force
     any_released = False
-    level = force_level(state.count[CLUSTERS], limits, series)
+    level = force_level(state.progress[0].clusters, limits, series)
     for end in range(2 * state.resting.size):
         j = end // 2
         if not state.unlocked[j] or not _has_end(end, order, run):
@@ -343,7 +332,7 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
         if force[0] > spread:
             continue
         # Where the acceleration problem has just kept it, only rounding can let it fall at once.
-        kept = abs(force[0]) <= level and state.count[STALLED] > 0
+        kept = abs(force[0]) <= level and state.progress[0].stalled > 0
         if kept:
             _drop_rounding(force, order, level, plan, series)
         tau = release_time(force, order - 1, h, min(h, first), level, kept, series.work)

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple, get_type_hints
 
 import numpy as np
 
-from eventpound.contact.cascade import EVENTS, T
 from eventpound.contact.event_rows import (
     ACCUMULATION,
     DETACHMENT,
@@ -249,11 +248,12 @@ def _keep(
     kept: Kept,
 ) -> None:
     """Keep what is wanted of run i."""
+    now = state.now[0]
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     all_variables(series.x, plan.hysteresis, state, kept.z[i])
     _count_events(
-        state.clock[T],
-        state.count[EVENTS],
+        now.t,
+        now.events,
         record.events,
         since,
         kept.impacts[i],
@@ -262,7 +262,7 @@ def _keep(
     for j in range(record.unique.size):
         kept.unique[i, j] = record.unique[j]
     if kept.log.shape[0] > 0:
-        for row in range(state.count[EVENTS]):
+        for row in range(now.events):
             place, event = kept.log[kept.logged[0]], record.events[row]
             place[0] = i
             for k in range(event.size):

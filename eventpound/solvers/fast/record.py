@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import T, is_fleeting
+from eventpound.contact.cascade import is_fleeting
 from eventpound.contact.event_rows import events_wanted
+from eventpound.contact.state import Now
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
@@ -24,18 +25,18 @@ from eventpound.motion.loads import (
     load_value,
     rows_of,
 )
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.recorder import put_line
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
-from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, FastRun
+from eventpound.solvers.fast.run import FastProgress, FastRun
 from eventpound.solvers.fast.sliding import any_slider, see_z_of_sliders
 
 
 @compiled
-def rows_wanted(outputs: int, count: Ints) -> int:
+def rows_wanted(outputs: int, progress: FastProgress) -> int:
     """Rows of the history for which there is to be room, with `outputs` output times in all."""
-    return int(count[ROWS] + outputs - count[OUTPUT] + 4)
+    return progress.rows + outputs - progress.output + 4
 
 
 @compiled
@@ -45,20 +46,21 @@ def takes_rows(rows: Floats) -> bool:
 
 
 @compiled
-def has_room_for(contacts: int, outputs: int, count: Ints, events: Floats, rows: Floats) -> bool:
+def has_room_for(
+    contacts: int, outputs: int, now: Now, progress: FastProgress, events: Floats, rows: Floats
+) -> bool:
     """Whether the record of a run can take what one more step may write, at the least."""
-    if takes_rows(rows) and rows_wanted(outputs, count) > rows.shape[0]:
+    if takes_rows(rows) and rows_wanted(outputs, progress) > rows.shape[0]:
         return False
-    return bool(events_wanted(contacts, count) <= events.shape[0])
+    return events_wanted(contacts, now) <= events.shape[0]
 
 
 @compiled
 def has_room(run: FastRun) -> bool:
     """As `has_room_for`, of a run."""
-    plan, record, outputs = run.plan, run.record, run.plan.output_times.size
-    return has_room_for(
-        plan.contacts.gap.size, outputs, run.state.count, record.events, record.rows
-    )
+    state, record, outputs = run.state, run.record, run.plan.output_times.size
+    now, progress = state.now[0], state.progress[0]
+    return has_room_for(state.gap.size, outputs, now, progress, record.events, record.rows)
 
 
 @compiled_apart
@@ -75,8 +77,9 @@ def put_row(t: float, run: FastRun) -> None:
         return
     if any_slider(run):
         see_z_of_sliders(run)
-    row = record.rows[state.count[ROWS]]
-    state.count[ROWS] += 1
+    progress = state.progress[0]
+    row = record.rows[progress.rows]
+    progress.rows += 1
     force = seen.force[: plan.links.springs]
     parts = seen.u, seen.v, seen.a, seen.z, force, seen.gap, seen.contact_force
     put_line(t, seen.base[0], parts, row)
@@ -86,23 +89,24 @@ def put_row(t: float, run: FastRun) -> None:
 def sample_step(t: float, t_end: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
     """History at the output times of a step; `seen` is overwritten."""
     plan, state = run.plan, run.state
-    count, times = state.count, plan.output_times
-    while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-        at = times[count[OUTPUT]]
+    times, progress = plan.output_times, state.progress[0]
+    while progress.output < times.size and times[progress.output] < t_end:
+        at = times[progress.output]
         if at >= t:
             g = ground_acceleration(piece, at)
             look_apart(at - t, order, g, run)
             write_row(at, run)
-        count[OUTPUT] += 1
+        progress.output += 1
 
 
 @compiled_apart
 def hold(run: FastRun) -> None:
     """Remember history and extremes as they are before a mode that may be none."""
     plan, state, series, record = run.plan, run.state, run.series, run.record
-    if not is_fleeting(0.0, state.clock, plan.limits.time):
+    now, progress = state.now[0], state.progress[0]
+    if not is_fleeting(0.0, now, plan.limits.time):
         return
-    state.count[HELD], state.clock[HELD_AT] = state.count[ROWS], state.clock[T]
+    progress.held, progress.held_at = progress.rows, now.t
     copy_extremes(record.extremes, series.held)
 
 
@@ -113,10 +117,10 @@ def forget(run: FastRun) -> None:
     What follows happens in the instant of `hold`, to which its events belong then.
     """
     state, series, record, times = run.state, run.series, run.record, run.plan.output_times
-    clock, count = state.clock, state.count
-    count[ROWS], clock[T] = count[HELD], clock[HELD_AT]
-    while count[OUTPUT] > 0 and times[count[OUTPUT] - 1] >= clock[T]:
-        count[OUTPUT] -= 1
+    now, progress = state.now[0], state.progress[0]
+    progress.rows, now.t = progress.held, progress.held_at
+    while progress.output > 0 and times[progress.output - 1] >= now.t:
+        progress.output -= 1
     copy_extremes(series.held, record.extremes)
 
 
@@ -132,10 +136,10 @@ def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
     for i in range(NODES.size):
         at = 0.5 * tau * (1.0 + NODES[i])
         weight = 0.5 * tau * WEIGHTS[i]
-        g = ground_acceleration(piece, state.clock[T] + at)
+        g = ground_acceleration(piece, state.now[0].t + at)
         look_apart(at, order, g, run)
         if piece.family == LOADED:
-            _add_loaded(state.clock[T] + at, weight, piece, run)
+            _add_loaded(state.now[0].t + at, weight, piece, run)
         for b in range(plan.mass.size):
             if not is_support(b, plan.mass):
                 state.ledger[0] -= weight * plan.mass[b] * seen.v[b] * g

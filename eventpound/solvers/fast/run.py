@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from eventpound.contact.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.contact.impacts import ENDLESS, NO_FORCES, NO_IMPACT
 from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.monitored import Running
 from eventpound.motion.forcing import CurrentPiece
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints, Records
+from eventpound.numerics.records import NamedNumbers
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.sampled.exact import SampleTables
 
@@ -27,7 +27,7 @@ CROWDED = 18
 IN_PYTHON = 19
 """How a call of `advance` ends at an instant of a scene with sliders."""
 SETTLED = 2
-"""In `count[DUE]`: the duties of an instant are done, and it is to be written down."""
+"""In `FastProgress.due`: the duties of an instant are done, and it is to be written down."""
 MESSAGES = {
     FINISHED: "reached the end of the run",
     NO_IMPACT: "an impact problem has no solution",
@@ -134,14 +134,34 @@ class FastPlan(NamedTuple):
     oscillator: Oscillator
 
 
+class FastProgress(NamedNumbers):
+    """What the stepper counts and remembers itself."""
+
+    guess: float  # step that is tried next (s)
+    held_at: float  # when a mode that may be none began (s)
+    held: int  # rows of the history before it
+    piece: int  # of the ground motion
+    steps: int  # steps so far
+    expansions: int  # series so far
+    rows: int  # rows of the history
+    output: int  # next output time
+    due: int  # whether an instant has duties: 0, 1 or `SETTLED`
+    stalled: int  # events without progress of time
+    active: int  # links that move
+    clusters: int  # bodies, of which those that touch are one
+    resting: int  # contacts at rest
+    edges: int  # rows of the elimination
+    further: bool  # whether loads or followed z add to what links make
+    started: bool  # whether the run has begun
+
+
 class FastState(NamedTuple):
     """What moves.
 
     u, v (N,). A hysteretic link (H,): ``σ z / b = Φ(ξ_r + σ (x - x_r) / (u_y b))``
     with `sigma`, `x_r`, `xi_r`, and the `part` of the backbone it is on. gap,
     gap_rate, resting, pressed (K,), unlocked (K,): resting contacts that may detach,
-    branch (L,), ledger (E,): see `Model.ledger_entries`. `clock` and
-    `count` hold the scalars whose places are named at the end.
+    branch (L,), ledger (E,): see `Model.ledger_entries`. now (1,): a `Now`; progress (1,).
     """
 
     u: Floats
@@ -157,8 +177,8 @@ class FastState(NamedTuple):
     unlocked: Bools
     branch: Ints
     ledger: Floats
-    clock: Floats
-    count: Ints  # type: ignore[assignment]  # hides the method of tuples
+    now: Records
+    progress: Records
 
 
 class Single(NamedTuple):
@@ -177,11 +197,10 @@ class Single(NamedTuple):
 class Each(NamedTuple):
     """What bodies have for themselves while they go apart; no rows for scenes where they never do.
 
-    Each has a run of its own: body (N,), a `SingleBody`; clock (N, CLOCK_SIZE); count
-    (N, COUNT_SIZE); extremes (N, 5, 3) of its displacement and absolute acceleration, and of a
-    base shear that nobody looks at. until, length (N,): end of its step (s), and how long that is
-    (s). order, event, turned (N,): of the series of the step, how that ends, and whether the body
-    turns there.
+    Each has a run of its own: body (N,), a `SingleBody`; now, progress (N,); extremes (N, 5, 3) of
+    its displacement and absolute acceleration, and of a base shear that nobody looks at.
+    until, length (N,): end of its step (s), and how long that is (s). order, event, turned (N,):
+    of the series of the step, how that ends, and whether the body turns there.
     box (4, N): bounds of displacement and acceleration within the step. since, closing (K,): until
     when extremes of a gap have been looked for, and when it closes (s).
 
@@ -190,8 +209,8 @@ class Each(NamedTuple):
     """
 
     body: Any
-    clock: Floats
-    count: Ints  # type: ignore[assignment]  # hides the method of tuples
+    now: Records
+    progress: Records
     extremes: Floats
     until: Floats
     length: Floats
@@ -347,18 +366,6 @@ def piece_of(i: int, ground: Ground) -> CurrentPiece:
     )
 
 
-(GUESS, HELD_AT) = range(CLOCK_PLACES, CLOCK_PLACES + 2)
-"""Behind the places of `eventpound.contact.cascade` in `FastState.clock`: next step tried,
-and when a mode that may be none began (s)."""
-CLOCK_SIZE = CLOCK_PLACES + 2
-(PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, DUE) = range(COUNT_PLACES, COUNT_PLACES + 6)
-"""Behind those in `FastState.count`: piece of the ground motion, steps, expansions, rows of the
-history, next output time, and whether an instant has duties."""
-(ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, HELD, FURTHER, STARTED) = range(DUE + 1, DUE + 9)
-"""Active links, clusters, events without progress
-of time, resting contacts, rows of the elimination, rows of the history before a mode that may be
-none, whether loads or followed z add to what links make, and whether the run has begun."""
-COUNT_SIZE = STARTED + 1
 MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
 REST_TERMS = 16

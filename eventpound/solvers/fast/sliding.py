@@ -9,7 +9,6 @@ What an instant demands `eventpound.contact.sliders` tells, in Python: some mill
 
 from __future__ import annotations
 
-from eventpound.contact.cascade import T
 from eventpound.contact.impacts import DONE
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.sliders import (
@@ -28,7 +27,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_
 from eventpound.solvers.fast.followed import put_on_branches
 from eventpound.solvers.fast.instant import choose_directions, enter_mode, instant_of
 from eventpound.solvers.fast.links import all_variables
-from eventpound.solvers.fast.run import CLUSTERS, DUE, PIECE, SETTLED, FastRun, piece_of
+from eventpound.solvers.fast.run import SETTLED, FastRun, piece_of
 from eventpound.solvers.fast.search import (
     acceleration_level,
     distance_coefficient,
@@ -98,7 +97,7 @@ def end_of_slip(order: int, h: float, limit: float, a: int, side: float, run: Fa
         c[k] = side * (k + 1) * distance_coefficient(head, tail, k + 1, series)
     begins = abs(c[0]) <= still
     # A stick ends where forces are within rounding of its end.
-    let_go = force_level(run.state.count[CLUSTERS], limits, series)
+    let_go = force_level(run.state.progress[0].clusters, limits, series)
     for k in range(1, order if begins else 1):
         level = 0.0
         for end in (head, tail):
@@ -168,7 +167,7 @@ def settle_sliders(noise: float, run: FastRun, model: Model) -> int:
     """
     state, seen = run.state, run.seen
     with by_python():
-        at, piece = instant_of(run), piece_of(state.count[PIECE], run.plan.ground)
+        at, piece = instant_of(run), piece_of(state.progress[0].piece, run.plan.ground)
         _put_velocities(piece, run, model)
         ended = settle_beside_sliders(seen.contact_force, run.happened.kinked, at, model)
         run.happened.kinked[:] = False
@@ -176,13 +175,13 @@ def settle_sliders(noise: float, run: FastRun, model: Model) -> int:
             return ended
         choose_directions(run)
         all_variables(run.series.x, run.plan.hysteresis, state, seen.z)
-        forcing = Forcing(piece.family, piece.coefficients, piece.samples, float(state.clock[T]))
+        forcing = Forcing(piece.family, piece.coefficients, piece.samples, float(state.now[0].t))
         ended = decide_sticks(seen.z, forcing, noise, at, model)
         if ended == DONE:
             put_on_branches(run)
             enter_mode(run)
             _unlock(run, model)
-            state.count[DUE] = SETTLED
+            state.progress[0].due = SETTLED
     return ended
 
 
@@ -191,7 +190,7 @@ def _put_velocities(piece: CurrentPiece, run: FastRun, model: Model) -> None:
     state, of_body = run.state, run.series.of_body
     for s in range(model.supports):
         # The load of a support has its number, from 1.
-        _, v = support_motion(s + 1, piece, float(state.clock[T]))
+        _, v = support_motion(s + 1, piece, float(state.now[0].t))
         state.v[of_body == of_body[s]] += v - state.v[s]
 
 

@@ -11,11 +11,7 @@ import numpy as np
 
 from eventpound.case.options import FAST_KNOWS
 from eventpound.contact.cascade import (
-    EVENTS,
-    GROUPS,
-    IN_A_ROW,
     LONGEST_CASCADE,
-    T,
     crowded_message,
     endless_message,
     long_message,
@@ -70,13 +66,10 @@ from eventpound.solvers.fast.links import all_variables
 from eventpound.solvers.fast.record import rows_wanted
 from eventpound.solvers.fast.run import (
     CROWDED,
-    EXPANSIONS,
     FINISHED,
     GOING_ON,
     IN_PYTHON,
     MESSAGES,
-    ROWS,
-    STEPS,
     STUCK,
     FastPlan,
     FastRecord,
@@ -209,7 +202,7 @@ class Arrays:
             raise ComputationError(recording.message, recording.t, recording)
         if left.energy is not None:
             try:
-                check_energy(float(run.state.clock[T]), left.energy, task.rtol)
+                check_energy(float(run.state.now[0].t), left.energy, task.rtol)
             except ComputationError as error:
                 error.recording = left.recording()
                 raise
@@ -250,12 +243,13 @@ class Arrays:
     ) -> Left:
         """What a run leaves, in arrays of its own."""
         state, record, model = run.state, run.record, self._model
-        events = record.events[: state.count[EVENTS]].copy()
+        # By the columns: an attribute of a record takes Python five times as long.
+        events = record.events[: state.now["events"][0]].copy()
         energy: Energy | None = None
         if task.energy:
             terms = impact_terms(model, task.scene.motion, events_of(events))
             energy = energy_ledger(model, scales, state.u, state.v, state.ledger, *terms)
-        rows = record.rows[: state.count[ROWS]].copy()
+        rows = record.rows[: state.progress["rows"][0]].copy()
         # Elsewhere no impact can come at once.
         if any(model.v0.tolist()):
             rows = np.vstack((lines_before(task, model, scales), rows))
@@ -330,15 +324,16 @@ class Left(NamedTuple):
             np.empty(self.hysteresis.link.size),
         )
         all_variables(self.model.elongations(state.u), self.hysteresis, state, z)
-        t, count = float(state.clock[T]), state.count
+        now, progress = state.now, state.progress
+        t = float(now["t"][0])
         message = MESSAGES.get(self.ended, "left before its end")
         if self.ended == ENDLESS:
             message = endless_message(events, self.contacts)
-        elif self.ended == STUCK and count[IN_A_ROW] > LONGEST_CASCADE:
+        elif self.ended == STUCK and now[0].in_a_row > LONGEST_CASCADE:
             message = long_message(events, self.contacts)
         elif self.ended == CROWDED:
             message = crowded_message(events, self.contacts)
-        work = int(count[EXPANSIONS]), 0, int(count[STEPS]), int(count[GROUPS])
+        expansions, steps = int(progress["expansions"][0]), int(progress["steps"][0])
         recording = Recording(
             self.ended == FINISHED,
             message,
@@ -349,7 +344,7 @@ class Left(NamedTuple):
             self.history or history_of(self.rows, unique, self.model),
             tuple(events),
             unique_forces=unique,
-            work=Work(*work, self.seconds, self.compilation),
+            work=Work(expansions, 0, steps, int(now["groups"][0]), self.seconds, self.compilation),
             energy=self.energy,
             **kept(extremes, events, t, self.model),
         )
@@ -383,21 +378,21 @@ def _run(
     plan, state, most = run.plan, run.state, task.max_steps
     carry = oscillate_alone if plan.oscillator.alone else advance
     while True:
-        budget = BUDGET if most is None else min(BUDGET, most - int(state.count[STEPS]))
+        budget = BUDGET if most is None else min(BUDGET, most - int(state.progress[0].steps))
         ended = carry(budget, run)
         if ended == IN_PYTHON:
             ended = settle_sliders(noise, run, model) or GOING_ON
         if ended == FULL:
-            if state.count[EVENTS] > MOST_EVENTS:
+            if state.now[0].events > MOST_EVENTS:
                 return run, CROWDED, None
             run = on_loan(run._replace(record=_enlarged(run.record, plan, state)))
         elif ended != GOING_ON:
             return run, ended, None
         try:
             if task.progress is not None:
-                task.progress(float(state.clock[T]))
-            if most is not None and state.count[STEPS] >= most:
-                raise steps_used_up(most, float(state.clock[T]))
+                task.progress(float(state.now[0].t))
+            if most is not None and state.progress[0].steps >= most:
+                raise steps_used_up(most, float(state.now[0].t))
         except ComputationError as stopped:
             return run, ended, stopped
 
@@ -405,10 +400,10 @@ def _run(
 def _enlarged(record: FastRecord, plan: FastPlan, state: FastState) -> FastRecord:
     """The record with more room for what it has too little of."""
     rows, events = record.rows, record.events
-    wanted = in_python(events_wanted)(plan.contacts.left.size, state.count)
+    wanted = in_python(events_wanted)(plan.contacts.left.size, state.now[0])
     if wanted > events.shape[0]:
         events = _longer(events)
-    if in_python(rows_wanted)(plan.output_times.size, state.count) > rows.shape[0]:
+    if in_python(rows_wanted)(plan.output_times.size, state.progress[0]) > rows.shape[0]:
         rows = _longer(rows)
     return record._replace(events=events, rows=rows)
 

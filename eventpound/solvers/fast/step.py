@@ -8,14 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import (
-    IN_A_ROW,
-    LONGEST_CASCADE,
-    SINCE_IMPACT,
-    T,
-    is_fleeting,
-    is_over,
-)
+from eventpound.contact.cascade import LONGEST_CASCADE, is_fleeting, is_over
 from eventpound.contact.event_rows import end_cascade
 from eventpound.contact.impacts import DONE
 from eventpound.motion.base import Family
@@ -43,22 +36,14 @@ from eventpound.solvers.fast.record import (
     write_row,
 )
 from eventpound.solvers.fast.run import (
-    CLUSTERS,
     DRIFT,
-    DUE,
-    EXPANSIONS,
-    GUESS,
     LOCAL_SHARE,
     MOST_HALVINGS,
     MOST_STALLS,
     NO_STEP,
     NOT_FINITE,
-    OUTPUT,
     PENETRATION,
     PULL,
-    RESTING,
-    STALLED,
-    STEPS,
     STUCK,
     FastRun,
     FastState,
@@ -77,9 +62,10 @@ SOONER = 0.2
 def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     """One step, to `stop` (s) at most; DONE, or why not."""
     plan, state, series, record, seen = run.plan, run.state, run.series, run.record, run.seen
-    clock, count, t = state.clock, state.count, state.clock[T]
+    now, progress = state.now[0], state.progress[0]
+    t = now.t
     order, h = _expansion(stop - t, piece, run)
-    set_travel(order, h, count[CLUSTERS], series)
+    set_travel(order, h, progress.clusters, series)
     first = first_happening(order, h, run)
     tau = min(h, first)
     t_end, g_end, error, pulls = t, 0.0, np.inf, False
@@ -89,7 +75,7 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
         look(tau, order, g_end, run)
         error = defect_error(tau, order, g_end, seen.a, series)
         pulls = _pulls(first <= tau, run)
-        if count[RESTING] > 0:
+        if progress.resting > 0:
             error = max(error, 2.0 if pulls else 0.0, _contact_force_error(tau, order, run))
         if error <= 1.0:
             break
@@ -100,7 +86,7 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
         return ended
     if first <= tau and _still_pressed(tau, run):
         first = np.inf
-    fleeting = first <= tau and is_fleeting(tau, clock, plan.limits.time)
+    fleeting = first <= tau and is_fleeting(tau, now, plan.limits.time)
     if fleeting:
         t_end = t
     if _record_inside(tau, t_end, order, piece, run):
@@ -109,36 +95,36 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     _move(t_end, tau, state, seen)
     if follows(run):
         keep_followed(first <= tau, run)
-    count[STEPS] += 1
+    progress.steps += 1
     if first <= tau:
         # What happens soon after the last event may be followed as soon by the next.
-        clock[GUESS] = min(clock[GUESS], max(tau, SOONER * clock[GUESS]))
+        progress.guess = min(progress.guess, max(tau, SOONER * progress.guess))
         _apply(tau, run)
-        if fleeting and count[DUE] == 1:
+        if fleeting and progress.due == 1:
             forget(run)
     else:
-        clock[GUESS] = tau
-        count[STALLED] = 0
-        if is_over(clock, count, plan.limits.time):
-            end_cascade(state.resting, count, record.events)
-    endless = t_end == t and count[IN_A_ROW] > LONGEST_CASCADE
-    return STUCK if endless or count[STALLED] > MOST_STALLS else DONE
+        progress.guess = tau
+        progress.stalled = 0
+        if is_over(now, plan.limits.time):
+            end_cascade(state.resting, now, record.events)
+    endless = t_end == t and now.in_a_row > LONGEST_CASCADE
+    return STUCK if endless or progress.stalled > MOST_STALLS else DONE
 
 
 @compiled
 def _expansion(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[int, float]:
     """Series of everything; their order, and the length of a step of at most `limit` (s)."""
-    count, most = run.state.count, run.plan.limits.order
+    most, progress = run.plan.limits.order, run.state.progress[0]
     longest, tried = longest_try(limit, piece, run)
     order, error = 0, 0.0
     for _again in range(4):
-        begin_series(run.state.clock[T], piece, run)
+        begin_series(run.state.now[0].t, piece, run)
         order, error = expand(tried, most, run)
-        count[EXPANSIONS] += 1
+        progress.expansions += 1
         if not wrong_way(order, run):
             break
     h = choose_length(tried, order, error, longest)
-    if count[RESTING] > 0:
+    if progress.resting > 0:
         contact_force_series(order, run)
     return order, h
 
@@ -154,8 +140,8 @@ def _record_inside(tau: float, t_end: float, order: int, piece: CurrentPiece, ru
     if plan.limits.ledger:
         add_work(tau, order, piece, run)
         again = True
-    count, times, t = state.count, plan.output_times, state.clock[T]
-    if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
+    times, t, progress = plan.output_times, state.now[0].t, state.progress[0]
+    if progress.output < times.size and times[progress.output] < t_end:
         sample_step(t, t_end, order, piece, run)
         again = True
     return again
@@ -167,7 +153,7 @@ def _still_pressed(tau: float, run: FastRun) -> bool:
     plan, state, series, happened, seen = run.plan, run.state, run.series, run.happened, run.seen
     if tau <= RELEASED_AT * plan.limits.time:
         return False
-    weak = force_level(state.count[CLUSTERS], plan.limits, series)
+    weak = force_level(state.progress[0].clusters, plan.limits, series)
     for j in range(seen.gap.size):
         if happened.released[j] and room_at_rest(j, seen.contact_force[j], run) > weak:
             return True
@@ -216,7 +202,7 @@ def _contact_force_error(tau: float, order: int, run: FastRun) -> float:
     largest, worst = 0.0, 0.0
     for a in range(plan.links.offset.size):
         largest = max(largest, abs(series.F[a, 0]))
-    rounding = FORCE * largest + force_level(run.state.count[CLUSTERS], limits, series)
+    rounding = FORCE * largest + force_level(run.state.progress[0].clusters, limits, series)
     for j in range(forces.shape[0]):
         if not run.state.unlocked[j]:
             continue
@@ -237,9 +223,9 @@ def _pulls(ends: bool, run: FastRun) -> bool:
     does.
     """
     state, seen, happened = run.state, run.seen, run.happened
-    if state.count[RESTING] == 0:
+    if state.progress[0].resting == 0:
         return False
-    level = PULLED * force_level(state.count[CLUSTERS], run.plan.limits, run.series)
+    level = PULLED * force_level(state.progress[0].clusters, run.plan.limits, run.series)
     for j in range(seen.gap.size):
         held = state.unlocked[j] and not (ends and happened.released[j])
         if held and not room_at_rest(j, seen.contact_force[j], run) >= -level:
@@ -254,8 +240,9 @@ def _move(t_end: float, tau: float, state: FastState, seen: Seen) -> None:
     copy_numbers(seen.v, state.v)
     for j in range(seen.gap.size):
         state.gap[j], state.gap_rate[j] = seen.gap[j], seen.gap_rate[j]
-    state.clock[T] = t_end
-    state.clock[SINCE_IMPACT] += tau
+    now = state.now[0]
+    now.t = t_end
+    now.since_impact += tau
 
 
 @compiled
@@ -270,7 +257,8 @@ def _apply(tau: float, run: FastRun) -> None:
             reverse(h, x, hysteresis, state)
         elif happened.crossed[h]:
             cross_border(h, x, hysteresis, state)
-    state.count[STALLED] = state.count[STALLED] + 1 if tau == 0.0 else 0
+    progress = state.progress[0]
+    progress.stalled = progress.stalled + 1 if tau == 0.0 else 0
     due = False
     for j in range(state.gap.size):
         if happened.closing[j]:
@@ -279,5 +267,5 @@ def _apply(tau: float, run: FastRun) -> None:
     for a in range(state.branch.size):
         due = due or happened.kinked[a]
     if due:
-        write_row(state.clock[T], run)
-        state.count[DUE] = 1
+        write_row(state.now[0].t, run)
+        progress.due = 1

@@ -212,7 +212,7 @@ def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
 def _close_step(step: FixedStep, active: Active, run: Stepping) -> None:
     """Write the events of a step, and make forces of its impulses."""
     structure, state, trial, resting = run.structure, run.state, run.trial, active.resting
-    counters, events, t = run.record.counters, run.record.events, step.start
+    now, events, t = run.record.now[0], run.record.events, step.start
     still = STILL_GAP_RATE * structure.speed
     lost, impacts, group = 0.0, 0, -1
     for j in range(structure.gap.size):
@@ -227,16 +227,16 @@ def _close_step(step: FixedStep, active: Active, run: Stepping) -> None:
         rests = active.marked[j] and abs(before) <= still and abs(after) <= still
         strikes = p > 0.0 and before < -still and not active.struck[j]
         if group < 0 and (strikes or rests != resting[j]):
-            group = new_group(counters)
+            group = new_group(now)
         if strikes:
-            write_event(EventRow(t, IMPACT, group, j, before, after, p, lost, 1), counters, events)
+            write_event(EventRow(t, IMPACT, group, j, before, after, p, lost, 1), now, events)
             # The first row of a problem stands for its whole loss.
             lost = 0.0
         if rests and not resting[j]:
-            write_event(EventRow(t, REST, group, j, 0.0, 0.0, 0.0, 0.0, 1), counters, events)
+            write_event(EventRow(t, REST, group, j, 0.0, 0.0, 0.0, 0.0, 1), now, events)
         elif resting[j] and not rests:
             row = EventRow(t, DETACHMENT, group, j, 0.0, after, 0.0, 0.0, 1)
-            write_event(row, counters, events)
+            write_event(row, now, events)
         resting[j] = rests
         active.struck[j] = p > 0.0
         if not rests:

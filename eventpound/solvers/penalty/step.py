@@ -169,7 +169,7 @@ def _follow_contacts(step: FixedStep, laws: Laws, run: Stepping) -> None:
         add_share(j, 0.5 * h, force, rate, laws)
         record.work[CONTACT] -= 0.5 * h * force * rate
         if turn(j, gap_1 < 0.0, gap_1, rate_1, 0.0, laws, t + h):
-            write_touch(j, rate_1, laws, record.counters, record.events)
+            write_touch(j, rate_1, laws, record.now[0], record.events)
 
 
 @step_kernel

@@ -28,7 +28,6 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from eventpound.contact.cascade import EVENTS
 from eventpound.mechanics.elements import link_force, pull_per_z, z_slopes
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
@@ -36,11 +35,9 @@ from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.timestepping.stepping import (
     DONE,
-    EVALUATIONS,
     HYSTERETIC,
     INPUT,
     NO_ROOM,
-    STEPS,
     VISCOUS,
     Span,
     Stepping,
@@ -144,7 +141,7 @@ def end_of_step(h: float, run: Stepping) -> None:
     """
     structure, state, trial, equations = run.structure, run.state, run.trial, run.equations
     theta, elastic, law = structure.theta, structure.elastic, structure.law
-    run.record.counters[EVALUATIONS] += 1
+    run.record.progress[0].evaluations += 1
     for b in range(structure.mass.size):
         trial.u[b] = state.u[b] + h * ((1.0 - theta) * state.v[b] + theta * trial.v[b])
         trial.f[b] = 0.0
@@ -249,7 +246,7 @@ def _end_step(step: FixedStep, run: Stepping) -> None:
     copy_values(trial.z, state.z)
     copy_values(trial.link, state.link)
     copy_values(trial.contact, state.contact)
-    run.record.counters[STEPS] += 1
+    run.record.progress[0].steps += 1
     record_step(step.end, step.ground_end, run)
 
 
@@ -273,10 +270,10 @@ def take_steps(
     span, forcing, contacts, run
         Of `Advance`.
     """
-    counters = run.record.counters
+    now = run.record.now[0]
     ground = ground_acceleration(forcing, forcing.start + span.first * span.h)
     for i in range(span.first, span.last):
-        if counters[EVENTS] + most_events > run.record.events.shape[0]:
+        if now.events + most_events > run.record.events.shape[0]:
             return i, NO_ROOM
         step = _step_of(i, span, ground, forcing, run.structure.theta)
         outcome = take(step, contacts, run)

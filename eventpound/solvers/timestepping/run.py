@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.contact.cascade import EVENTS, GROUPS
 from eventpound.contact.event_rows import events_of
 from eventpound.errors import ComputationError
 from eventpound.mechanics.contact_elements import NO_LAW
@@ -24,11 +23,8 @@ from eventpound.solvers.timestepping.equations import end_of_step
 from eventpound.solvers.timestepping.stepping import (
     CONTACT,
     DONE,
-    EVALUATIONS,
     MESSAGES,
     NO_ROOM,
-    ROWS,
-    STEPS,
     Span,
     Stepping,
     blank_equations,
@@ -112,7 +108,7 @@ def carry_to_end(run: FixedStepRun, time_step: float, advance: Advance, contacts
     ComputationError
         Where a step fails; what was computed is in its `recording`.
     """
-    task, counters = run.task, run.work.record.counters
+    task, progress = run.task, run.work.record.progress[0]
     _take_start(run)
     for stretch in stretches(task.scene.motion.pieces(), task.start, task.end, time_step):
         try:
@@ -126,9 +122,9 @@ def carry_to_end(run: FixedStepRun, time_step: float, advance: Advance, contacts
     run.t = task.end
     # The last output time may lie a rounding error after the last step.
     record, last = run.work.record, run.t + SAME_SAMPLE * (task.end - task.start)
-    while counters[ROWS] < record.times.size and record.times[counters[ROWS]] <= last:
-        record.rows[counters[ROWS]] = record.last[1]
-        counters[ROWS] += 1
+    while progress.rows < record.times.size and record.times[progress.rows] <= last:
+        record.rows[progress.rows] = record.last[1]
+        progress.rows += 1
     message = MESSAGES[DONE].format(step=time_step)
     return recording_of(run, message, success=True)
 
@@ -149,7 +145,7 @@ def _carry_over(run: FixedStepRun, stretch: EqualSteps, advance: Advance, contac
     while done < stretch.steps:
         chunk = CHUNK
         if most is not None:
-            chunk = min(chunk, most - int(run.work.record.counters[STEPS]))
+            chunk = min(chunk, most - int(run.work.record.progress[0].steps))
             if chunk <= 0:
                 raise steps_used_up(most, run.t)
         target = min(done + chunk, stretch.steps)
@@ -169,12 +165,12 @@ def _carry_over(run: FixedStepRun, stretch: EqualSteps, advance: Advance, contac
 def recording_of(run: FixedStepRun, message: str, *, success: bool) -> Recording:
     """What a run leaves, as every solver returns it."""
     model, state, record = run.model, run.work.state, run.work.record
-    counters = record.counters
+    now, progress = record.now[0], record.progress[0]
     own = np.flatnonzero(model.elements.kind != NO_LAW)
     contact, kind, damping, touch = run.laws
     laws = Laws(contact[own], kind[own], damping[own], touch[:, own])
-    events = events_of(record.events[: counters[EVENTS]])
-    events = with_unfinished(events, model, laws, state.v, int(counters[GROUPS]))
+    events = events_of(record.events[: now.events])
+    events = with_unfinished(events, model, laws, state.v, int(now.groups))
     table, unique = np.stack(record.running[:5]), np.ones(model.contacts, np.bool_)
     return Recording(
         success,
@@ -183,12 +179,12 @@ def recording_of(run: FixedStepRun, message: str, *, success: bool) -> Recording
         state.u.copy(),
         state.v.copy(),
         state.z.copy(),
-        history_of(record.rows[: counters[ROWS]], unique, model),
+        history_of(record.rows[: progress.rows], unique, model),
         tuple(events),
         unique_forces=unique,
         work=Work(
-            rhs=int(counters[EVALUATIONS]),
-            steps=int(counters[STEPS]),
+            rhs=int(progress.evaluations),
+            steps=int(progress.steps),
             seconds=run.clock.seconds,
             compilation=run.clock.compilation,
         ),

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.contact.cascade import COUNT_PLACES
 from eventpound.contact.event_rows import EVENT_WIDTH
+from eventpound.contact.state import Now
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import (
@@ -23,9 +23,10 @@ from eventpound.mechanics.monitored import (
     update_extremes,
 )
 from eventpound.mechanics.observables import Observed, difference
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Floats, Ints, Records
 from eventpound.numerics.compiled import F, compile_with, in_python
 from eventpound.numerics.compiled.recipe import SMALL
+from eventpound.numerics.records import NamedNumbers
 from eventpound.scene.elastic_laws import ElasticLaws
 from eventpound.solvers.events.recorder import columns_of, row_width
 from eventpound.solvers.events.scales import SceneScales
@@ -161,17 +162,24 @@ MESSAGES = {
     NOT_SOLVED: "the complementarity problem of a step of {step:.6g} s is not solved; "
     "try a smaller time_step",
 }
-STEPS, EVALUATIONS, ROWS = range(COUNT_PLACES, COUNT_PLACES + 3)
-"""Places of `FixedStepRecord.counters`, behind those of `eventpound.contact.cascade`."""
 INPUT, VISCOUS, HYSTERETIC, CONTACT = range(4)
 """Places of `FixedStepRecord.work` (J)."""
+
+
+class FixedStepProgress(NamedNumbers):
+    """What a method counts itself."""
+
+    steps: int  # steps so far
+    evaluations: int  # of the forces of the links
+    rows: int  # rows of the history
 
 
 class FixedStepRecord(NamedTuple):
     """Room for a run: events (e, EVENT_WIDTH), output times (n,), rows and the last two steps.
 
     A row (w,) is that of `eventpound.solvers.events.recorder`; `seen` holds views of the last
-    one; `running` are the extremes. work (4,): energies (J). counters (ROWS + 1,).
+    one; `running` are the extremes. work (4,): energies (J). now (1,): a `Now`, of
+    which the events count only; progress (1,).
     """
 
     events: Floats
@@ -181,7 +189,8 @@ class FixedStepRecord(NamedTuple):
     seen: Observed
     running: Running
     work: Floats
-    counters: Ints
+    now: Records
+    progress: Records
 
 
 class Stepping(NamedTuple):
@@ -221,7 +230,8 @@ def blank_record(model: Model, times: Floats, scales: Sizes, room: int) -> Fixed
         Observed(*seen, np.zeros((0, 0))),
         in_python(running_of)(blank_extremes(at, scales), at),
         np.zeros(4),
-        np.zeros(ROWS + 1, np.int64),
+        np.zeros(1, Now.layout),
+        np.zeros(1, FixedStepProgress.layout),
     )
 
 
@@ -308,7 +318,7 @@ def record_step(t: float, ground: float, run: Stepping) -> None:
     copy_values(now, before)
     _look(t, ground, run.structure, run.state, record)
     update_extremes(record.seen, t, record.running)
-    i = record.counters[ROWS]
+    i = record.progress[0].rows
     while i < record.times.size and record.times[i] <= t:
         share = 1.0
         if t > before[0] and record.times[i] > before[0]:
@@ -317,4 +327,4 @@ def record_step(t: float, ground: float, run: Stepping) -> None:
             record.rows[i, k] = now[k] if share == 1.0 else before[k] + share * (now[k] - before[k])
         record.rows[i, 0] = record.times[i]
         i += 1
-    record.counters[ROWS] = i
+    record.progress[0].rows = i

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import T
 from eventpound.mechanics.monitored import update_extreme, update_turning_point
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.numerics.arrays import Floats
@@ -25,7 +24,7 @@ from eventpound.solvers.fast.extremes import (
 )
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import write_row
-from eventpound.solvers.fast.run import OUTPUT, FastRun
+from eventpound.solvers.fast.run import FastRun
 from eventpound.solvers.fast.search import stays_above
 from eventpound.solvers.fast.single.record import acceleration_coefficient
 from eventpound.solvers.fast.single.series import motion
@@ -64,7 +63,7 @@ def gap_at(j: int, t: float, run: FastRun) -> tuple[float, float]:
     gap, rate = contacts.gap[j], 0.0
     for b, side in ((contacts.right[j], 1.0), (contacts.left[j], -1.0)):
         if b >= 0:
-            change, v, _ = motion(t - each.clock[b, T], each.order[b], each.body[b])
+            change, v, _ = motion(t - each.now[b].t, each.order[b], each.body[b])
             gap, rate = gap + side * (each.body[b].u + change), rate + side * v
     return gap, rate
 
@@ -121,7 +120,7 @@ def set_gap(j: int, now: float, run: FastRun) -> int:
 def _add_body(b: int, factor: float, now: float, run: FastRun) -> int:
     """Add a multiple of the displacement of a body about a time (s) to `series.c`; its order."""
     each, c, d = run.series.each, run.series.c, run.series.d
-    body, order, since = each.body[b], each.order[b], now - each.clock[b, T]
+    body, order, since = each.body[b], each.order[b], now - each.now[b].t
     d[0] = body.u
     for k in range(1, order + 1):
         d[k] = body.x[k]
@@ -214,7 +213,7 @@ def _shear_between(
     start = down = up = 0.0
     before, after = ground_acceleration(piece, now), ground_acceleration(piece, then)
     for b in range(plan.mass.size):
-        body, begun, m = each.body[b], each.clock[b, T], plan.mass[b]
+        body, begun, m = each.body[b], each.now[b].t, plan.mass[b]
         a = motion(now - begun, each.order[b], body)[2] + before
         start -= m * a
         if body.damping > 0.0:
@@ -247,7 +246,7 @@ def _follow_shear(place: int, now: float, then: float, run: FastRun) -> None:
 def _add_acceleration(b: int, factor: float, now: float, run: FastRun) -> int:
     """As `_add_body` for the absolute acceleration."""
     each, c, d = run.series.each, run.series.c, run.series.d
-    body, order, since = each.body[b], each.order[b] - 2, now - each.clock[b, T]
+    body, order, since = each.body[b], each.order[b] - 2, now - each.now[b].t
     for k in range(order + 1):
         d[k] = acceleration_coefficient(k, body)
     return _add_later(int(order), factor, since, c, d)
@@ -259,7 +258,7 @@ def _look(t: float, ground: float, run: FastRun) -> None:
     plan, seen, each = run.plan, run.seen, run.series.each
     for b in range(plan.mass.size):
         body = each.body[b]
-        change, seen.v[b], _ = motion(t - each.clock[b, T], each.order[b], body)
+        change, seen.v[b], _ = motion(t - each.now[b].t, each.order[b], body)
         seen.u[b] = body.u + change
     see_forces(ground, run)
     for b in range(plan.mass.size):
@@ -269,18 +268,18 @@ def _look(t: float, ground: float, run: FastRun) -> None:
 @compiled
 def is_row_due(then: float, run: FastRun) -> bool:
     """Whether a row of the history is due before a time (s)."""
-    count, times = run.state.count, run.plan.output_times
-    return count[OUTPUT] < times.size and times[count[OUTPUT]] < then
+    times, progress = run.plan.output_times, run.state.progress[0]
+    return progress.output < times.size and times[progress.output] < then
 
 
 @compiled
 def write_rows(now: float, then: float, piece: CurrentPiece, run: FastRun) -> None:
     """History at the output times between two times (s)."""
-    count, times = run.state.count, run.plan.output_times
+    times, progress = run.plan.output_times, run.state.progress[0]
     while is_row_due(then, run):
-        if times[count[OUTPUT]] >= now:
-            write_row_at(times[count[OUTPUT]], piece, run)
-        count[OUTPUT] += 1
+        if times[progress.output] >= now:
+            write_row_at(times[progress.output], piece, run)
+        progress.output += 1
 
 
 @compiled_apart
@@ -290,7 +289,7 @@ def write_row_at(t: float, piece: CurrentPiece, run: FastRun) -> None:
     _look(t, ground_acceleration(piece, t), run)
     for j in range(contacts.gap.size):
         seen.gap[j], seen.gap_rate[j] = gap_of(j, contacts, seen.u, seen.v)
-        if t == state.clock[T]:
+        if t == state.now[0].t:
             # Where they set out there is a row already, which is to be the same.
             seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]
         seen.contact_force[j] = 0.0

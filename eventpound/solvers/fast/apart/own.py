@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from eventpound.contact.cascade import T
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece
@@ -17,7 +16,7 @@ from eventpound.solvers.fast.apart.between import A_HIGH, A_LOW, U_HIGH, U_LOW
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.extremes import flat_time, followers
 from eventpound.solvers.fast.links import turns_back
-from eventpound.solvers.fast.run import GOING_ON, PIECE, Each, FastRun, Oscillator
+from eventpound.solvers.fast.run import GOING_ON, Each, FastRun, Oscillator
 from eventpound.solvers.fast.single.body import (
     SingleBody,
     SingleRun,
@@ -69,8 +68,8 @@ def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
     one = lend(
         SingleRun(
             each.body[b],
-            each.clock[b],
-            each.count[b],
+            each.now[b],
+            each.progress[b],
             run.record.events,
             run.record.rows,
             running_of(each.extremes[b], places_of(1, 0, 0)),
@@ -116,8 +115,8 @@ def _start(b: int, piece: CurrentPiece, one: SingleRun, run: FastRun) -> None:
     body.u, body.v = state.u[b], state.v[b]
     body.z = spring_state(body.u, one)
     body.a = absolute_acceleration(body.u, body.v, body.z, body)
-    one.count[:] = 0
-    present = state.count[PIECE]
+    one.progress.expansions = one.progress.stalled = 0
+    present = state.progress[0].piece
     if body.piece_known != present + 1:
         know_piece(present, piece, body)
     own, at, extremes = one.running.at, run.running.at, run.record.extremes
@@ -130,7 +129,7 @@ def _start(b: int, piece: CurrentPiece, one: SingleRun, run: FastRun) -> None:
 def _take_up(b: int, what: int, now: float, window: Window, one: SingleRun, run: FastRun) -> None:
     """Begin a step at a time (s) where the body is, whose velocity an impact may have changed."""
     body, state = one.body, run.state
-    body.u, body.v, one.clock[T] = state.u[b], state.v[b], now
+    body.u, body.v, one.now.t = state.u[b], state.v[b], now
     body.z = spring_state(body.u, one)
     if what == REBOUND and turns_back(body.part, body.sigma, body.v, body.still):
         turn_round(body.u, one)
@@ -161,7 +160,7 @@ def _show(b: int, window: Window, one: SingleRun, each: Each) -> None:
 @compiled
 def _arrive(b: int, now: float, piece: CurrentPiece, one: SingleRun, each: Each) -> bool:
     """Take a body to a time (s), the end of its step or within it; whether it may go on."""
-    body, begun, order = one.body, one.clock[T], each.order[b]
+    body, begun, order = one.body, one.now.t, each.order[b]
     if now < each.until[b]:
         each.length[b], each.until[b] = now - begun, now
         each.event[b], each.turned[b] = FREE, False
@@ -176,7 +175,7 @@ def _arrive(b: int, now: float, piece: CurrentPiece, one: SingleRun, each: Each)
 @compiled
 def _begin(b: int, stop: float, piece: CurrentPiece, one: SingleRun, run: FastRun) -> bool:
     """A step of a body from where it is; whether one holds at its end."""
-    each, t, wanted = run.series.each, one.clock[T], stop - one.clock[T]
+    each, t, wanted = run.series.each, one.now.t, stop - one.now.t
     if piece.family == _GAUSSIAN:
         wanted = min(wanted, GAUSSIAN_STEP / math.sqrt(piece.coefficients[1]))
     order, tau, end, event, turned = propose(wanted, stop, piece, one)

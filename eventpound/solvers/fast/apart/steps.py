@@ -13,7 +13,7 @@ Where more than two of them may be concerned all bodies are brought to one insta
 
 from __future__ import annotations
 
-from eventpound.contact.cascade import T, is_fleeting
+from eventpound.contact.cascade import is_fleeting
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.lending import lend
@@ -22,7 +22,7 @@ from eventpound.solvers.fast.apart.together import ACCELERATION, go_together
 from eventpound.solvers.fast.apart.windows import go_by_windows, windows_fit
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred
 from eventpound.solvers.fast.links import CORE
-from eventpound.solvers.fast.run import EXPANSIONS, RESTING, STEPS, Each, FastRun
+from eventpound.solvers.fast.run import Each, FastRun
 from eventpound.solvers.fast.single.body import forget
 from eventpound.tolerances import OWN_GAP
 
@@ -46,7 +46,7 @@ def may_go_apart(piece: CurrentPiece, run: FastRun) -> bool:
     plan, state = run.plan, run.state
     if run.series.each.body.size == 0 or plan.links.kinked:
         return False
-    if state.count[RESTING] > 0 or is_fleeting(0.0, state.clock, plan.limits.time):
+    if state.progress[0].resting > 0 or is_fleeting(0.0, state.now[0], plan.limits.time):
         return False
     for j in range(state.gap.size):
         if not state.gap[j] >= OWN_GAP * plan.limits.length:
@@ -62,7 +62,7 @@ def may_go_apart(piece: CurrentPiece, run: FastRun) -> bool:
 @compiled_deferred
 def go_apart(budget: int, stop: float, piece: CurrentPiece, run: FastRun) -> None:
     """Steps of each body by itself, to `stop` (s) at most and `budget` in all; then one instant."""
-    state, each, now = run.state, run.series.each, run.state.clock[T]
+    state, each, now = run.state, run.series.each, run.state.now[0].t
     window = lend(Window(now, stop, -1, piece))
     for b in range(each.body.size):
         go(b, START, now, window, run)
@@ -71,7 +71,7 @@ def go_apart(budget: int, stop: float, piece: CurrentPiece, run: FastRun) -> Non
         go_by_windows(budget, stop, piece, run)
     else:
         each.outside[:] = 0.0
-        state.count[STEPS] += go_together(budget, window, run)
+        state.progress[0].steps += go_together(budget, window, run)
     for b in range(each.body.size):
-        state.count[EXPANSIONS] += each.count[b, EXPANSIONS]
+        state.progress[0].expansions += each.progress[b].expansions
         take_own(b, run)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import FASTEST, IN_A_ROW, SINCE_IMPACT, TIRED, T, is_over
+from eventpound.contact.cascade import TIRED, is_over
 from eventpound.contact.event_rows import end_cascade
 from eventpound.contact.impacts import DONE
 from eventpound.contact.instant import settle_impacts
@@ -46,7 +46,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.instant import instant_of
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import has_room, takes_rows
-from eventpound.solvers.fast.run import DUE, GUESS, STALLED, FastRun
+from eventpound.solvers.fast.run import FastRun
 from eventpound.tolerances import LISTED_SPEED, OWN_GAP, TOGETHER
 
 (ACCELERATION, NEXT_U, NEXT_V, NEXT_ACCELERATION, OWN_STRAY) = range(5)
@@ -172,14 +172,14 @@ def _impact(j: int, tau: float, window: Window, run: FastRun) -> bool:
     If not, only what comes before it has been done.
     """
     plan, state, each, limits = run.plan, run.state, run.series.each, run.plan.limits
-    clock, count, contacts = state.clock, state.count, plan.contacts
+    contacts, now = plan.contacts, state.now[0]
     row = takes_rows(run.record.rows)
     if row:
         _show_all(window, run)
     rate = gap_at(j, tau, run)[1]
     still = still_rate(limits.length, limits.time)
-    slowest = max(still, LISTED_SPEED * clock[FASTEST])
-    simple = -contacts.restitution[j] * rate > slowest and count[IN_A_ROW] <= TIRED
+    slowest = max(still, LISTED_SPEED * now.fastest)
+    simple = -contacts.restitution[j] * rate > slowest and now.in_a_row <= TIRED
     simple = _is_of_two(j, tau, window, run) and simple and has_room(run)
     for b in (contacts.left[j], contacts.right[j]):
         if b >= 0:
@@ -266,15 +266,15 @@ def _time_of_opening(j: int, tau: float, rate: float, run: FastRun) -> float:
 
 
 @compiled
-def _pass_time(now: float, run: FastRun) -> None:
-    """Let the time be `now` (s)."""
-    state, clock, count = run.state, run.state.clock, run.state.count
-    if now > clock[T]:
-        count[STALLED] = 0
-    clock[SINCE_IMPACT] += now - clock[T]
-    clock[T] = now
-    if is_over(clock, count, run.plan.limits.time):
-        end_cascade(state.resting, count, run.record.events)
+def _pass_time(t: float, run: FastRun) -> None:
+    """Let the time be t (s)."""
+    state, now = run.state, run.state.now[0]
+    if t > now.t:
+        state.progress[0].stalled = 0
+    now.since_impact += t - now.t
+    now.t = t
+    if is_over(now, run.plan.limits.time):
+        end_cascade(state.resting, now, run.record.events)
 
 
 @compiled
@@ -291,16 +291,16 @@ def _meet(closed: int, now: float, window: Window, run: FastRun) -> None:
             each.lines[ACCELERATION, b] = each.lines[NEXT_ACCELERATION, b]
             continue
         shortest = min(shortest, max(each.length[b], each.until[b] - now))
-        if each.clock[b, T] < now:
+        if each.now[b].t < now:
             go(b, STAY, now, window, run)
         if closed < 0 or not _is_of(b, closed, run):
             state.u[b], state.v[b] = each.body[b].u, each.body[b].v
         each.lines[ACCELERATION, b] = each.body[b].a
     if 0.0 < shortest < np.inf:
-        state.clock[GUESS] = shortest
+        state.progress[0].guess = shortest
     _pass_time(now, run)
     for j in range(state.gap.size):
         if j == closed:
-            state.count[DUE] = 1
+            state.progress[0].due = 1
         else:
             state.gap[j], state.gap_rate[j] = gap_of(j, plan.contacts, state.u, state.v)

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import T
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.forcing import CurrentPiece, sample_time
 from eventpound.numerics.lending import lend
@@ -33,7 +32,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_
 from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import CORE, SATURATED, UNLOADING, gap_of
 from eventpound.solvers.fast.record import has_room
-from eventpound.solvers.fast.run import DUE, STEPS, Each, FastRun
+from eventpound.solvers.fast.run import Each, FastRun
 from eventpound.solvers.fast.sampled.exact import MOST_TURN
 from eventpound.solvers.fast.sampled.forces import slope_of
 from eventpound.solvers.fast.single.body import (
@@ -68,15 +67,15 @@ def windows_fit(dt: float, run: FastRun) -> bool:
 def go_by_windows(budget: int, stop: float, piece: CurrentPiece, run: FastRun) -> None:
     """Go from sample to sample, to `stop` (s) at most and `budget` times in all."""
     state, each, coefficients = run.state, run.series.each, piece.coefficients
-    clock, count, dt, last = state.clock, state.count, coefficients[1], state.count[STEPS] + budget
-    end = clock[T]
+    dt, now, progress = coefficients[1], state.now[0], state.progress[0]
+    end, last = now.t, progress.steps + budget
     for b in range(each.body.size):
         _set_bounds(b, dt, each)
         _set_line(b, dt, run)
-    while count[STEPS] < last and end == clock[T] < stop and count[DUE] == 0 and has_room(run):
-        end, segment = sample_after(clock[T], stop, piece)
-        window = Window(clock[T], end, segment, piece)
-        whole = clock[T] == sample_time(coefficients[0], dt, segment)
+    while progress.steps < last and end == now.t < stop and progress.due == 0 and has_room(run):
+        end, segment = sample_after(now.t, stop, piece)
+        window = Window(now.t, end, segment, piece)
+        whole = now.t == sample_time(coefficients[0], dt, segment)
         whole = whole and end == sample_time(coefficients[0], dt, segment + 1)
         if not _choose(dt, whole, window, run):
             break
@@ -84,7 +83,7 @@ def go_by_windows(budget: int, stop: float, piece: CurrentPiece, run: FastRun) -
         for b in range(each.body.size):
             if each.until[b] < np.inf:
                 _set_line(b, dt, run)
-        count[STEPS] += 1
+        progress.steps += 1
 
 
 @compiled

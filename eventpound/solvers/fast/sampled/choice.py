@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from eventpound.contact.cascade import T, is_fleeting
+from eventpound.contact.cascade import is_fleeting
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.polynomial import only_root
 from eventpound.solvers.fast.compiled import compiled
@@ -25,7 +25,7 @@ from eventpound.solvers.fast.expansion import defect_error
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
 from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, place, reverse
 from eventpound.solvers.fast.record import has_room, put_row
-from eventpound.solvers.fast.run import DUE, EXPANSIONS, Contacts, FastRun
+from eventpound.solvers.fast.run import Contacts, FastRun
 from eventpound.solvers.fast.sampled.bounds import (
     BORDER,
     CLOSING,
@@ -72,7 +72,7 @@ def first_simple_event(order: int, h: float, run: FastRun) -> tuple[int, int, fl
             what, which, first, second = CLOSING, j, tau, first
         else:
             second = min(second, tau)
-    fleeting = is_fleeting(first, state.clock, plan.limits.time)
+    fleeting = is_fleeting(first, state.now[0], plan.limits.time)
     if first < SOONEST_EVENT * h or second < first + EVENTS_APART * h or fleeting:
         return NOTHING, -1, h
     return what, which, first
@@ -166,12 +166,12 @@ def do_event(what: int, which: int, g: float, run: FastRun) -> None:
             cross_border(h, x, plan.hysteresis, state)
         return
     look(0.0, plan.limits.order, g, run)
-    put_row(state.clock[T], run)
+    put_row(state.now[0].t, run)
     if what == KINK:
-        put_row(state.clock[T], run)
+        put_row(state.now[0].t, run)
         state.branch[which] = -state.branch[which]
     else:
-        state.count[DUE] = 1
+        state.progress[0].due = 1
 
 
 class ProposedStep(NamedTuple):
@@ -204,10 +204,10 @@ def clear_step(i: int, line: GroundLine, run: FastRun) -> ProposedStep:
 def _propose(i: int, line: GroundLine, run: FastRun) -> ProposedStep:
     """A step by table i along the line."""
     state, bodies = run.state, run.series.tables.bodies
-    n, longest = state.u.size, line.end - state.clock[T]
+    n, longest = state.u.size, line.end - state.now[0].t
     for b in range(n):
         bodies.pulled[b] = bodies.acceleration[b] - line.g
-    state.count[EXPANSIONS] += 1
+    state.progress[0].expansions += 1
     if n == 2:
         # The compiler unrolls the loops over two bodies.
         order, h = propose_by_series(2, i, longest, line.slope, run)

@@ -12,24 +12,14 @@ from __future__ import annotations
 
 import math
 
-from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T, is_over
+from eventpound.contact.cascade import is_over
 from eventpound.contact.event_rows import end_cascade
 from eventpound.mechanics.monitored import update_all, update_extreme
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.links import elongations, gap_of, saturate
 from eventpound.solvers.fast.record import sample_step
-from eventpound.solvers.fast.run import (
-    DUE,
-    GUESS,
-    OUTPUT,
-    RESTING,
-    STALLED,
-    STEPS,
-    FastPlan,
-    FastRun,
-    FastState,
-)
+from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.bounds import CLOSING, NOTHING, forces_covered
 from eventpound.solvers.fast.sampled.choice import (
     ProposedStep,
@@ -63,7 +53,7 @@ def stretch(
     plan, state, series, running = run.plan, run.state, run.series, run.running
     tables, bodies, u, v = series.tables, series.tables.bodies, state.u, state.v
     set_room(tables, run)
-    dt, t, since = tables.step[i], state.clock[T], state.clock[SINCE_IMPACT]
+    dt, t, since = tables.step[i], state.now[0].t, state.now[0].since_impact
     taken, output = 0, _next_output(plan, state)
     while taken < budget:
         line = line_at(segment + taken, piece, t)
@@ -88,15 +78,15 @@ def stretch(
         taken += 1
     if taken > 0:
         _arrive(t, since, dt, run)
-        state.count[STEPS] += taken
-        state.count[STALLED] = 0
+        state.progress[0].steps += taken
+        state.progress[0].stalled = 0
     return taken
 
 
 @compiled
 def _next_output(plan: FastPlan, state: FastState) -> float:
     """Time of the next row of the history (s), inf where there is none."""
-    i = state.count[OUTPUT]
+    i = state.progress[0].output
     return float(plan.output_times[i]) if i < plan.output_times.size else math.inf
 
 
@@ -104,8 +94,8 @@ def _next_output(plan: FastPlan, state: FastState) -> float:
 def _arrive(t: float, since: float, dt: float, run: FastRun) -> None:
     """What goes with the displacements and velocities at t (s)."""
     plan, state, series = run.plan, run.state, run.series
-    clock, along = state.clock, series.tables.along
-    clock[T], clock[SINCE_IMPACT], clock[GUESS] = t, since, dt
+    along, now, progress = series.tables.along, state.now[0], state.progress[0]
+    now.t, now.since_impact, progress.guess = t, since, dt
     elongations(plan.links.ends, state.u, state.v, along.x, along.x_rate)
     set_gaps(plan, state)
 
@@ -124,14 +114,14 @@ def write_line(i: int, slope: float, t_end: float, piece: CurrentPiece, run: Fas
     plan, state = run.plan, run.state
     order = plan.limits.order
     expand_linear(i, order, slope, run)
-    sample_step(state.clock[T], t_end, order, piece, run)
+    sample_step(state.now[0].t, t_end, order, piece, run)
 
 
 @compiled
 def may_go_by_samples(run: FastRun) -> bool:
     """Whether every body moves freely, and there are few enough of them."""
     plan, state, series = run.plan, run.state, run.series
-    if state.count[RESTING] > 0 or plan.limits.ledger or series.tables.turn.shape[1] == 0:
+    if state.progress[0].resting > 0 or plan.limits.ledger or series.tables.turn.shape[1] == 0:
         return False
     for b in range(state.u.size):
         if series.of_body[b] != b:
@@ -147,25 +137,25 @@ def sample_steps(budget: int, piece_end: float, piece: CurrentPiece, run: FastRu
     the motion does not depend on them. A contact that has closed is due next.
     """
     state, dt = run.state, piece.coefficients[1]
-    clock, count, rounding = state.clock, state.count, SAME_SAMPLE * dt
+    rounding, now, progress = SAME_SAMPLE * dt, state.now[0], state.progress[0]
     i, fresh = begin(dt, run), True
-    until, last = piece_end - rounding, count[STEPS] + budget
-    segment = first_segment(piece.coefficients, clock[T], piece_end)
-    while count[STEPS] < last and count[DUE] == 0:
-        line = line_at(segment, piece, clock[T])
-        if not (line.end < until and clock[T] + rounding < line.end):
+    until, last = piece_end - rounding, progress.steps + budget
+    segment = first_segment(piece.coefficients, now.t, piece_end)
+    while progress.steps < last and progress.due == 0:
+        line = line_at(segment, piece, now.t)
+        if not (line.end < until and now.t + rounding < line.end):
             break
         linear = _is_straight(i, run) and line.since == 0.0
-        if linear and fresh and count[IN_A_ROW] == 0:
-            taken = _stretch(i, segment, last - count[STEPS], until, piece, run)
+        if linear and fresh and now.in_a_row == 0:
+            taken = _stretch(i, segment, last - progress.steps, until, piece, run)
             fresh, segment = False, segment + taken
             if taken > 0:
                 continue
         step = clear_step(i, line, run)
         if step.order == 0:
             break
-        whole = step.h == line.end - clock[T]
-        _take(step, line, line.end if whole else clock[T] + step.h, piece, run)
+        whole = step.h == line.end - now.t
+        _take(step, line, line.end if whole else now.t + step.h, piece, run)
         fresh, segment = True, segment + 1 if whole else segment
         if step.what != NOTHING:
             i = begin(dt, run)
@@ -199,7 +189,7 @@ def _take(
 ) -> None:
     """Take a step, which ends at t_end (s), and do what happens there."""
     if _next_output(run.plan, run.state) < t_end:
-        sample_step(run.state.clock[T], t_end, step.order, piece, run)
+        sample_step(run.state.now[0].t, t_end, step.order, piece, run)
     _accept(step, t_end, run)
     if step.what != NOTHING:
         g = line.g + line.slope * step.h
@@ -210,19 +200,19 @@ def _take(
 def _accept(step: ProposedStep, t: float, run: FastRun) -> None:
     """Make the end of the step, at t (s), the present state, and take it into the extremes."""
     plan, state, series, record = run.plan, run.state, run.series, run.record
-    bodies, clock, count = series.tables.bodies, state.clock, state.count
+    bodies, now, progress = series.tables.bodies, state.now[0], state.progress[0]
     end_is_now(series.tables)
-    clock[T], clock[GUESS] = t, step.h
-    clock[SINCE_IMPACT] += step.h
-    count[STEPS] += 1
-    count[STALLED] = 0
+    now.t, progress.guess = t, step.h
+    now.since_impact += step.h
+    progress.steps += 1
+    progress.stalled = 0
     for b in range(state.u.size):
         state.u[b], state.v[b] = bodies.next_u[b], bodies.next_v[b]
     set_gaps(plan, state)
     if step.what == CLOSING:
         state.gap[step.which] = 0.0
-    elif step.what == NOTHING and is_over(clock, count, plan.limits.time):
-        end_cascade(state.resting, count, record.events)
+    elif step.what == NOTHING and is_over(now, plan.limits.time):
+        end_cascade(state.resting, now, record.events)
     _take_extremes(t, run)
 
 

@@ -18,18 +18,21 @@ import numpy as np
 
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import acceleration_noise
+from eventpound.contact.state import Now
 from eventpound.mechanics.backbone import backbone, backbone_inverse, shape_of
 from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.link_law import has_backbone
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import Running
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.records import NamedNumbers
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP, open_gaps
 from eventpound.solvers.fast.run import (
     LOCAL_SHARE,
     Contacts,
     FastPlan,
+    FastProgress,
     FastState,
     Ground,
     Limits,
@@ -50,7 +53,7 @@ ROOM = 48
 """Coefficients there is room for in a series."""
 
 
-class SingleBody(np.record):  # type: ignore[misc]  # final to type checkers only
+class SingleBody(NamedNumbers, room=ROOM):
     """All numbers of a single body: one address to hand on."""
 
     known: bool  # whether the rest is filled in
@@ -140,22 +143,16 @@ class SingleBody(np.record):  # type: ignore[misc]  # final to type checkers onl
     saturated: Floats  # where it is saturated
 
 
-_KINDS: dict[str, Any] = {"float": float, "int": int, "bool": bool, "Floats": (float, ROOM)}
-_FIELDS = [(name, _KINDS[kind]) for name, kind in SingleBody.__annotations__.items()]
-BODY = np.dtype((SingleBody, np.dtype(_FIELDS, align=True)))
-"""Layout of a `SingleBody`, of which an array holds one."""
-
-
 class SingleRun(NamedTuple):
     """A run of a single body, lent (`eventpound.numerics.lending`): parts of a `FastRun`.
 
-    clock, count: those of `FastState`. springs: elongations among the extremes. times: of output.
+    now, progress: those of `FastState`. springs: elongations among the extremes. times: of output.
     table: of its backbone. links, contacts, ground, limits, oscillator: those of `FastPlan`.
     """
 
     body: SingleBody
-    clock: Floats
-    count: Ints  # type: ignore[assignment]  # hides the method of tuples
+    now: Now
+    progress: FastProgress
     events: Floats
     rows: Floats
     running: Running

@@ -33,7 +33,6 @@ import math
 
 import numpy as np
 
-from eventpound.contact.cascade import SINCE_IMPACT, T
 from eventpound.mechanics.monitored import update_extreme, update_turning_point
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import (
@@ -49,7 +48,7 @@ from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
 from eventpound.solvers.fast.extremes import stays_within, turning_times
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
-from eventpound.solvers.fast.run import REST_TERMS, STALLED, STEPS
+from eventpound.solvers.fast.run import REST_TERMS
 from eventpound.solvers.fast.sampled.exact import MOST_TURN, put_column
 from eventpound.solvers.fast.search import release_time
 from eventpound.solvers.fast.single.body import (
@@ -86,7 +85,7 @@ def rest_step(stop: float, piece: CurrentPiece, run: SingleRun) -> bool:
 
     `SingleBody.released` says then whether the contact force has vanished.
     """
-    body, t, side = run.body, run.clock[T], run.body.rests_on
+    body, t, side = run.body, run.now.t, run.body.rests_on
     if piece.family == _SAMPLES:
         stop = next_sample(piece.coefficients, t, stop)
     gaussian, sinusoid, _ = shortest_times(piece.family, piece.coefficients)
@@ -97,7 +96,7 @@ def rest_step(stop: float, piece: CurrentPiece, run: SingleRun) -> bool:
     for k in range(REST_TERMS):
         f[k] = -side * f[k]
     f[0] += side * body.a
-    release = _release(h, run.count[STALLED] > 0, f, run)
+    release = _release(h, run.progress.stalled > 0, f, run)
     tau = min(h, release)
     t_end = stop if tau == stop - t else t + tau
     if not sample_single(t, t_end, 0, piece, run):
@@ -198,7 +197,7 @@ def swing_freely(stop: float, piece: CurrentPiece, run: SingleRun) -> int:
 
     `NOT_FREE` says that the forces do not give the acceleration there, and nothing was done.
     """
-    body, t = run.body, run.clock[T]
+    body, t = run.body, run.now.t
     k, way, left = tangent(body), _way(body), stop - t
     omega = math.sqrt(k)
     y, r = -body.a / k, body.v / omega
@@ -275,7 +274,7 @@ def sample_steps(
     highest, lowest = body.right_gap - body.own_gap, body.own_gap - body.left_gap
     until = piece_end - SAME_SAMPLE * dt
     core = body.core_end if linear else 0.0
-    u, v, t, z, acceleration = body.u, body.v, run.clock[T], body.z, body.a
+    u, v, t, z, acceleration = body.u, body.v, run.now.t, body.z, body.a
     xi = place_of(u, body) if linear else 0.0
     pace, per_scale = sigma * body.per_scale, body.per_scale
     first, started = segment, segment
@@ -332,9 +331,9 @@ def sample_steps(
 
 @compiled
 def _arrive(u: float, v: float, t: float, steps: int, dt: float, run: SingleRun) -> None:
-    body, clock, count = run.body, run.clock, run.count
-    body.u, body.v, clock[T] = u, v, t
+    body, now, progress = run.body, run.now, run.progress
+    body.u, body.v, now.t = u, v, t
     body.right, body.left = body.right_gap - u, body.left_gap + u
-    clock[SINCE_IMPACT] += steps * dt
-    count[STEPS] += steps
-    count[STALLED] = 0
+    now.since_impact += steps * dt
+    progress.steps += steps
+    progress.stalled = 0

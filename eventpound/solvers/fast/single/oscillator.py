@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from eventpound.contact.cascade import T, end_flight
+from eventpound.contact.cascade import end_flight
 from eventpound.contact.event_rows import new_group, write_change
 from eventpound.contact.impacts import DONE, FULL, Meeting, end_impacts, rebound
 from eventpound.contact.modes import ACCELERATION, IMPACT, duty, transition_code
@@ -43,14 +43,8 @@ from eventpound.solvers.fast.compiled import (
 from eventpound.solvers.fast.links import turns_back
 from eventpound.solvers.fast.record import has_room_for
 from eventpound.solvers.fast.run import (
-    DUE,
     GOING_ON,
     MOST_STALLS,
-    PIECE,
-    RESTING,
-    STALLED,
-    STARTED,
-    STEPS,
     STUCK,
     FastPlan,
     FastRecord,
@@ -90,8 +84,8 @@ def impact_at_barrier(side: float, j: int, run: SingleRun) -> None:
     """Newton's law at the barrier on one side, contact j, which the body has met."""
     body, limits, restitution = run.body, run.limits, run.contacts.restitution[j]
     meeting = Meeting(j, -side * body.v, restitution, 1.0 / body.mass, limits.length, limits.time)
-    after, _ = rebound(meeting, run.clock, run.count, run.events)
-    end_impacts(run.clock, run.count)
+    after, _ = rebound(meeting, run.now, run.events)
+    end_impacts(run.now)
     body.v = -side * after
 
 
@@ -108,7 +102,7 @@ def stays_closed(side: float, piece: CurrentPiece, run: SingleRun) -> bool:
     run : SingleRun
         The run.
     """
-    ground, level, t = run.body.work[:], run.body.no_acceleration, run.clock[T]
+    ground, level, t = run.body.work[:], run.body.no_acceleration, run.now.t
     ground_taylor(piece, t, MOST_DECIDING, ground)
     time = min(run.limits.time, decay_time(piece, t))
     for k in range(1, MOST_DECIDING):
@@ -141,14 +135,14 @@ def settle_single(g: float, piece: CurrentPiece, run: SingleRun) -> None:
     if rests != body.rests_on:
         _write_rest(rests != 0.0, j, -side * body.v, run)
     body.rests_on, body.released = rests, False
-    run.count[RESTING] = 1 if rests != 0.0 else 0
+    run.progress.resting = 1 if rests != 0.0 else 0
 
 
 @compiled_deferred
 def _write_rest(rests: bool, j: int, rate: float, run: SingleRun) -> None:
     """Write down that the body comes to rest on contact j, or no longer rests on it."""
-    count, code = run.count, transition_code(not rests, rests, rate)
-    write_change(code, j, new_group(count), rate, run.clock[T], count, run.events)
+    code = transition_code(not rests, rests, rate)
+    write_change(code, j, new_group(run.now), rate, run.now, run.events)
 
 
 @compiled_apart
@@ -184,8 +178,8 @@ def oscillate(
     run = lend(
         SingleRun(
             single.body[0],
-            state.clock,
-            state.count,
+            state.now[0],
+            state.progress[0],
             record.events,
             record.rows,
             running_of(record.extremes, at),
@@ -200,23 +194,23 @@ def oscillate(
             single,
         )
     )
-    body, clock, count = run.body, run.clock, run.count
-    if count[STARTED] == 0:
+    body, now, progress = run.body, run.now, run.progress
+    if not progress.started:
         forget(body)
         enter(plan, state, run)
-        count[STARTED] = 1
-    last_step = count[STEPS] + budget
+        progress.started = True
+    last_step = progress.steps + budget
     code = GOING_ON
     while code == GOING_ON:
-        if not has_room_for(1, run.times.size, count, run.events, run.rows):
+        if not has_room_for(1, run.times.size, now, progress, run.events, run.rows):
             code = FULL
             break
-        if count[DUE] == 1 or clock[T] >= run.limits.end:
+        if progress.due == 1 or now.t >= run.limits.end:
             _settle(run)
-            if clock[T] >= run.limits.end:
+            if now.t >= run.limits.end:
                 code = DONE
                 break
-        if count[STEPS] >= last_step:
+        if progress.steps >= last_step:
             break
         code = _rest(last_step, run) if body.rests_on != 0.0 else _swing(last_step, run)
     leave(plan.oscillator, body, state)
@@ -226,14 +220,14 @@ def oscillate(
 @compiled
 def _settle(run: SingleRun) -> None:
     """Do the duties of the present instant and write down what follows it."""
-    body, count, ground, t = run.body, run.count, run.ground, run.clock[T]
-    while count[DUE] == 1 and ground.ends[count[PIECE]] <= t:
-        count[PIECE] += 1
-    piece = lend(piece_of(count[PIECE], ground))
+    body, ground, t, progress = run.body, run.ground, run.now.t, run.progress
+    while progress.due == 1 and ground.ends[progress.piece] <= t:
+        progress.piece += 1
+    piece = lend(piece_of(progress.piece, ground))
     g = ground_acceleration(piece, t)
-    if count[DUE] == 1:
+    if progress.due == 1:
         settle_single(g, piece, run)
-        count[DUE] = 0
+        progress.due = 0
         body.segment = -1
     set_force(g, body)
     write_present(t, g, run)
@@ -243,30 +237,30 @@ def _settle(run: SingleRun) -> None:
 @compiled_deferred_loop
 def _rest(last_step: int, run: SingleRun) -> int:
     """Steps of a body at rest, until something is to be settled."""
-    ground, count, clock, body = run.ground, run.count, run.clock, run.body
-    i = count[PIECE]
+    ground, body, now, progress = run.ground, run.body, run.now, run.progress
+    i = progress.piece
     piece = lend(piece_of(i, ground))
     piece_end = min(ground.ends[i], run.limits.end)
-    while count[STEPS] < last_step and count[DUE] == 0 and clock[T] < piece_end:
+    while progress.steps < last_step and progress.due == 0 and now.t < piece_end:
         if not rest_step(piece_end, piece, run):
             return FULL
         if body.released:
-            end_flight(clock)
-            g = ground_acceleration(piece, clock[T])
-            write_present(clock[T], g, run)
-            count[DUE] = 1
-        if count[STALLED] > MOST_STALLS:
+            end_flight(now)
+            g = ground_acceleration(piece, now.t)
+            write_present(now.t, g, run)
+            progress.due = 1
+        if progress.stalled > MOST_STALLS:
             return STUCK
-    if clock[T] >= ground.ends[i]:
-        count[DUE] = 1
+    if now.t >= ground.ends[i]:
+        progress.due = 1
     return GOING_ON
 
 
 @compiled
 def _swing(last_step: int, run: SingleRun) -> int:
     """Steps of a body that moves, until something is to be settled."""
-    clock, count, body, ground = run.clock, run.count, run.body, run.ground
-    i = count[PIECE]
+    body, ground, now, progress = run.body, run.ground, run.now, run.progress
+    i = progress.piece
     piece = lend(piece_of(i, ground))
     piece_end = min(ground.ends[i], run.limits.end)
     family, coefficients = piece.family, piece.coefficients
@@ -275,31 +269,31 @@ def _swing(last_step: int, run: SingleRun) -> int:
     longest = GAUSSIAN_STEP / math.sqrt(coefficients[1]) if family == _GAUSSIAN else np.inf
     stop, segment, code = piece_end, 0, GOING_ON
     if family == _SAMPLES:
-        stop, segment = sample_after(clock[T], piece_end, piece)
-    while code == GOING_ON and count[DUE] == 0 and clock[T] < piece_end:
-        if count[STEPS] >= last_step:
+        stop, segment = sample_after(now.t, piece_end, piece)
+    while code == GOING_ON and progress.due == 0 and now.t < piece_end:
+        if progress.steps >= last_step:
             break
         if family == _SAMPLES:
             dt = coefficients[1]
-            if stop <= clock[T] + SAME_SAMPLE * dt and stop < piece_end:
-                stop, segment = sample_after(clock[T], piece_end, piece)
-            if clock[T] == sample_time(coefficients[0], dt, segment):
-                budget = last_step - count[STEPS]
+            if stop <= now.t + SAME_SAMPLE * dt and stop < piece_end:
+                stop, segment = sample_after(now.t, piece_end, piece)
+            if now.t == sample_time(coefficients[0], dt, segment):
+                budget = last_step - progress.steps
                 if sample_steps(budget, segment, piece_end, piece, run) > segment:
-                    stop, segment = sample_after(clock[T], piece_end, piece)
-                if count[STEPS] >= last_step:
+                    stop, segment = sample_after(now.t, piece_end, piece)
+                if progress.steps >= last_step:
                     break
         if body.pair and body.segment != segment:
             body.segment = segment
-            body.even, body.odd = pair_at(clock[T], piece, body)
+            body.even, body.odd = pair_at(now.t, piece, body)
         if family == _ZERO and swings_freely(body):
             code = swing_freely(stop, piece, run)
             if code != NOT_FREE:
                 continue
-        code = take_step(min(stop - clock[T], longest), stop, piece, run)
-    if clock[T] >= ground.ends[i]:
-        count[DUE] = 1
-    if count[DUE] == 1 or clock[T] >= piece_end:
+        code = take_step(min(stop - now.t, longest), stop, piece, run)
+    if now.t >= ground.ends[i]:
+        progress.due = 1
+    if progress.due == 1 or now.t >= piece_end:
         # The end of a stretch may be an extreme.
-        take_if_new(clock[T], body.u, body.a, run)
+        take_if_new(now.t, body.u, body.a, run)
     return code

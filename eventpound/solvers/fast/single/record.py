@@ -19,7 +19,6 @@ from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import stays_within, turning_times
 from eventpound.solvers.fast.record import takes_rows
-from eventpound.solvers.fast.run import OUTPUT, ROWS
 from eventpound.solvers.fast.single.body import (
     SingleBody,
     SingleRun,
@@ -50,7 +49,7 @@ def write_single_row(
     """
     body, springs = run.body, run.springs
     at = line_of(1, 1 if body.hysteretic else 0, springs, run.contacts.gap.size)
-    row, u = run.rows[run.count[ROWS]], body.u + change
+    row, u = run.rows[run.progress.rows], body.u + change
     row[at.t], row[at.ground], row[at.u], row[at.v], row[at.a] = t, g, u, v, a
     if body.hysteretic:
         row[at.z] = body.whole * z
@@ -66,7 +65,7 @@ def write_single_row(
     if left >= 0:
         row[at.gap + left] = body.left + change
         row[at.contact_force + left] = body.left_force
-    run.count[ROWS] += 1
+    run.progress.rows += 1
 
 
 @compiled
@@ -80,7 +79,7 @@ def write_present(t: float, g: float, run: SingleRun) -> None:
 @compiled
 def is_due(t_end: float, run: SingleRun) -> bool:
     """Whether a row of the history is due before t_end (s)."""
-    i = run.count[OUTPUT]
+    i = run.progress.output
     return i < run.times.size and run.times[i] < t_end
 
 
@@ -90,11 +89,11 @@ def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: 
 
     `order` is that of the step's series, 0 for a free swing and a rest.
     """
-    body, count = run.body, run.count
+    body, progress = run.body, run.progress
     while is_due(t_end, run):
-        now = run.times[count[OUTPUT]]
+        now = run.times[progress.output]
         if now >= t:
-            if count[ROWS] + 4 > run.rows.shape[0]:
+            if progress.rows + 4 > run.rows.shape[0]:
                 return False
             g = ground_acceleration(piece, now)
             if body.rests_on != 0.0:
@@ -106,7 +105,7 @@ def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: 
                 z = spring_state(u, run)
                 a = absolute_acceleration(u, v, z, body)
                 write_single_row(now, g, change, v, a, z, run)
-        count[OUTPUT] += 1
+        progress.output += 1
     return True
 
 

@@ -10,17 +10,14 @@ import math
 
 import numpy as np
 
-from eventpound.contact.cascade import SINCE_IMPACT, T, end_flight, is_over
+from eventpound.contact.cascade import end_flight, is_over
 from eventpound.contact.event_rows import list_all
 from eventpound.contact.impacts import FULL
 from eventpound.motion.forcing import CurrentPiece
-from eventpound.numerics.arrays import Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import (
-    DUE,
-    EXPANSIONS,
     GOING_ON,
     MORE_TERMS,
     MOST_HALVINGS,
@@ -28,8 +25,6 @@ from eventpound.solvers.fast.run import (
     NO_STEP,
     NOT_FINITE,
     PENETRATION,
-    STALLED,
-    STEPS,
     STUCK,
 )
 from eventpound.solvers.fast.single.body import (
@@ -266,7 +261,7 @@ def propose(
     Returned are the order of its series, 0 where no step holds, its length (s), its end (s), how
     it ends, and whether the body turns there. The motion at its end stands in `SingleBody`.
     """
-    body, t = run.body, run.clock[T]
+    body, t = run.body, run.now.t
     a_g = body.even
     if not body.pair:
         a_g = expand_ground(t, run.limits.order + MORE_TERMS, piece, body.ground[:])
@@ -274,7 +269,7 @@ def propose(
     body.step = min(wanted, expected_length(a_g, body))
     set_tolerance(body)
     order, first, h = expand_step(a_g, run)
-    run.count[EXPANSIONS] += 1
+    run.progress.expansions += 1
     tau, event, turn = first_event(h, order, first, run)
     for halving in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
@@ -294,7 +289,7 @@ def propose(
 @compiled
 def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SingleRun) -> int:
     """One step of at most `wanted` (s); GOING_ON, or why not."""
-    body, t = run.body, run.clock[T]
+    body, t = run.body, run.now.t
     order, tau, t_end, event, turned = propose(wanted, stop, piece, run)
     if order == 0:
         return NO_STEP
@@ -314,22 +309,22 @@ def arrive(tau: float, t_end: float, turned: bool, event: int, run: SingleRun) -
         take_if_new(t_end, body.u + body.change, body.next_a, run)
     pass_time(tau, t_end, run)
     _move(body)
-    code = audit(run.count, body)
+    code = audit(run.progress.stalled, body)
     if code == GOING_ON and event != FREE:
         _happen(event, t_end, run)
-    elif is_over(run.clock, run.count, run.limits.time):
-        list_all(run.count, run.events)
+    elif is_over(run.now, run.limits.time):
+        list_all(run.now, run.events)
     return code
 
 
 @compiled
 def pass_time(tau: float, t_end: float, run: SingleRun) -> None:
     """Let a step of length tau (s) be over."""
-    clock, count = run.clock, run.count
-    clock[T] = t_end
-    clock[SINCE_IMPACT] += tau
-    count[STEPS] += 1
-    count[STALLED] = count[STALLED] + 1 if tau == 0.0 else 0
+    now, progress = run.now, run.progress
+    now.t = t_end
+    now.since_impact += tau
+    progress.steps += 1
+    progress.stalled = progress.stalled + 1 if tau == 0.0 else 0
 
 
 @compiled
@@ -351,13 +346,13 @@ def _shortened(tau: float, order: int, body: SingleBody) -> float:
 
 
 @compiled
-def audit(count: Ints, body: SingleBody) -> int:
+def audit(stalled: int, body: SingleBody) -> int:
     """Invariants after every step: finite numbers, no penetration, progress."""
     if not (abs(body.u) < np.inf and abs(body.v) < np.inf):
         return NOT_FINITE
     if min(body.right, body.left) < body.least_gap:
         return PENETRATION
-    return GOING_ON if count[STALLED] <= MOST_STALLS else STUCK
+    return GOING_ON if stalled <= MOST_STALLS else STUCK
 
 
 @compiled
@@ -394,10 +389,10 @@ def _happen(event: int, t: float, run: SingleRun) -> None:
     elif event == CROSSED:
         pass_border(body.u, body)
     else:
-        end_flight(run.clock)
+        end_flight(run.now)
         if event == CLOSED_RIGHT:
             body.right = 0.0
         else:
             body.left = 0.0
         write_present(t, body.next_g, run)
-        run.count[DUE] = 1
+        run.progress.due = 1
