@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from itertools import accumulate
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from eventpound.motion.parametric import Parametric
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python
+from eventpound.numerics.joined_arrays import JoinedArrays
 from eventpound.numerics.latest import Keep, made_anew
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
@@ -282,41 +284,36 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
     followed = plan.hysteresis.followed.size
     size = plan.limits.order + 3
     most = max(size + MORE_TERMS, REST_TERMS)
-    work, turns = in_python(root_work)(most), np.zeros(MOST_TURNS)
+    # Each of them is copied into the block.
+    arrays = {
+        "X": np.zeros((bodies, size)),
+        "ground": np.zeros(size),
+        "load": np.zeros((size if loaded else 0, bodies)),
+        "of_body": np.zeros(bodies, np.int64),
+        "weights": np.zeros((2, bodies)),
+        **dict.fromkeys(("inverse_mass", "force", "expected", "travel"), np.zeros(bodies)),
+        **dict.fromkeys(("swing", "reach", "bend", "end"), np.zeros(bodies)),
+        "F": np.zeros((links, size)),
+        **dict.fromkeys(("x", "x_rate", "stiffness"), np.zeros(links)),
+        "memory": np.zeros(plan.links.law.memory.shape[-2:]),
+        "ends": np.zeros((links, 2), np.int64),
+        "active": np.zeros(links, np.int64),
+        **dict.fromkeys(("z", "power", "speed", "weighted"), np.zeros((hysteretic, size))),
+        "curve": np.zeros((hysteretic, CURVE_PLACES)),
+        "contact_force": np.zeros((contacts, size)),
+        "rests": np.zeros(contacts, np.int64),
+        "elimination": np.zeros((contacts, 4), np.int64),
+        **dict.fromkeys(("c", "d"), np.zeros(most)),
+        "work": in_python(root_work)(most),
+        "turns": np.zeros(MOST_TURNS),
+    }
+    block = JoinedArrays(list(arrays.values()))
+    own: dict[str, Any] = dict(zip(arrays, block.arrays, strict=True))
+    single = np.zeros(1, SingleBody.layout), np.zeros(most), own["turns"], own["work"]
     return FastSeries(
-        X=np.zeros((bodies, size)),
-        F=np.zeros((links, size)),
-        z=np.zeros((hysteretic, size)),
-        power=np.zeros((hysteretic, size)),
-        speed=np.zeros((hysteretic, size)),
-        weighted=np.zeros((hysteretic, size)),
-        curve=np.zeros((hysteretic, CURVE_PLACES)),
-        memory=np.zeros(plan.links.law.memory.shape[-2:]),
-        weights=np.zeros((2, bodies)),
-        ground=np.zeros(size),
-        x=np.zeros(links),
-        x_rate=np.zeros(links),
-        stiffness=np.zeros(links),
-        ends=np.zeros((links, 2), np.int64),
-        of_body=np.zeros(bodies, np.int64),
-        inverse_mass=np.zeros(bodies),
-        active=np.zeros(links, np.int64),
-        expected=np.zeros(bodies),
-        travel=np.zeros(bodies),
-        swing=np.zeros(bodies),
-        reach=np.zeros(bodies),
-        bend=np.zeros(bodies),
-        end=np.zeros(bodies),
-        c=np.zeros(most),
-        d=np.zeros(most),
-        work=work,
-        turns=turns,
-        force=np.zeros(bodies),
-        load=np.zeros((size if loaded else 0, bodies)),
-        contact_force=np.zeros((contacts, size)),
-        rests=np.zeros(contacts, np.int64),
-        elimination=np.zeros((contacts, 4), np.int64),
-        single=Single(np.zeros(1, SingleBody.layout), np.zeros(most), turns, work),
+        **own,
+        block=block.data,
+        single=Single(*single),
         each=_blank_each(plan, loaded),
         followed=FollowedMemories(np.zeros(followed), np.zeros(followed), np.zeros(1)),
         # Steps from sample to sample follow no z.
@@ -328,25 +325,7 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
 @compiled_apart
 def clear_scratch(series: FastSeries, happened: FastMarks, seen: Seen) -> None:
     """Leave nothing of the run before, which may have ended with numbers that are not finite."""
-    series.X[:] = 0.0
-    series.F[:] = 0.0
-    series.z[:] = 0.0
-    series.power[:] = 0.0
-    series.speed[:] = 0.0
-    series.weighted[:] = 0.0
-    series.curve[:] = 0.0
-    series.weights[:] = 0.0
-    series.expected[:] = 0.0
-    series.ground[:] = 0.0
-    series.c[:] = 0.0
-    series.d[:] = 0.0
-    series.work[:] = 0.0
-    series.turns[:] = 0.0
-    series.force[:] = 0.0
-    series.contact_force[:] = 0.0
-    series.swing[:] = 0.0
-    series.travel[:] = 0.0
-    series.reach[:] = 0.0
+    series.block[:] = 0
     series.tables.step[:] = 0.0
     clear(happened)
     happened.vanished[:] = False

@@ -14,7 +14,7 @@ from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.monitored import Running
 from eventpound.motion.forcing import CurrentPiece
-from eventpound.numerics.arrays import Bools, Floats, Ints, Records
+from eventpound.numerics.arrays import Bools, Bytes, Floats, Ints, Records
 from eventpound.numerics.records import NamedNumbers
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.sampled.exact import SampleTables
@@ -156,29 +156,23 @@ class FastProgress(NamedNumbers):
 
 
 class FastState(NamedTuple):
-    """What moves.
+    """What moves; a hysteretic link goes by ``σ z / b = Φ(ξ_r + σ (x - x_r) / (u_y b))``."""
 
-    u, v (N,). A hysteretic link (H,): ``σ z / b = Φ(ξ_r + σ (x - x_r) / (u_y b))``
-    with `sigma`, `x_r`, `xi_r`, and the `part` of the backbone it is on. gap,
-    gap_rate, resting, pressed (K,), unlocked (K,): resting contacts that may detach,
-    branch (L,), ledger (E,): see `Model.ledger_entries`. now (1,): a `Now`; progress (1,).
-    """
-
-    u: Floats
-    v: Floats
-    sigma: Floats
-    x_r: Floats
-    xi_r: Floats
-    part: Ints
-    gap: Floats
-    gap_rate: Floats
-    resting: Bools
-    pressed: Bools
-    unlocked: Bools
-    branch: Ints
-    ledger: Floats
-    now: Records
-    progress: Records
+    u: Floats  # (N,): displacement (m)
+    v: Floats  # (N,): velocity (m/s)
+    sigma: Floats  # (H,): σ
+    x_r: Floats  # (H,): elongation at the last reversal (m)
+    xi_r: Floats  # (H,): ξ there
+    part: Ints  # (H,): part of the backbone that a link is on
+    gap: Floats  # (K,): exactly zero where closed (m)
+    gap_rate: Floats  # (K,) (m/s)
+    resting: Bools  # (K,)
+    pressed: Bools  # (K,): at rest, and pressed by the last acceleration problem
+    unlocked: Bools  # (K,): at rest, and may detach
+    branch: Ints  # (L,): side of the kink, -1, +1, or 0 where a link has none
+    ledger: Floats  # (E,): work so far (J), see `Model.ledger_entries`
+    now: Records  # (1,): a `Now`
+    progress: Records  # (1,): a `FastProgress`
 
 
 class Single(NamedTuple):
@@ -197,31 +191,25 @@ class Single(NamedTuple):
 class Each(NamedTuple):
     """What bodies have for themselves while they go apart; no rows for scenes where they never do.
 
-    Each has a run of its own: body (N,), a `SingleBody`; now, progress (N,); extremes (N, 5, 3) of
-    its displacement and absolute acceleration, and of a base shear that nobody looks at.
-    until, length (N,): end of its step (s), and how long that is (s). order, event, turned (N,):
-    of the series of the step, how that ends, and whether the body turns there.
-    box (4, N): bounds of displacement and acceleration within the step. since, closing (K,): until
-    when extremes of a gap have been looked for, and when it closes (s).
-
-    Under a record some go by exact steps, and have no end of one: lines (places, N), of what
-    `eventpound.solvers.fast.apart.windows` says, outside (4,): what they are together.
+    Each has a run of its own.
     """
 
-    body: Any
-    now: Records
-    progress: Records
-    extremes: Floats
-    until: Floats
-    length: Floats
-    order: Ints
-    event: Ints
-    turned: Bools
-    box: Floats
-    since: Floats
-    closing: Floats
-    lines: Floats
-    outside: Floats
+    body: Any  # (N,): a `SingleBody`
+    now: Records  # (N,): a `Now`
+    progress: Records  # (N,): a `FastProgress`
+    extremes: Floats  # (N, 5, 3): displacement, acceleration, a base shear that nobody looks at
+    until: Floats  # (N,): end of the step (s)
+    length: Floats  # (N,): how long that is (s)
+    order: Ints  # (N,): of the series of the step
+    event: Ints  # (N,): how the step ends
+    turned: Bools  # (N,): whether the body turns there
+    box: Floats  # (4, N): bounds of displacement (m) and acceleration (m/s²) within the step
+    since: Floats  # (K,): until when extremes of a gap have been looked for (s)
+    closing: Floats  # (K,): when it closes (s)
+
+    # Under a record some go by exact steps, and have no end of one.
+    lines: Floats  # (places, N): of what `eventpound.solvers.fast.apart.windows` says
+    outside: Floats  # (4,): what they are together
 
 
 class FollowedMemories(NamedTuple):
@@ -238,63 +226,57 @@ class FollowedMemories(NamedTuple):
 
 
 class FastSeries(NamedTuple):
-    """Taylor coefficients in local time and what belongs to them.
+    """Taylor coefficients in local time, p the order, and what belongs to them.
 
-    X (N, p + 3): clusters' displacement, `X[:, 0]` unused. F (L, p + 3): link
-    forces. z, power, speed, weighted (H, p + 3): z, |z|^n, the rate of x/u_y and (n + 1) k z_k;
-    curve (H, CURVE_PLACES): constants of a curved part. memory (L, constants): that of the links
-    on their present branches. weights (2, N): what errors of u and v of each cluster are
-    multiplied by. ground (p + 3,). x, x_rate (L,):
-    elongations at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
-    clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
-    (L,): links that move. expected (N,): relative acceleration of clusters by their series, where
-    they have been looked at last (m/s²). travel, swing, reach, bend (N,): bounds of the motion over
-    a step; end (N,): absolute accelerations there (m/s²).
-    c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,). load
-    (p + 3, N): of the loads on bodies, empty without any.
-    Where contacts rest: contact_force (K, p + 3), rests (K,) and elimination (K, 4) as in
-    `eventpound.mechanics.clusters`, the first rows. single: of a single body. each: of
-    bodies that go apart. followed: of z that have series of their own, whose `speed` is x'.
-    tables: exact steps from sample to sample. held (4, M): extremes before a mode that may be none.
+    The arrays before `block` are parts of it, which is blank before a run.
     """
 
-    X: Floats
-    F: Floats
-    z: Floats
-    power: Floats
-    speed: Floats
-    weighted: Floats
-    curve: Floats
-    memory: Floats
-    weights: Floats
-    ground: Floats
-    x: Floats
-    x_rate: Floats
-    stiffness: Floats
-    ends: Ints
-    of_body: Ints
-    inverse_mass: Floats
-    active: Ints
-    expected: Floats
-    travel: Floats
-    swing: Floats
-    reach: Floats
-    bend: Floats
-    end: Floats
-    c: Floats
-    d: Floats
-    work: Floats
-    turns: Floats
-    force: Floats
-    load: Floats
-    contact_force: Floats
-    rests: Ints
-    elimination: Ints
-    single: Single
-    each: Each
-    followed: FollowedMemories
-    tables: SampleTables
-    held: Floats
+    # Clusters, rows as many as bodies; bodies that do not touch are one each.
+    X: Floats  # (N, p + 3): displacement (m/s^k), ``X[:, 0]`` unused
+    ground: Floats  # (p + 3,): acceleration of the ground (m/s^(2+k))
+    load: Floats  # (p + 3, N): loads on bodies (N/s^k), no rows without any
+    of_body: Ints  # (N,): cluster of each body
+    inverse_mass: Floats  # (N,): 1/m (1/kg)
+    force: Floats  # (N,): sum of the forces for one coefficient (N/s^k)
+    weights: Floats  # (2, N): what errors of u and v are multiplied by
+    expected: Floats  # (N,): relative acceleration by the series, looked at last (m/s²)
+    travel: Floats  # (N,): bound of what the quadratic leaves of the displacement in a step (m)
+    swing: Floats  # (N,): the same of the velocity (m/s)
+    reach: Floats  # (N,): bound of the change of displacement in a step (m)
+    bend: Floats  # (N,): that of the rate of the absolute acceleration (m/s³)
+    end: Floats  # (N,): absolute accelerations of the bodies at the end of a step (m/s²)
+
+    # Links, and those with hysteresis.
+    F: Floats  # (L, p + 3): forces (N/s^k)
+    x: Floats  # (L,): elongation at the start (m)
+    x_rate: Floats  # (L,): its rate (m/s)
+    stiffness: Floats  # (L,): tangent for the orders above zero (N/m)
+    memory: Floats  # (L, constants): those of the laws on the present branches
+    ends: Ints  # (L, 2): clusters of the ends
+    active: Ints  # (L,): those that move, the first ones
+    z: Floats  # (H, p + 3): z
+    power: Floats  # (H, p + 3): ``|z|^n``
+    speed: Floats  # (H, p + 3): rate of x/u_y, of a z with a series of its own x'
+    weighted: Floats  # (H, p + 3): ``(n + 1) k z_k``
+    curve: Floats  # (H, CURVE_PLACES): constants of a curved part
+
+    # Contacts at rest, the first rows; see `eventpound.mechanics.clusters`.
+    contact_force: Floats  # (K, p + 3): forces of all contacts (N/s^k)
+    rests: Ints  # (K,): which
+    elimination: Ints  # (K, 4)
+
+    # Whatever is looked for.
+    c: Floats  # (p + 3,): a polynomial
+    d: Floats  # (p + 3,): its rate
+    work: Floats  # a polynomial in work
+    turns: Floats  # its roots
+    block: Bytes  # all of the above
+
+    single: Single  # of a single body
+    each: Each  # of bodies that go apart
+    followed: FollowedMemories  # z that have series of their own
+    tables: SampleTables  # exact steps from sample to sample
+    held: Floats  # (4, M): extremes before a mode that may be none
 
 
 class FastMarks(NamedTuple):
