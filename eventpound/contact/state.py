@@ -40,42 +40,33 @@ class Instant(NamedTuple):
     """A scene at one instant: arrays of a run, which the rules change in place; lent.
 
     N bodies, L links, H of them hysteretic, K contacts.
-
-    Constants: mass (N,) (kg); ends (L, 2), law, compression, extension (N/m), offset (m), shape
-    (L,), of the links; hysteretic (H,); left, right, opening (m), restitution (K,) of the contacts;
-    the scene's own length (m) and time (s).
-
-    What moves: u (m), v (m/s), shape (N,). gap (m, exactly zero where closed), gap_rate (m/s),
-    resting, pressed (K,): resting contacts that the last acceleration problem found pressed.
-    branch (L,): side of the kink each link is on, -1, +1, or 0 where it has none.
-
-    released (K,): contacts whose force has just passed zero; vanished (K,): those of which it has
-    in this instant, by this event or one before it. before (N,): velocities before the impacts
-    (m/s). now (1,): a `Now`. events: rows.
     """
 
-    mass: Floats
-    ends: Ints
-    law: LinkLaw
-    compression: Floats
-    extension: Floats
-    offset: Floats
-    hysteretic: Ints
-    left: Ints
-    right: Ints
-    opening: Floats
-    restitution: Floats
-    length: float
-    time: float
-    u: Floats
-    v: Floats
-    gap: Floats
-    gap_rate: Floats
-    resting: Bools
-    pressed: Bools
-    branch: Ints
-    released: Bools
-    vanished: Bools
-    before: Floats
-    now: Records
-    events: Floats
+    # Constants.
+    mass: Floats  # (N,) (kg)
+    ends: Ints  # (L, 2): bodies of a link
+    law: LinkLaw  # of the links
+    compression: Floats  # (L,): stiffness below the kink (N/m)
+    extension: Floats  # (L,): stiffness above it (N/m)
+    offset: Floats  # (L,): where it is (m)
+    hysteretic: Ints  # (H,): links
+    left: Ints  # (K,): body on the left of a contact
+    right: Ints  # (K,): that on the right
+    opening: Floats  # (K,): gap where nothing is displaced (m)
+    restitution: Floats  # (K,)
+    length: float  # the scene's own (m)
+    time: float  # the scene's own (s)
+
+    # What moves.
+    u: Floats  # (N,): displacement (m)
+    v: Floats  # (N,): velocity (m/s)
+    gap: Floats  # (K,): exactly zero where closed (m)
+    gap_rate: Floats  # (K,) (m/s)
+    resting: Bools  # (K,)
+    pressed: Bools  # (K,): at rest, and pressed by the last acceleration problem
+    branch: Ints  # (L,): side of the kink, -1, +1, or 0 where a link has none
+    released: Bools  # (K,): whether the force has just passed zero
+    vanished: Bools  # (K,): the same in this instant, by this event or one before it
+    before: Floats  # (N,): velocity before the impacts (m/s)
+    now: Records  # (1,): a `Now`
+    events: Floats  # (e, EVENT_WIDTH): rows

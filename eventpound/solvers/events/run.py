@@ -54,24 +54,19 @@ class State(NamedTuple):
     Gaps and their rates are kept beside the displacements, exact zeros
     included, because close to the limit of many impacts they are far smaller
     than the rounding of the displacements.
-
-    u (m), v (m/s), shape (N,). z (H,). gap (m, exactly zero where closed), gap_rate
-    (m/s), resting, pressed (K,): resting contacts that the last acceleration problem
-    found pressed. branch (L,): side of the kink each link is on, -1, +1, or 0 where it has
-    none. ledger (E,): work so far (J), see `Model.ledger_entries`. now, progress (1,).
     """
 
-    u: Floats
-    v: Floats
-    z: Floats
-    gap: Floats
-    gap_rate: Floats
-    resting: Bools
-    pressed: Bools
-    branch: Ints
-    ledger: Floats
-    now: Records
-    progress: Records
+    u: Floats  # (N,): displacement (m)
+    v: Floats  # (N,): velocity (m/s)
+    z: Floats  # (H,): hysteretic variables
+    gap: Floats  # (K,): exactly zero where closed (m)
+    gap_rate: Floats  # (K,) (m/s)
+    resting: Bools  # (K,)
+    pressed: Bools  # (K,): at rest, and pressed by the last acceleration problem
+    branch: Ints  # (L,): side of the kink, -1, +1, or 0 where a link has none
+    ledger: Floats  # (E,): work so far (J), see `Model.ledger_entries`
+    now: Records  # (1,): a `Now`
+    progress: Records  # (1,): a `LoopProgress`
 
 
 class RunRecord(NamedTuple):
