@@ -25,8 +25,6 @@ from eventpound.units import TOLD, USUAL, Dimension
 
 REFERENCE, FAST = "cvode", "fast"
 """The solver of one run, and that of many, where none is named."""
-FAST_KNOWS = frozenset((LawName.BACKFILL, LawName.DEGRADING_BOUC_WEN, LawName.SLIDER))
-"""Laws of springs with a memory, beside Bouc-Wen's, that the second one knows."""
 LISTED = {"slip": LawName.SLIDER, "soil": LawName.BACKFILL}
 """Words of ``events``, each with the law of the springs whose events it lists."""
 OWN_SOLVERS = (REFERENCE, "ida", FAST, "moreau", "penalty")
@@ -169,15 +167,11 @@ def default_solver(scenes: Iterable[Scene], many: bool) -> str:
     scenes : iterable of Scene
         What is run.
     many : bool
-        Whether they are run many times, as in a suite or a study. Contacts that are not plain and
-        springs that the fast solver does not know are left to the reference then, too.
+        Whether they are run many times, as in a suite or a study. Contacts that are not plain are
+        left to the reference then, too.
     """
-    known = all(
-        FAST_KNOWS.issuperset(scene.branched_springs.values())
-        and all(contact.plain for contact in scene.contacts)
-        for scene in scenes
-    )
-    return FAST if many and known else REFERENCE
+    plain = all(contact.plain for scene in scenes for contact in scene.contacts)
+    return FAST if many and plain else REFERENCE
 
 
 def read_solver(table: Table, default: str = REFERENCE) -> SolverOptions:

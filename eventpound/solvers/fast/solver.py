@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.case.options import FAST_KNOWS
 from eventpound.contact.cascade import (
     LONGEST_CASCADE,
     crowded_message,
@@ -37,7 +36,7 @@ from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Spring
+from eventpound.scene.spring import LawName, Spring
 from eventpound.solvers.base import Energy, History, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.recorder import (
     energy_ledger,
@@ -104,7 +103,7 @@ class Fast:
     settings: Mapping[str, str] = {}
     counts_steps = True
     takes_supports = True
-    memories = FAST_KNOWS
+    memories = frozenset(LawName)
     lists_springs = True
 
     def solve(self, task: Task) -> Recording:
