@@ -23,6 +23,7 @@ from typing import (
     Annotated,
     Any,
     Generic,
+    NamedTuple,
     TypeVar,
     Union,
     dataclass_transform,
@@ -69,9 +70,9 @@ _LARGEST_WHOLE = 2**53
 def converting(made: type[_Class]) -> type[_Class]:
     """Decorate a frozen dataclass whose fields may be given as other types than they are read as.
 
-    Its ``__post_init__`` calls `read_fields`.
+    Its ``__post_init__`` is `read_fields`; one of its own calls that.
     """
-    return dataclass(frozen=True, slots=True)(made)
+    return dataclass(frozen=True, slots=True)(_reading(made))
 
 
 @dataclass_transform(field_specifiers=(field,))
@@ -81,7 +82,30 @@ def converting_base(*, eq: bool = True) -> Callable[[type[_Class]], type[_Class]
     They are frozen, too. Type checkers are not told so, because mypy forgets otherwise in which
     type an inherited field is read.
     """
-    return dataclass(frozen=True, eq=eq)
+    return lambda made: dataclass(frozen=True, eq=eq)(_reading(made))
+
+
+def _reading(made: type[_Class]) -> type[_Class]:
+    if not hasattr(made, "__post_init__"):
+        made.__post_init__ = read_fields  # type: ignore[attr-defined]
+    return made
+
+
+class Accepted(NamedTuple):
+    """Which finite numbers a field may be, asked when its owner is used, not when it is made."""
+
+    words: str
+    fits: Callable[[Any, float], bool] = lambda owner, value: True
+
+
+def above_zero(owner: object, value: float) -> bool:
+    """Whether a number is positive, whatever it belongs to."""
+    return value > 0.0
+
+
+def not_negative(owner: object, value: float) -> bool:
+    """Whether a number is not negative, whatever it belongs to."""
+    return value >= 0.0
 
 
 def default(value: object) -> Any:
@@ -149,6 +173,14 @@ def numbers_of(made: type) -> dict[str, Dimension]:
         for name, _, kind in _kinds_of_fields(made)
         if kind.dimension is not None
     }
+
+
+@cache
+def accepted_numbers(made: Any) -> tuple[tuple[str, Accepted], ...]:
+    """Fields of a class of `converting` that say which numbers they may be, with that."""
+    hints = get_type_hints(made, include_extras=True)
+    said = ((name, getattr(hint, "__metadata__", ())) for name, hint in hints.items())
+    return tuple((name, each) for name, all_of in said for each in all_of[1:])
 
 
 def number(key: str, value: object, dimension: Dimension) -> float:
@@ -246,7 +278,7 @@ def _kind_of(hint: Any) -> _Kind:
     if hint in (Any, object):
         return _Kind("anything", lambda value: value)
     if origin is Annotated:
-        base, of = get_args(hint)
+        base, of, *_ = get_args(hint)
         return _quantity(of, type(None) in get_args(base)) if isinstance(of, Dimension) else of
     if origin in (Union, types.UnionType):
         return _one_of([_kind_of(part) for part in get_args(hint)])

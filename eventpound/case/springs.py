@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import MISSING, asdict, fields, replace
 
 from eventpound.case.elements import read_names
 from eventpound.case.spring_stiffness import Stiffnesses
 from eventpound.case.table import Table
 from eventpound.errors import InputError
+from eventpound.given import numbers_of
 from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import (
@@ -44,11 +45,7 @@ _YIELDS = dict.fromkeys(
 """Answers to what others call a law that `_LAWS` calls otherwise."""
 _YIELDS_IN_SERIES = dict.fromkeys(_YIELDING, ", but no part of a series yields")
 _WALL = "height", "width"
-_SOIL = (
-    ("initial_stiffness", Dimension.STIFFNESS),
-    ("ultimate_force", Dimension.FORCE),
-    ("failure_ratio", Dimension.NUMBER),
-)
+_SOIL = "initial_stiffness", "ultimate_force", "failure_ratio"
 _UNREAD = Linear(math.nan)
 _TWO_PERIODS = (
     "says not which of the two periods of a bouc-wen spring; write initial_period (at its initial "
@@ -91,11 +88,12 @@ def _read_law(table: Table, between: tuple[str, str], masses: Mapping[str, float
         case "linear":
             law = _read_linear(table, between, masses)
         case "bilinear-elastic":
-            law = _read_bilinear(table)
+            law = BilinearElastic(**_numbers(table, BilinearElastic))
         case "bouc-wen":
             law = _read_bouc_wen(table, between, masses)
         case "degrading-bouc-wen":
-            law = _read_degrading(table, _read_bouc_wen(table, between, masses))
+            own = asdict(_read_bouc_wen(table, between, masses))
+            law = DegradingBoucWen(**own, **_numbers(table, DegradingBoucWen, *own))
         case "backfill":
             law = _read_backfill(table)
         case "slider":
@@ -118,25 +116,26 @@ def _read_linear(table: Table, between: tuple[str, str], masses: Mapping[str, fl
     return Linear(stiffness)
 
 
-def _read_bilinear(table: Table) -> BilinearElastic:
-    return BilinearElastic(
-        table.quantity("compression", Dimension.STIFFNESS),
-        table.quantity("extension", Dimension.STIFFNESS),
-        table.quantity("offset", Dimension.LENGTH, 0.0),
-    )
-
-
 def _read_backfill(table: Table) -> Backfill:
     wall = {key: table.optional_quantity(f"wall_{key}", Dimension.LENGTH) for key in _WALL}
-    of_wall = any(value is not None for value in wall.values())
-    soil = _soil_behind(table, wall) if of_wall else [table.quantity(*key) for key in _SOIL]
-    gaps = (table.quantity(key, Dimension.LENGTH, 0.0) for key in ("gap", "initial_gap"))
-    return Backfill(*soil, *gaps)
+    if all(value is None for value in wall.values()):
+        return Backfill(**_numbers(table, Backfill))
+    return Backfill(*_soil_behind(table, wall), **_numbers(table, Backfill, *_SOIL))
+
+
+def _numbers(table: Table, made: type, *others: str) -> dict[str, float]:
+    """Numbers of a law by the names of its fields, but for those that are given otherwise."""
+    defaults = {each.name: each.default for each in fields(made)}
+    return {
+        key: table.quantity(key, dimension, None if (own := defaults[key]) is MISSING else own)
+        for key, dimension in numbers_of(made).items()
+        if key not in others
+    }
 
 
 def _soil_behind(table: Table, wall: Mapping[str, float | None]) -> Sequence[float]:
     """Numbers of soil that stand by the size of its wall, and by it alone."""
-    for key in (key for key, _ in _SOIL if table.has(key)):
+    for key in filter(table.has, _SOIL):
         table.report(key, "found beside the size of a wall, which says it; accepted: one of both")
     for key in (key for key, value in wall.items() if value is None):
         table.report_missing(f"wall_{key}", Dimension.LENGTH.accepted)
@@ -151,17 +150,15 @@ def _soil_behind(table: Table, wall: Mapping[str, float | None]) -> Sequence[flo
 
 
 def _read_slider(table: Table) -> Slider:
-    friction = table.quantity("friction", Dimension.NUMBER)
-    force = table.quantity("normal_force", Dimension.FORCE)
-    stiffness = table.quantity("stiffness", Dimension.STIFFNESS, 0.0)
+    law = Slider(**_numbers(table, Slider))
     radius = table.optional_quantity("radius", Dimension.LENGTH)
     if radius is None:
-        return Slider(friction, force, stiffness)
+        return law
     if table.has("stiffness"):
         table.report("radius", "found beside stiffness; accepted: one of stiffness, radius")
     elif not radius > 0.0 and not math.isnan(radius):
         table.report("radius", f"found {table.data['radius']!r}; accepted: a positive length (m)")
-    return Slider(friction, force, force / radius if radius > 0.0 else math.nan)
+    return replace(law, stiffness=law.normal_force / radius if radius > 0.0 else math.nan)
 
 
 def _read_series(table: Table) -> Series:
@@ -172,9 +169,9 @@ def _read_series(table: Table) -> Series:
     for part in table.tables("parts"):
         match part.choice("law", ("linear", "bilinear-elastic"), _YIELDS_IN_SERIES):
             case "linear":
-                parts.append(Linear(part.quantity("stiffness", Dimension.STIFFNESS)))
+                parts.append(Linear(**_numbers(part, Linear)))
             case "bilinear-elastic":
-                parts.append(_read_bilinear(part))
+                parts.append(BilinearElastic(**_numbers(part, BilinearElastic)))
             case _:
                 continue
         part.close()
@@ -193,24 +190,7 @@ def _read_bouc_wen(table: Table, between: tuple[str, str], masses: Mapping[str, 
         except InputError as error:
             for problem in error.problems:
                 table.blame(table.report("", problem), [p for p in Parameter if p not in given])
-    return BoucWen(
-        k,
-        strength,
-        u_y,
-        exponent=table.quantity("exponent", Dimension.NUMBER, 20.0),
-        beta=table.quantity("beta", Dimension.NUMBER, 0.5),
-        gamma=table.quantity("gamma", Dimension.NUMBER, 0.5),
-        initial_z=table.quantity("initial_z", Dimension.NUMBER, 0.0),
-    )
-
-
-def _read_degrading(table: Table, law: BoucWen) -> DegradingBoucWen:
-    return DegradingBoucWen(
-        **asdict(law),
-        strength_degradation=table.quantity("strength_degradation", Dimension.NUMBER, 0.0),
-        stiffness_degradation=table.quantity("stiffness_degradation", Dimension.NUMBER, 0.0),
-        initial_loss=table.quantity("initial_loss", Dimension.NUMBER, 0.0),
-    )
+    return BoucWen(k, strength, u_y, **_numbers(table, BoucWen, *Parameter))
 
 
 def _of_a_mass(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from eventpound.given import Number, converting, default, read_fields
+from eventpound.given import Accepted, Number, above_zero, converting, default
 from eventpound.units import Dimension
 
 
@@ -24,9 +24,6 @@ class Body:
     """
 
     name: str
-    mass: Annotated[Number, Dimension.MASS]
-    displacement: Annotated[Number, Dimension.LENGTH] = default(0.0)
-    velocity: Annotated[Number, Dimension.VELOCITY] = default(0.0)
-
-    def __post_init__(self) -> None:
-        read_fields(self)
+    mass: Annotated[Number, Dimension.MASS, Accepted("a positive mass (kg)", above_zero)]
+    displacement: Annotated[Number, Dimension.LENGTH, Accepted("a number (m)")] = default(0.0)
+    velocity: Annotated[Number, Dimension.VELOCITY, Accepted("a number (m/s)")] = default(0.0)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from numbers import Real
+from typing import Any
 
 import numpy as np
 
 from eventpound.errors import InputError
+from eventpound.given import accepted_numbers, numbers_of
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.scene.contact import BARRIER, Contact, opening
@@ -19,19 +20,11 @@ from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import joined
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import (
-    GROUND,
-    Backfill,
-    BilinearElastic,
-    BoucWen,
-    DegradingBoucWen,
-    Law,
-    Linear,
-    Slider,
-)
+from eventpound.scene.spring import GROUND, BoucWen, DegradingBoucWen, Law, Series, Slider
 from eventpound.tolerances import EPS
 
-_TINY = sys.float_info.min
+_KEYS = {word: f"initial.{word}" for word in ("displacement", "velocity")}
+"""What a case calls numbers that it does not call by their fields."""
 _SEPARATORS = frozenset(',;"')
 # To ask for a float, which nearly all are, takes less time.
 _NUMBER = float, Real
@@ -39,7 +32,32 @@ _Condition = Callable[[float], bool]
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class _Element:
+    """What is being checked; where it has no name, that is empty."""
+
+    kind: str
+    position: int
+    name: str
+
+    def problem(self, key: str, found: object, accepted: str) -> Problem:
+        return Problem(self.kind, self.position, self.name, key, found, accepted)
+
+    def number(
+        self, key: str, value: object, accepted: str, condition: _Condition
+    ) -> Iterator[Problem]:
+        if not (isinstance(value, _NUMBER) and math.isfinite(value) and condition(float(value))):
+            yield self.problem(key, value, accepted)
+
+    def numbers(self, owner: Any, prefix: str = "") -> Iterator[Problem]:
+        """Those of its numbers that are not what their fields say they may be."""
+        for key, (accepted, fits) in accepted_numbers(type(owner)):
+            value = getattr(owner, key)
+            if value is not None and not (math.isfinite(value) and fits(owner, value)):
+                yield self.problem(prefix + _KEYS.get(key, key), value, accepted)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem(_Element):
     """One thing that is wrong with a scene.
 
     Parameters
@@ -59,9 +77,6 @@ class Problem:
         What would be right.
     """
 
-    kind: str
-    position: int
-    name: str
     key: str
     found: object
     accepted: str
@@ -124,32 +139,6 @@ WITHIN_BOUND = ("exponent", "beta", "gamma", "initial_z")
 """Numbers of a Bouc-Wen spring that decide together whether it may begin at its z."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Element:
-    """What is being checked."""
-
-    kind: str
-    position: int
-    name: str = ""
-
-    def problem(self, key: str, found: object, accepted: str) -> Problem:
-        return Problem(self.kind, self.position, self.name, key, found, accepted)
-
-    def number(
-        self, key: str, value: object, accepted: str, condition: _Condition = math.isfinite
-    ) -> Iterator[Problem]:
-        if not (isinstance(value, _NUMBER) and math.isfinite(value) and condition(float(value))):
-            yield self.problem(key, value, accepted)
-
-
-def _not_negative(value: float) -> bool:
-    return value >= 0.0
-
-
-def _positive(value: float) -> bool:
-    return value > 0.0
-
-
 def _name_problems(elements: Iterable[_Element]) -> Iterator[Problem]:
     seen: dict[str, int] = {}
     for element in elements:
@@ -171,9 +160,7 @@ def _body_problems(scene: Scene) -> Iterator[Problem]:
         yield Problem("body", 1, "", "name", None, "at least one body")
     yield from _name_problems(elements)
     for element, body in zip(elements, scene.bodies, strict=True):
-        yield from element.number("mass", body.mass, "a positive mass (kg)", _positive)
-        yield from element.number("initial.displacement", body.displacement, "a number (m)")
-        yield from element.number("initial.velocity", body.velocity, "a number (m/s)")
+        yield from element.numbers(body)
 
 
 def _some(names: Sequence[str], others: Sequence[str] = ()) -> str:
@@ -206,95 +193,37 @@ def _spring_problems(scene: Scene) -> Iterator[Problem]:
         if isinstance(spring.law, Slider) and any(c.at_point for c in scene.contacts):
             accepted = "slider only in a scene without contacts at points between bodies"
             yield element.problem("law", spring.law.word.value, accepted)
-        if spring.height is not None:
-            yield from element.number("height", spring.height, "a positive length (m)", _positive)
+        yield from element.numbers(spring)
 
 
-def _law_problems(element: _Element, law: Law, prefix: str = "") -> Iterator[Problem]:
-    if isinstance(law, BoucWen):
-        yield from _bouc_wen_problems(element, law)
-        if isinstance(law, DegradingBoucWen):
-            yield from _degradation_problems(element, law)
-    elif isinstance(law, Backfill):
-        yield from _backfill_problems(element, law)
-    elif isinstance(law, Slider):
-        yield from _slider_problems(element, law)
-    elif isinstance(law, Linear):
-        yield from element.number(
-            f"{prefix}stiffness", law.stiffness, "a stiffness >= 0 (N/m)", _not_negative
-        )
-    elif isinstance(law, BilinearElastic):
-        for key, value in (("compression", law.compression), ("extension", law.extension)):
-            yield from element.number(prefix + key, value, "a stiffness >= 0 (N/m)", _not_negative)
-        yield from element.number(f"{prefix}offset", law.offset, "a number (m)")
-    else:
+def _law_problems(element: _Element, law: Law) -> Iterator[Problem]:
+    if isinstance(law, Series):
         if not law.parts:
             yield element.problem("parts", [], "at least one part")
         for number, part in enumerate(law.parts, 1):
-            yield from _law_problems(element, part, f"parts {number}: ")
-
-
-def _bouc_wen_problems(element: _Element, law: BoucWen) -> Iterator[Problem]:
-    number = element.number
-    yield from number("stiffness", law.stiffness, "a stiffness >= 0 (N/m)", _not_negative)
-    yield from number("strength", law.strength, "a force >= 0 (N)", _not_negative)
-    yield from number(
-        "yield_displacement", law.yield_displacement, "a positive length (m)", _positive
-    )
-    shape = [
-        *number("exponent", law.exponent, "a number >= 1", lambda n: n >= 1.0),
-        *number(
-            "beta", law.beta, "a number, beta + gamma > 0", lambda b: not b + law.gamma < _TINY
-        ),
-        *number("gamma", law.gamma, "a number"),
-    ]
-    yield from shape
-    if not shape:
+            yield from element.numbers(part, f"parts {number}: ")
+        return
+    found = [*element.numbers(law)]
+    if isinstance(law, BoucWen) and not any(problem.key in WITHIN_BOUND for problem in found):
         # A bound reached to rounding is a spring that has yielded.
         bound = law.bound
-        yield from number(
-            "initial_z",
-            law.initial_z,
-            f"a number of at most (beta + gamma)^(-1/exponent) = {bound:.6g} in size",
-            lambda z: abs(z) <= bound * (1.0 + 4.0 * math.ulp(1.0)),
-        )
-
-
-def _degradation_problems(element: _Element, law: DegradingBoucWen) -> Iterator[Problem]:
-    for key in ("strength_degradation", "stiffness_degradation", "initial_loss"):
-        yield from element.number(key, getattr(law, key), "a number >= 0", _not_negative)
-    # Else epsilon could fall, and nu and eta with it.
-    accepted = "|beta| <= gamma of a law that degrades"
-    yield from element.number("beta", law.beta, accepted, lambda beta: abs(beta) <= law.gamma)
-
-
-def _backfill_problems(element: _Element, law: Backfill) -> Iterator[Problem]:
-    number = element.number
-    stiffness, force = law.initial_stiffness, law.ultimate_force
-    yield from number("initial_stiffness", stiffness, "a positive stiffness (N/m)", _positive)
-    yield from number("ultimate_force", force, "a positive force (N)", _positive)
-    accepted = "a number above 0, at most 1"
-    yield from number("failure_ratio", law.failure_ratio, accepted, lambda r: 0.0 < r <= 1.0)
-    yield from number("gap", law.gap, "a length >= 0 (m)", _not_negative)
-    accepted = "a length of at least gap (m), or 0"
-    yield from number(
-        "initial_gap", law.initial_gap, accepted, lambda g: g in (0.0, max(g, law.gap))
-    )
-
-
-def _slider_problems(element: _Element, law: Slider) -> Iterator[Problem]:
-    yield from element.number("friction", law.friction, "a positive number", _positive)
-    yield from element.number("normal_force", law.normal_force, "a positive force (N)", _positive)
-    accepted = "a stiffness >= 0 (N/m)"
-    yield from element.number("stiffness", law.stiffness, accepted, _not_negative)
+        accepted = f"a number of at most (beta + gamma)^(-1/exponent) = {bound:.6g} in size"
+        most = bound * (1.0 + 4.0 * math.ulp(1.0))
+        found += element.number("initial_z", law.initial_z, accepted, lambda z: abs(z) <= most)
+        found.sort(key=lambda problem: [*numbers_of(type(law))].index(problem.key))
+    yield from found
+    if isinstance(law, DegradingBoucWen):
+        # Else epsilon could fall, and nu and eta with it.
+        accepted = "|beta| <= gamma of a law that degrades"
+        yield from element.number("beta", law.beta, accepted, lambda beta: abs(beta) <= law.gamma)
 
 
 def _dashpot_problems(scene: Scene) -> Iterator[Problem]:
     found = list[Problem]()
     for position, dashpot in enumerate(scene.dashpots, 1):
-        element = _Element("dashpot", position)
+        element = _Element("dashpot", position, "")
         found += _end_problems(element, dashpot.between, scene, GROUND)
-        found += element.number("coefficient", dashpot.coefficient, "a coefficient (N s/m)")
+        found += element.numbers(dashpot)
     yield from found
     negative = [i for i, d in enumerate(scene.dashpots) if d.coefficient < 0.0]
     if negative and not found and not _dissipates(scene):
@@ -303,7 +232,7 @@ def _dashpot_problems(scene: Scene) -> Iterator[Problem]:
             "drive a motion"
         )
         first = scene.dashpots[negative[0]].coefficient
-        yield _Element("dashpot", negative[0] + 1).problem("coefficient", first, accepted)
+        yield _Element("dashpot", negative[0] + 1, "").problem("coefficient", first, accepted)
 
 
 def _dissipates(scene: Scene) -> bool:
@@ -327,7 +256,7 @@ def starts_of_supports(scene: Scene, start: float) -> dict[str, float]:
         support.name: float(travelled(support.moved_by(scene.motion), now)[0] - reference)
         for support in scene.supports
         if isinstance(support.motion, GroundMotion)
-        or (support.delay is not None and _not_negative(support.delay))
+        or (support.delay is not None and support.delay >= 0.0)
     }
 
 
@@ -341,10 +270,7 @@ def _support_problems(scene: Scene) -> Iterator[Problem]:
         if (support.delay is None) == (support.motion is None):
             found = "neither" if support.delay is None else "both"
             yield element.problem("delay", found, "one of delay and excitation")
-        if support.delay is not None:
-            yield from element.number(
-                "delay", support.delay, "a time that is not negative (s)", _not_negative
-            )
+        yield from element.numbers(support)
         if support.motion is not None:
             for problem in motion_problems(support.motion):
                 yield element.problem("excitation", problem.found, problem.accepted)
@@ -394,7 +320,7 @@ def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
             yield from _restitution(element, contact)
         else:
             yield from _contact_law_problems(element, contact, contact.law)
-        yield from element.number("gap", contact.gap, "a length (m)")
+        yield from element.numbers(contact)
         if i in penetrated:
             accepted = (
                 "a gap that is not penetrated at the start; with the initial displacements it "
@@ -448,8 +374,8 @@ def _contact_law_problems(
     if kind is None:
         yield element.problem("law", law.kind, f"one of {NEWTON}, {', '.join(BY_WORD)}")
         return
-    unit = kind.dimension.unit
-    yield from element.number("stiffness", law.stiffness, f"a stiffness > 0 ({unit})", _positive)
+    accepted = f"a stiffness > 0 ({kind.dimension.unit})"
+    yield from element.number("stiffness", law.stiffness, accepted, lambda k: k > 0.0)
     if not law.tension and kind is not Element.KELVIN_VOIGT:
         yield element.problem("tension", law.tension, "none: only kelvin-voigt has it")
     given = {"restitution": contact.restitution, "damping": law.damping}
@@ -462,9 +388,8 @@ def _contact_law_problems(
         wanted = f"one of restitution and damping ({kind.symbol}), and not both"
         yield element.problem("restitution", contact.restitution, wanted)
     elif law.damping is not None:
-        yield from element.number(
-            "damping", law.damping, f"a number >= 0 ({kind.symbol})", _not_negative
-        )
+        accepted = f"a number >= 0 ({kind.symbol})"
+        yield from element.number("damping", law.damping, accepted, lambda x: x >= 0.0)
     elif kind is Element.JANKOWSKI and contact.restitution == 0.0:
         accepted = f"a number above 0, to 1: the {kind.symbol} of jankowski divides by it"
         yield element.problem("restitution", contact.restitution, accepted)

@@ -7,7 +7,15 @@ from collections.abc import Mapping
 from typing import Annotated
 
 from eventpound.errors import InputError
-from eventpound.given import Given, Number, OptionalNumber, converting, default, read_fields
+from eventpound.given import (
+    Accepted,
+    Given,
+    Number,
+    OptionalNumber,
+    converting,
+    default,
+    read_fields,
+)
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact_law import ContactLaw, damping_constant
 from eventpound.scene.point import Point
@@ -44,7 +52,7 @@ class Contact:
     name: str
     left: Given[End, End | Mapping[str, float | str]]
     right: Given[End, End | Mapping[str, float | str]]
-    gap: Annotated[Number, Dimension.LENGTH]
+    gap: Annotated[Number, Dimension.LENGTH, Accepted("a length (m)")]
     restitution: Annotated[OptionalNumber, Dimension.NUMBER] = default(None)
     law: ContactLaw | None = None
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Annotated
 
 from eventpound.errors import InputError
-from eventpound.given import Given, Number, checked, converting, number, read_fields
+from eventpound.given import Accepted, Given, Number, checked, converting, number
 from eventpound.units import Dimension
 
 
@@ -25,10 +25,7 @@ class Dashpot:
     """
 
     between: Given[tuple[str, str], Sequence[str]]
-    coefficient: Annotated[Number, Dimension.DAMPING]
-
-    def __post_init__(self) -> None:
-        read_fields(self)
+    coefficient: Annotated[Number, Dimension.DAMPING, Accepted("a coefficient (N s/m)")]
 
     @classmethod
     @checked

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import field
 
-from eventpound.given import Given, converting, default, read_fields
+from eventpound.given import Given, converting, default
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.free import NoMotion
 from eventpound.scene.body import Body
@@ -41,9 +41,6 @@ class Scene:
     motion: GroundMotion = field(default_factory=NoMotion)
     supports: Given[tuple[Support, ...], Iterable[Support]] = default(())
     forces: Given[tuple[Force, ...], Iterable[Force]] = default(())
-
-    def __post_init__(self) -> None:
-        read_fields(self)
 
     @property
     def hysteretic_springs(self) -> list[str]:

@@ -8,6 +8,7 @@ Every number may be given as a string with a unit, ``"1051 kN/m"``.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from enum import StrEnum
@@ -17,20 +18,34 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.given import (
+    Accepted,
     Given,
     Number,
     OptionalNumber,
+    above_zero,
     checked,
     converting,
     converting_base,
     default,
+    not_negative,
     number,
-    read_fields,
 )
 from eventpound.numerics.arrays import Floats
 from eventpound.units import STANDARD_GRAVITY, Dimension
 
 GROUND = "ground"
+_TINY = sys.float_info.min
+_NOT_BELOW = Accepted("a stiffness >= 0 (N/m)", not_negative)
+_STIFF = Accepted("a positive stiffness (N/m)", above_zero)
+_LONG = Accepted("a positive length (m)", above_zero)
+_FROM_ONE = Accepted("a number >= 1", lambda law, n: n >= 1.0)
+_BETA = Accepted("a number, beta + gamma > 0", lambda law, b: not b + law.gamma < _TINY)
+_SHARE = Accepted("a number above 0, at most 1", lambda soil, r: 0.0 < r <= 1.0)
+_GAP = Accepted("a length >= 0 (m)", not_negative)
+_WIDER = Accepted("a length of at least gap (m), or 0", lambda s, g: g in (0.0, max(g, s.gap)))
+_Stiffness = Annotated[Number, Dimension.STIFFNESS, _NOT_BELOW]
+_Force = Annotated[Number, Dimension.FORCE, Accepted("a positive force (N)", above_zero)]
+_Loss = Annotated[Number, Dimension.NUMBER, Accepted("a number >= 0", not_negative)]
 DRAWN = 40
 """Parts of a curve that stands for a law."""
 
@@ -64,10 +79,7 @@ class Linear:
 
     word: ClassVar[LawName] = LawName.LINEAR
     equation: ClassVar[str] = "F = stiffness x"
-    stiffness: Annotated[Number, Dimension.STIFFNESS]
-
-    def __post_init__(self) -> None:
-        read_fields(self)
+    stiffness: _Stiffness
 
 
 @converting
@@ -86,12 +98,9 @@ class BilinearElastic:
     equation: ClassVar[str] = (
         "F = compression (x - offset) for x < offset, extension (x - offset) above"
     )
-    compression: Annotated[Number, Dimension.STIFFNESS]
-    extension: Annotated[Number, Dimension.STIFFNESS]
-    offset: Annotated[Number, Dimension.LENGTH] = default(0.0)
-
-    def __post_init__(self) -> None:
-        read_fields(self)
+    compression: _Stiffness
+    extension: _Stiffness
+    offset: Annotated[Number, Dimension.LENGTH, Accepted("a number (m)")] = default(0.0)
 
 
 @converting
@@ -112,9 +121,6 @@ class Series:
         "parts carry one force, their elongations add up; 'condensed' is the whole"
     )
     parts: Given[tuple[Linear | BilinearElastic, ...], Iterable[Linear | BilinearElastic]]
-
-    def __post_init__(self) -> None:
-        read_fields(self)
 
 
 class Hysteretic:
@@ -191,16 +197,13 @@ class BoucWen(Hysteretic):
         "F = stiffness x + strength z, z' = (x' - gamma |x'| z |z|^(exponent-1)"
         " - beta x' |z|^exponent) / yield_displacement"
     )
-    stiffness: Annotated[Number, Dimension.STIFFNESS]
-    strength: Annotated[Number, Dimension.FORCE]
-    yield_displacement: Annotated[Number, Dimension.LENGTH]
-    exponent: Annotated[Number, Dimension.NUMBER] = default(20.0)
-    beta: Annotated[Number, Dimension.NUMBER] = default(0.5)
-    gamma: Annotated[Number, Dimension.NUMBER] = default(0.5)
+    stiffness: _Stiffness
+    strength: Annotated[Number, Dimension.FORCE, Accepted("a force >= 0 (N)", not_negative)]
+    yield_displacement: Annotated[Number, Dimension.LENGTH, _LONG]
+    exponent: Annotated[Number, Dimension.NUMBER, _FROM_ONE] = default(20.0)
+    beta: Annotated[Number, Dimension.NUMBER, _BETA] = default(0.5)
+    gamma: Annotated[Number, Dimension.NUMBER, Accepted("a number")] = default(0.5)
     initial_z: Annotated[Number, Dimension.NUMBER] = default(0.0)
-
-    def __post_init__(self) -> None:
-        read_fields(self)
 
     @property
     def initial_stiffness(self) -> float:
@@ -306,12 +309,9 @@ class DegradingBoucWen(BoucWen):
         " / (eta yield_displacement)"
     )
     second: ClassVar[str] = "epsilon"
-    strength_degradation: Annotated[Number, Dimension.NUMBER] = default(0.0)
-    stiffness_degradation: Annotated[Number, Dimension.NUMBER] = default(0.0)
-    initial_loss: Annotated[Number, Dimension.NUMBER] = default(0.0)
-
-    def __post_init__(self) -> None:
-        read_fields(self)
+    strength_degradation: _Loss = default(0.0)
+    stiffness_degradation: _Loss = default(0.0)
+    initial_loss: _Loss = default(0.0)
 
     @property
     def second_at(self) -> float:
@@ -384,14 +384,11 @@ class Backfill(Hysteretic):
         " else z' = x' / u_y"
     )
     has_branches: ClassVar[bool] = True
-    initial_stiffness: Annotated[Number, Dimension.STIFFNESS]
-    ultimate_force: Annotated[Number, Dimension.FORCE]
-    failure_ratio: Annotated[Number, Dimension.NUMBER]
-    gap: Annotated[Number, Dimension.LENGTH] = default(0.0)
-    initial_gap: Annotated[Number, Dimension.LENGTH] = default(0.0)
-
-    def __post_init__(self) -> None:
-        read_fields(self)
+    initial_stiffness: Annotated[Number, Dimension.STIFFNESS, _STIFF]
+    ultimate_force: _Force
+    failure_ratio: Annotated[Number, Dimension.NUMBER, _SHARE]
+    gap: Annotated[Number, Dimension.LENGTH, _GAP] = default(0.0)
+    initial_gap: Annotated[Number, Dimension.LENGTH, _WIDER] = default(0.0)
 
     @classmethod
     @checked
@@ -512,12 +509,9 @@ class Slider(Hysteretic):
         " sticks"
     )
     has_branches: ClassVar[bool] = True
-    friction: Annotated[Number, Dimension.NUMBER]
-    normal_force: Annotated[Number, Dimension.FORCE]
-    stiffness: Annotated[Number, Dimension.STIFFNESS] = default(0.0)
-
-    def __post_init__(self) -> None:
-        read_fields(self)
+    friction: Annotated[Number, Dimension.NUMBER, Accepted("a positive number", above_zero)]
+    normal_force: _Force
+    stiffness: _Stiffness = default(0.0)
 
     @classmethod
     @checked
@@ -601,7 +595,4 @@ class Spring:
     name: str
     between: Given[tuple[str, str], Sequence[str]]
     law: Law
-    height: Annotated[OptionalNumber, Dimension.LENGTH] = default(None)
-
-    def __post_init__(self) -> None:
-        read_fields(self)
+    height: Annotated[OptionalNumber, Dimension.LENGTH, _LONG] = default(None)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from eventpound.given import OptionalNumber, converting, default, read_fields
+from eventpound.given import Accepted, OptionalNumber, converting, default, not_negative
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import Delayed
 from eventpound.units import Dimension
@@ -28,11 +28,12 @@ class Support:
     """
 
     name: str
-    delay: Annotated[OptionalNumber, Dimension.TIME] = default(None)
+    delay: Annotated[
+        OptionalNumber,
+        Dimension.TIME,
+        Accepted("a time that is not negative (s)", not_negative),
+    ] = default(None)
     motion: GroundMotion | None = None
-
-    def __post_init__(self) -> None:
-        read_fields(self)
 
     def moved_by(self, reference: GroundMotion) -> GroundMotion:
         """Its motion in space, the motion of the scene given."""
