@@ -33,7 +33,7 @@ from eventpound.cli import former
 from eventpound.cli.arguments import EXAMPLES, Command, Commands, Options
 from eventpound.cli.output import Output
 from eventpound.cli.progress import CompilationLine
-from eventpound.cli.talk import add_loudness, located, say, set_loudness
+from eventpound.cli.talk import add_loudness, complain, located, say, set_loudness
 from eventpound.errors import ComputationError, InputError, InterruptionError
 from eventpound.interruption import Terminable, is_interruption
 from eventpound.numerics.compiling import watched
@@ -74,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = _run(options)
         say(f"ended with exit code {code}")
     if output.trouble:
-        print(f"eventpound: stdout: cannot be written to: {output.trouble}", file=sys.stderr)
+        complain(f"stdout: cannot be written to: {output.trouble}")
     if arguments is None:
         # The process ends: to look for cycles among all modules takes a tenth of a short run.
         gc.freeze()
@@ -88,13 +88,13 @@ def _run(options: Options) -> int:
             warnings.showwarning = show_warning
             return int(options.command(options))
     except (InputError, ComputationError) as error:
-        print(f"eventpound: {located(str(error))}", file=sys.stderr)
+        complain(f"{located(str(error))}")
         return error.exit_code
     except (KeyboardInterrupt, SystemError) as error:
         # Compiled code of some package may return as if nothing had been raised.
         if not is_interruption(error):
             raise
-        print("eventpound: interrupted", file=sys.stderr)
+        complain("interrupted")
         return InterruptionError.exit_code
 
 

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-from eventpound.cli.talk import add_loudness, located, say
+from eventpound.cli.talk import add_loudness, complain, located, say
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
     from eventpound.case import Case
     from eventpound.report.style import Paper
     from eventpound.study.reading import StudyCase
-    from eventpound.units import Dimension
 
 T = TypeVar("T")
 Commands: TypeAlias = "argparse._SubParsersAction[Command]"
@@ -101,10 +99,11 @@ class Options(argparse.Namespace):
         InputError
             Where the width is none.
         """
+        from eventpound.given import number
         from eventpound.report.style import Paper
         from eventpound.units import Dimension
 
-        width = self.width and quantity_of("--width", self.width, Dimension.LENGTH)
+        width = self.width and number("--width", self.width, Dimension.LENGTH)
         if width is not None and not 0.02 <= width <= 2.0:
             found = f"--width: found {self.width!r}"
             raise InputError(f'{found}; accepted: 20 mm to 2 m, as "90 mm"')
@@ -178,16 +177,6 @@ def _formats(text: str) -> tuple[str, ...]:
     return kinds
 
 
-def quantity_of(name: str, text: str, dimension: Dimension) -> float:
-    """A number (SI) that an option gives with or without a unit."""
-    from eventpound.units import quantity
-
-    try:
-        return quantity(text, dimension)
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
-
-
 def load(path: Path, suite: str | None = None) -> Case:
     """Load a case, perhaps with other records, and show its warnings."""
     from eventpound.case import load_case
@@ -225,7 +214,7 @@ def case_of_results(manifest: Mapping[str, Any], out: Path, options: Options) ->
 def show_warnings(warnings: Iterable[str]) -> None:
     """Say on stderr what is computed as it is asked for, but hardly meant so."""
     for warning in warnings:
-        print(f"eventpound: warning: {warning}", file=sys.stderr)
+        complain(f"warning: {warning}")
 
 
 def check_solver_of(case: Case, in_file: bool = True) -> None:

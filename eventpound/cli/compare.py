@@ -27,7 +27,6 @@ Examples
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -35,6 +34,7 @@ from typing import TYPE_CHECKING
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.progress import Doing
+from eventpound.cli.talk import complain
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def _compare(options: Options) -> int:
         kept = interrupt.comparison
         _write(kept, out)
         total = len(asked) + len(options.against)
-        print(f"eventpound: {len(kept.runs)} of {total} runs are in {out}", file=sys.stderr)
+        complain(f"{len(kept.runs)} of {total} runs are in {out}")
         raise
     _write(comparison, out)
     return 0

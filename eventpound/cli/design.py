@@ -19,16 +19,14 @@ Examples
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.progress import Counter, Forecast, Progress, StudyProgress, Watch
-from eventpound.cli.talk import say
+from eventpound.cli.talk import complain, going_on, say
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -108,12 +106,12 @@ def _of_suite(case: Case, out: Path) -> DesignRuns:
     """Run a case under every record; those that failed are named."""
     from eventpound.study.design import made_of_suite
 
-    with _going_on(), Counter("records") as progress:
+    with going_on(), Counter("records") as progress:
         made = made_of_suite(case, out, progress)
     assert made.runs is not None
     for record, why in zip(made.runs["record"], made.runs["failed"], strict=True):
         if why:
-            print(f"eventpound: {record} failed, and is left out: {why}", file=sys.stderr)
+            complain(f"{record} failed, and is left out: {why}")
     return made
 
 
@@ -133,23 +131,12 @@ def _of_study(plan: Plan, out: Path) -> pd.DataFrame:
     """Make the runs of a study; how many failed is said."""
     from eventpound.study.design import made_of_study
 
-    with _going_on(), StudyProgress(plan.size) as progress:
+    with going_on(), StudyProgress(plan.size) as progress:
         made = made_of_study(plan, out, progress)
     assert made.runs is not None
     if failed := int((~made.runs["success"]).sum()):
-        said = f"{failed} of {len(made.runs)} runs failed, and are left out"
-        print(f"eventpound: {said}", file=sys.stderr)
+        complain(f"{failed} of {len(made.runs)} runs failed, and are left out")
     return made.table
-
-
-@contextmanager
-def _going_on() -> Iterator[None]:
-    """Say of runs that are stopped that they are kept."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        print("\neventpound: the same command goes on with the rest", file=sys.stderr)
-        raise
 
 
 def _lines(case: Case, table: pd.DataFrame) -> Iterator[str]:

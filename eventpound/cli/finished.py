@@ -6,8 +6,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import PAPER, Command, Options, quantity_of
+from eventpound.cli.arguments import PAPER, Command, Options
 from eventpound.errors import InputError
+from eventpound.given import number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,7 +49,7 @@ def fit_fragility(options: Options, out: Path) -> dict[str, bytes]:
     paper = options.paper()
     table = _where(_read(out), options.where, out)
     of_demand = dimension_of(options.demand)
-    limits = [quantity_of("--limit", text, of_demand) for text in options.limit]
+    limits = [number("--limit", text, of_demand) for text in options.limit]
     records = None if options.counts else _records(table, options.measure)
     try:
         curves = fragility_table(table, options.measure, options.demand, limits, records)
@@ -117,7 +118,7 @@ def draw_spectrum(options: Options, out: Path) -> list[Path]:
 
 def _positive(name: str, text: str, dimension: Dimension) -> float:
     """A positive number, with or without a unit."""
-    value = quantity_of(name, text, dimension)
+    value = number(name, text, dimension)
     if value <= 0.0:
         raise InputError(f"{name}: found {text!r}; accepted: a positive one")
     return value

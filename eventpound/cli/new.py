@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 from eventpound.cli.arguments import Commands, Options, add_command
+from eventpound.cli.talk import complain
 from eventpound.errors import InputError
 
 
@@ -44,4 +44,4 @@ def _say_what_is_missing(record: Path, file: Path) -> None:
     try:
         read_record(record)
     except InputError as error:
-        print(f"eventpound: to be filled in, in {file}: {error}", file=sys.stderr)
+        complain(f"to be filled in, in {file}: {error}")

@@ -14,11 +14,11 @@ Examples
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Commands, Options, add_command, seconds
+from eventpound.cli.talk import complain
 
 if TYPE_CHECKING:
     from eventpound.problems.collection import Collection
@@ -72,7 +72,7 @@ def _certify(collection: Collection, names: list[str], patience: float) -> int:
         print(f"{problem.name:<28} {said}", flush=True)
         refused += not certificate.certified
     if refused:
-        print(f"eventpound: {refused} certificates are refused", file=sys.stderr)
+        complain(f"{refused} certificates are refused")
     return int(refused > 0)
 
 

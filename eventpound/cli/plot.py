@@ -13,7 +13,6 @@ Examples
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,6 +20,7 @@ from typing import TYPE_CHECKING
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.plot_folder import plot_folder
+from eventpound.cli.talk import complain
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -142,10 +142,9 @@ def _plot_suite(options: Options, out: Path, paper: Paper) -> list[Path]:
 
     table, manifest = read_suite(out)
     if not manifest.get("complete", True):
-        print(
-            f"eventpound: warning: {len(table)} of {manifest.get('records_of_suite')} records "
-            "of the suite were run before it was stopped; the figure shows no more",
-            file=sys.stderr,
+        complain(
+            f"warning: {len(table)} of {manifest.get('records_of_suite')} records of the suite "
+            "were run before it was stopped; the figure shows no more"
         )
     case, of = arguments.case_of_results(manifest, out, options), manifest["options"]
     return plot_suite(case, table, out, solver=of.get("solver"), rtol=of.get("rtol"), paper=paper)

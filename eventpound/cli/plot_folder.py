@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.cli.progress import StudyProgress
+from eventpound.cli.talk import complain
 from eventpound.errors import ComputationError, EventpoundError, InputError, InterruptionError
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def plot_folder(folder: Path, out: Path) -> int:
         except (ComputationError, InputError) as error:
             if isinstance(error, InterruptionError):
                 raise
-            print(f"eventpound: left out {file.parent.name}: {error}", file=sys.stderr, flush=True)
+            complain(f"left out {file.parent.name}: {error}")
             left_out[file.parent.name] = error
             continue
         if entry is not None:

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from types import FrameType
 from typing import TYPE_CHECKING, Self
 
-from eventpound.cli.talk import is_quiet, say
+from eventpound.cli.talk import complain, is_quiet, say
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.interruption import Deferred
 from eventpound.numerics.compiling import Stopwatch
@@ -82,10 +82,9 @@ class CompilationLine(_Line):
         large = seconds > _LEAST_SECONDS
         if state.name not in self._said and (large or not self._said) and not is_quiet():
             self._said.add(state.name)
-            print(
-                "eventpound: compiling what this needs, which is kept for later runs: about "
-                f"{duration_text(seconds)}, more on a slow machine",
-                file=sys.stderr,
+            complain(
+                "compiling what this needs, which is kept for later runs: about "
+                f"{duration_text(seconds)}, more on a slow machine"
             )
         self._show(lambda: _compilation_text(state))
 
@@ -203,13 +202,12 @@ class Forecast:
             return
         self._warned = True
         done = (t - self._start) / (self._end - self._start)
-        print(
-            "\r\033[K"
-            * sys.stderr.isatty()
-            + f"eventpound: warning: {done:.2g} of the run is done; at this rate the rest takes "
+        if sys.stderr.isatty():
+            print("\r\033[K", end="", file=sys.stderr)
+        complain(
+            f"warning: {done:.2g} of the run is done; at this rate the rest takes "
             f"about {duration_text(left)}; --time-limit or --max-steps bounds it, a larger rtol "
-            "or time_step makes it shorter",
-            file=sys.stderr,
+            "or time_step makes it shorter"
         )
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Command, Options, quantity_of
+from eventpound.cli.arguments import Command, Options
+from eventpound.given import number
 from eventpound.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def write_spectra(
     from eventpound.study.response_spectrum import response_spectrum
     from eventpound.units import Dimension
 
-    damping = quantity_of("--damping", options.damping, Dimension.NUMBER)
+    damping = number("--damping", options.damping, Dimension.NUMBER)
     target = None if options.target is None else read_target(options.target)
     for record, name in zip(records, names, strict=True):
         spectrum = response_spectrum(record.record, damping)

@@ -11,7 +11,6 @@ Examples
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -22,7 +21,7 @@ from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.progress import Forecast, Progress, Watch
 from eventpound.cli.suite_run import run_suite
-from eventpound.cli.talk import say
+from eventpound.cli.talk import complain, say
 from eventpound.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -172,7 +171,7 @@ def _keep_partial(case: Case, error: BaseException, response: Response | None, o
     elif isinstance(error, ComputationError) and error.recording is not None:
         recording = error.recording
     else:
-        print("eventpound: nothing was computed that could be kept", file=sys.stderr)
+        complain("nothing was computed that could be kept")
         return
     from eventpound import results
     from eventpound.case.case import DEFAULTS
@@ -186,9 +185,9 @@ def _keep_partial(case: Case, error: BaseException, response: Response | None, o
         results.write(partial, out, case=case)
     except InputError as unwritten:
         # What ended the run is what gets reported.
-        print(f"eventpound: {unwritten}", file=sys.stderr)
+        complain(f"{unwritten}")
         return
-    print(f"eventpound: what was computed so far is in {out}, marked incomplete", file=sys.stderr)
+    complain(f"what was computed so far is in {out}, marked incomplete")
 
 
 def _summary(response: Response) -> Iterator[str]:

@@ -15,12 +15,11 @@ Examples
 
 from __future__ import annotations
 
-import sys
 import time
 
 from eventpound.cli.arguments import Commands, Options, add_command, count_argument
 from eventpound.cli.progress import duration_text
-from eventpound.cli.talk import is_quiet
+from eventpound.cli.talk import complain, is_quiet
 from eventpound.errors import InputError
 
 
@@ -43,7 +42,7 @@ def _solvers(options: Options) -> int:
         for key, meaning in solver.settings.items():
             print(f"{'':<10}   {key}: {meaning}")
     for trouble in plugins().troubles.values():
-        print(f"eventpound: warning: left out: {trouble}", file=sys.stderr)
+        complain(f"warning: left out: {trouble}")
     return 0
 
 
@@ -63,10 +62,10 @@ def _compile(names: list[str], processes: int | None) -> int:
         if share > 0.0 and not is_quiet():
             rest = passed / share * (1.0 - share)
             left = f", about {duration_text(rest)} left" if share < 1.0 else ""
-            print(f"eventpound: {share:4.0%}  {name}{left}", file=sys.stderr, flush=True)
+            complain(f"{share:4.0%}  {name}{left}")
 
     if not is_quiet():
-        print("eventpound: compiling; a minute or two on two cores", file=sys.stderr)
+        complain("compiling; a minute or two on two cores")
     compile_kernels(names or SOLVERS, processes, show)
     print(f"compiled in {duration_text(time.monotonic() - began)}, or found")
     return 0

@@ -39,13 +39,13 @@ Examples
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eventpound.cli import arguments, finished
 from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.progress import Counter, StudyProgress
+from eventpound.cli.talk import going_on
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -144,12 +144,8 @@ def _make_runs(options: Options, out: Path) -> None:
 
     case = arguments.load_study(options.case)
     engine = _engine(options, case.study.solver)
-    try:
-        with StudyProgress(case.study.size) as progress:
-            moved = run_study(case.study, out, engine, progress)
-    except KeyboardInterrupt:
-        print("\neventpound: the same command goes on with the rest", file=sys.stderr)
-        raise
+    with going_on(), StudyProgress(case.study.size) as progress:
+        moved = run_study(case.study, out, engine, progress)
     if moved is not None:
         print(f"moved     what was in {out} before is in {moved}")
     print(f"runs      {case.study.size}, {_failures(out)} failed")

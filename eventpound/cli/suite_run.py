@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Options
 from eventpound.cli.progress import Counter
-from eventpound.cli.talk import located
+from eventpound.cli.talk import complain, going_on, located
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,12 +31,8 @@ def run_suite(case: Case, options: Options, out: Path) -> int:
     estimate = True if options.error_estimate else None
     plan, case = suite.plan_of(case, None, None, estimate, intensities=True)
     keep = _keeper(out / _HISTORIES) if options.histories else None
-    try:
-        with Counter("records") as progress:
-            moved = suite.run_suite(plan, case, out, progress, keep)
-    except KeyboardInterrupt:
-        print(f"\neventpound: {_kept(out, plan.size)}; the same command goes on", file=sys.stderr)
-        raise
+    with going_on(lambda: _kept(out, plan.size)), Counter("records") as progress:
+        moved = suite.run_suite(plan, case, out, progress, keep)
     if moved is not None:
         print(f"moved     what was in {out} before is in {moved}")
     table = read_table(out, SUITE_TABLE)
@@ -122,10 +118,7 @@ def _say_what_failed(table: pd.DataFrame) -> None:
     failed = table[table["failed"] != ""]
     if failed.empty:
         return
-    print(
-        f"eventpound: {len(failed)} of {len(table)} records failed; they are marked in the table:",
-        file=sys.stderr,
-    )
+    complain(f"{len(failed)} of {len(table)} records failed; they are marked in the table:")
     for record, reason in zip(failed["record"], failed["failed"], strict=True):
         print(f"  {record}: {reason}", file=sys.stderr)
     if failed["failed"].str.contains("; give |say which").any():

@@ -7,6 +7,8 @@ import os
 import re
 import sys
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 _PAGE = re.compile(r'the page "([\w-]+)"\s+of the documentation')
 
@@ -42,6 +44,23 @@ def say(text: str) -> None:
     """Say on stderr what begins or has ended, with the time since the command began."""
     if _Talk.verbose:
         print(f"{time.monotonic() - _Talk.began:8.2f} s  {text}", file=sys.stderr, flush=True)
+
+
+def complain(text: str) -> None:
+    """Say on stderr what somebody is to know whose stdout goes elsewhere."""
+    print(f"eventpound: {text}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def going_on(kept: Callable[[], str] | None = None) -> Iterator[None]:
+    """Say of runs that are stopped that they go on, and what is kept of them."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        print(file=sys.stderr)
+        goes_on = "the same command goes on"
+        complain(f"{goes_on} with the rest" if kept is None else f"{kept()}; {goes_on}")
+        raise
 
 
 def located(text: str) -> str:

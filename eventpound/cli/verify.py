@@ -19,12 +19,11 @@ Examples
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Commands, Options, add_command, load, seconds, tolerance
-from eventpound.cli.talk import is_quiet
+from eventpound.cli.talk import complain, is_quiet
 
 if TYPE_CHECKING:
     from eventpound.accuracy.certificate import Certificate
@@ -67,7 +66,7 @@ def _verify(options: Options) -> int:
             results.write_together(out, {"digits.png": png(figure)})
     print(f"wrote {out}")
     if not certificate.certified:
-        print("eventpound: the certificate is refused", file=sys.stderr)
+        complain("the certificate is refused")
         return 1
     return 0
 
@@ -85,4 +84,4 @@ def _keep(certificate: Certificate, out: Path) -> None:
 
 def _say(line: str) -> None:
     if not is_quiet():
-        print(f"eventpound: {line}", file=sys.stderr)
+        complain(line)
