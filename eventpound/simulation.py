@@ -186,9 +186,9 @@ def refuse_suite(case: Case) -> None:
 
 
 def check_case(case: Case | Scene) -> None:
-    """Refuse a case whose scene was changed, since it was read, to one that cannot be computed."""
-    if isinstance(case, Case):
-        check_scene(case.scene, case.run.start_time)
+    """Refuse a scene that cannot be computed, also of a case that was changed since it was read."""
+    scene, start = (case.scene, case.run.start_time) if isinstance(case, Case) else (case, 0.0)
+    check_scene(scene, start)
 
 
 def options_of(
@@ -198,7 +198,7 @@ def options_of(
     energy: bool | None,
     events: Sequence[str] | None = None,
 ) -> tuple[RunOptions, SolverOptions]:
-    """Options of the case, or defaults for a checked scene, with what was given instead."""
+    """Options of a checked case, or defaults for a scene, with what was given instead."""
     if isinstance(case, Case):
         refuse_suite(case)
         given = {"duration": duration, "output_step": output_step, "energy": energy}
@@ -206,7 +206,6 @@ def options_of(
         run = replace(case.run, **changes)
         solver = case.solver
     else:
-        check_scene(case)
         length = duration or default_duration(case, 0.0)
         step = output_step or default_output_step(case.motion, length)
         run = RunOptions(0.0, length, step, bool(energy))

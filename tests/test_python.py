@@ -208,8 +208,8 @@ def test_laws_from_what_engineers_know() -> None:
         Parameter.HARDENING: 0.05,
     }
     found = bouc_wen_parameters(given)
-    assert (law.stiffness, law.strength) == (found.stiffness, found.strength)
-    assert law.yield_displacement == found.yield_displacement
+    assert (law.stiffness, law.strength) == (found[Parameter.STIFFNESS], found[Parameter.STRENGTH])
+    assert law.yield_displacement == found[Parameter.YIELD_DISPLACEMENT]
     assert Dashpot.from_ratio(("ground", "a"), "5 %", 4.0, 9.0).coefficient == pytest.approx(0.6)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ from eventpound.case.frequency import required_frequency
 from eventpound.case.record_file import find_record
 from eventpound.case.record_options import RecordOptions, read_record_options
 from eventpound.case.suite import Suite, read_suite, understood_suite
-from eventpound.case.table import Table
+from eventpound.case.table import Table, read_numbers
 from eventpound.errors import InputError
 from eventpound.motion import (
     AntisymmetricRicker,
@@ -29,7 +29,7 @@ from eventpound.scene.periods import period_called
 from eventpound.scene.scene import Scene
 from eventpound.units import Dimension
 
-_FORMULAS: Mapping[str, Callable[..., GroundMotion]] = {**PULSES, "harmonic": Harmonic}
+_FORMULAS: Mapping[str, Any] = {**PULSES, "harmonic": Harmonic}
 _KINDS = (*_FORMULAS, "record", "none")
 
 
@@ -130,7 +130,8 @@ def _read_formula(table: Table, kind: str) -> Excitation | None:
         "amplitude", not amplitude <= 0.0, "a positive acceleration; reverse turns a motion round"
     )
     omega, period = required_frequency(table)
-    numbers = {"amplitude": amplitude, "period": period, **_read_shape(table, kind)}
+    own = read_numbers(table, _FORMULAS[kind], "amplitude", "period", "start")
+    numbers = {"amplitude": amplitude, "period": period, **own}
     numbers["start"] = table.quantity("start", Dimension.TIME, 0.0)
     reverse = table.flag("reverse")
     if not (amplitude > 0.0 and omega > 0.0) or any(
@@ -141,22 +142,6 @@ def _read_formula(table: Table, kind: str) -> Excitation | None:
     if isinstance(motion, Ricker | AntisymmetricRicker):
         numbers["center"] = motion.middle
     return Excitation(motion, {"kind": kind, **numbers, "reverse": reverse})
-
-
-def _read_shape(table: Table, kind: str) -> dict[str, float]:
-    """Keys of one kind only; those not given are left to the motion's own default."""
-    optional: dict[str, float | None] = {}
-    match kind:
-        case "type-c":
-            optional["cycles"] = table.quantity("cycles", Dimension.NUMBER, 1.0)
-        case "harmonic":
-            optional["cycles"] = table.optional_quantity("cycles", Dimension.NUMBER)
-        case "ricker" | "antisymmetric-ricker":
-            optional["center"] = table.optional_quantity("center", Dimension.TIME)
-        case "mavroeidis-papageorgiou":
-            optional["gamma"] = table.quantity("gamma", Dimension.NUMBER, 2.0)
-            optional["phase"] = table.quantity("phase", Dimension.ANGLE, 0.0)
-    return {key: value for key, value in optional.items() if value is not None}
 
 
 def _read_record(table: Table, directory: Path) -> Excitation | None:

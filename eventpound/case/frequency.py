@@ -20,11 +20,8 @@ def agree(first: float, second: float) -> bool:
 
 def optional_period(table: Table, key: str) -> float | None:
     """A period (s) that a key gives; None where it is not given, NaN where it is wrong."""
-    period = table.optional_quantity(key, Dimension.TIME)
-    if period is not None and period <= 0.0:
-        table.reject(key, "a positive period (s)")
-        return math.nan
-    return period
+    period = table.optional_quantity(key, Dimension.TIME, "a positive period (s)")
+    return math.nan if period is not None and period <= 0.0 else period
 
 
 def optional_omega(table: Table, key: str) -> float | None:

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, asdict, fields, replace
+from dataclasses import asdict, replace
 
 from eventpound.case.elements import read_names
 from eventpound.case.spring_stiffness import Stiffnesses
-from eventpound.case.table import Table
+from eventpound.case.table import Table, read_numbers
 from eventpound.errors import InputError
-from eventpound.given import numbers_of
-from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
+from eventpound.scene.bouc_wen_parameters import OF_LAW, Parameter, bouc_wen_parameters
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import (
     Backfill,
@@ -88,12 +87,12 @@ def _read_law(table: Table, between: tuple[str, str], masses: Mapping[str, float
         case "linear":
             law = _read_linear(table, between, masses)
         case "bilinear-elastic":
-            law = BilinearElastic(**_numbers(table, BilinearElastic))
+            law = BilinearElastic(**read_numbers(table, BilinearElastic))
         case "bouc-wen":
             law = _read_bouc_wen(table, between, masses)
         case "degrading-bouc-wen":
             own = asdict(_read_bouc_wen(table, between, masses))
-            law = DegradingBoucWen(**own, **_numbers(table, DegradingBoucWen, *own))
+            law = DegradingBoucWen(**own, **read_numbers(table, DegradingBoucWen, *own))
         case "backfill":
             law = _read_backfill(table)
         case "slider":
@@ -119,18 +118,8 @@ def _read_linear(table: Table, between: tuple[str, str], masses: Mapping[str, fl
 def _read_backfill(table: Table) -> Backfill:
     wall = {key: table.optional_quantity(f"wall_{key}", Dimension.LENGTH) for key in _WALL}
     if all(value is None for value in wall.values()):
-        return Backfill(**_numbers(table, Backfill))
-    return Backfill(*_soil_behind(table, wall), **_numbers(table, Backfill, *_SOIL))
-
-
-def _numbers(table: Table, made: type, *others: str) -> dict[str, float]:
-    """Numbers of a law by the names of its fields, but for those that are given otherwise."""
-    defaults = {each.name: each.default for each in fields(made)}
-    return {
-        key: table.quantity(key, dimension, None if (own := defaults[key]) is MISSING else own)
-        for key, dimension in numbers_of(made).items()
-        if key not in others
-    }
+        return Backfill(**read_numbers(table, Backfill))
+    return Backfill(*_soil_behind(table, wall), **read_numbers(table, Backfill, *_SOIL))
 
 
 def _soil_behind(table: Table, wall: Mapping[str, float | None]) -> Sequence[float]:
@@ -150,7 +139,7 @@ def _soil_behind(table: Table, wall: Mapping[str, float | None]) -> Sequence[flo
 
 
 def _read_slider(table: Table) -> Slider:
-    law = Slider(**_numbers(table, Slider))
+    law = Slider(**read_numbers(table, Slider))
     radius = table.optional_quantity("radius", Dimension.LENGTH)
     if radius is None:
         return law
@@ -169,9 +158,9 @@ def _read_series(table: Table) -> Series:
     for part in table.tables("parts"):
         match part.choice("law", ("linear", "bilinear-elastic"), _YIELDS_IN_SERIES):
             case "linear":
-                parts.append(Linear(**_numbers(part, Linear)))
+                parts.append(Linear(**read_numbers(part, Linear)))
             case "bilinear-elastic":
-                parts.append(BilinearElastic(**_numbers(part, BilinearElastic)))
+                parts.append(BilinearElastic(**read_numbers(part, BilinearElastic)))
             case _:
                 continue
         part.close()
@@ -182,15 +171,15 @@ def _read_bouc_wen(table: Table, between: tuple[str, str], masses: Mapping[str, 
     values = {p: table.optional_quantity(p.value, d) for p, d in _DIMENSIONS.items()}
     values |= _of_a_mass(table, between, masses)
     given = {p: v for p in Parameter if (v := values[p]) is not None}
-    k = strength = u_y = math.nan
+    own = [math.nan] * len(OF_LAW)
     if not any(math.isnan(value) for value in given.values()):
         try:
             found = bouc_wen_parameters(given)
-            k, strength, u_y = found.stiffness, found.strength, found.yield_displacement
+            own = [found[p] for p in OF_LAW]
         except InputError as error:
             for problem in error.problems:
                 table.blame(table.report("", problem), [p for p in Parameter if p not in given])
-    return BoucWen(k, strength, u_y, **_numbers(table, BoucWen, *Parameter))
+    return BoucWen(*own, **read_numbers(table, BoucWen, *Parameter))
 
 
 def _of_a_mass(

@@ -11,9 +11,10 @@ import difflib
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass, fields
 
 from eventpound.errors import InputError
+from eventpound.given import numbers_of
 from eventpound.units import Dimension, quantity
 
 
@@ -257,6 +258,21 @@ class Table:
                 if self._missing[near] in self._problems:
                     self._problems.remove(self._missing[near])
             self.report(key, f"unknown key{meant}{accepted}")
+
+
+def read_numbers(table: Table, made: type, *others: str) -> dict[str, float]:
+    """Numbers by the fields of a class, but for others; those left open are not among them."""
+    found: dict[str, float | None] = {}
+    dimensions = numbers_of(made)
+    for key, default in ((each.name, each.default) for each in fields(made)):
+        if key in others or key not in dimensions:
+            continue
+        if default is None:
+            found[key] = table.optional_quantity(key, dimensions[key])
+        else:
+            usual = None if default is MISSING else float(default)
+            found[key] = table.quantity(key, dimensions[key], usual)
+    return {key: value for key, value in found.items() if value is not None}
 
 
 def suggestion(word: str, known: Sequence[str]) -> str:

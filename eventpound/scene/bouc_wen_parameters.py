@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 
 from eventpound.errors import InputError
@@ -32,30 +31,8 @@ class Parameter(StrEnum):
     HARDENING = "hardening"
 
 
-@dataclass(frozen=True, slots=True)
-class BoucWenParameters:
-    """All six parameters.
-
-    Parameters
-    ----------
-    initial_stiffness, stiffness : float
-        K_0 and K_s (N/m).
-    strength, yield_force : float
-        Q and F_y (N).
-    yield_displacement : float
-        u_y (m).
-    hardening : float
-        alpha.
-    """
-
-    initial_stiffness: float
-    stiffness: float
-    strength: float
-    yield_force: float
-    yield_displacement: float
-    hardening: float
-
-
+OF_LAW = (Parameter.STIFFNESS, Parameter.STRENGTH, Parameter.YIELD_DISPLACEMENT)
+"""Those that a law has, in its order."""
 _Values = dict[Parameter, float]
 _K0, _KS, _Q, _FY, _UY, _ALPHA = Parameter
 _ACCEPTED: dict[Parameter, tuple[str, Callable[[float], bool]]] = {
@@ -81,7 +58,7 @@ _RULES: tuple[tuple[Parameter, tuple[Parameter, ...], Callable[..., float]], ...
 )
 
 
-def bouc_wen_parameters(given: Mapping[Parameter, float]) -> BoucWenParameters:
+def bouc_wen_parameters(given: Mapping[Parameter, float]) -> Mapping[Parameter, float]:
     """Find all parameters from three or more that determine them.
 
     Parameters
@@ -91,8 +68,8 @@ def bouc_wen_parameters(given: Mapping[Parameter, float]) -> BoucWenParameters:
 
     Returns
     -------
-    BoucWenParameters
-        The given ones as they are, the others computed from them.
+    mapping
+        All six (SI), the given ones as they are, the others computed from them.
 
     Raises
     ------
@@ -109,7 +86,7 @@ def bouc_wen_parameters(given: Mapping[Parameter, float]) -> BoucWenParameters:
     _check_agreement(given, known)
     for parameter in (_KS, _Q, _ALPHA):
         known[parameter] = max(known[parameter], 0.0)
-    return BoucWenParameters(**{p.value: known[p] for p in Parameter})
+    return known
 
 
 def _check_ranges(given: Mapping[Parameter, float]) -> None:

@@ -37,7 +37,7 @@ from eventpound.scene.damping import (
 )
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
-from eventpound.scene.periods import RIGID, joined, nominal_stiffness
+from eventpound.scene.periods import RIGID, joined, over_mass
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
 from eventpound.scene.structures import joined_groups
@@ -91,14 +91,9 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
     ends = {GROUND, *bodies}
     springs = [s for s in scene.springs if ends.issuperset(s.between)]
     dashpots = [d for d in scene.dashpots if ends.issuperset(d.between)]
-    stiffness = joined(bodies, [(s.between, nominal_stiffness(s, yielded)) for s in springs])
     damping = joined(bodies, [(d.between, d.coefficient) for d in dashpots])
     root = np.sqrt(mass)
-    with np.errstate(all="ignore"):
-        matrix = stiffness / np.outer(root, root)
-    if not np.isfinite(matrix).all():
-        raise InputError("stiffness over mass is too large to be computed with")
-    squares, vectors = np.linalg.eigh(matrix)
+    squares, vectors = np.linalg.eigh(over_mass(bodies, springs, root, yielded))
     # Rounding leaves some of a rigid motion; its square is zero.
     squares = np.where(squares > RIGID * squares[-1], squares, 0.0)
     shape = vectors / root[:, None]

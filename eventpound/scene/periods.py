@@ -51,15 +51,22 @@ def longest_period(scene: Scene, yielded: bool = False) -> float | None:
         return None
     scene = grounded(scene)
     root_mass = np.sqrt([body.mass for body in scene.bodies])
-    links = [(spring.between, nominal_stiffness(spring, yielded)) for spring in scene.springs]
-    stiffness = joined([body.name for body in scene.bodies], links)
+    names = [body.name for body in scene.bodies]
+    squares = np.linalg.eigvalsh(over_mass(names, scene.springs, root_mass, yielded))
+    elastic = squares[squares > RIGID * squares[-1]]
+    return 2.0 * math.pi / math.sqrt(elastic[0]) if elastic.size else None
+
+
+def over_mass(
+    bodies: Sequence[str], springs: Iterable[Spring], root_mass: Floats, yielded: bool
+) -> Floats:
+    """Nominal stiffnesses over roots of masses, whose eigenvalues are omega^2, shape (N, N)."""
+    stiffness = joined(bodies, [(s.between, nominal_stiffness(s, yielded)) for s in springs])
     with np.errstate(all="ignore"):
         matrix = stiffness / np.outer(root_mass, root_mass)
     if not np.isfinite(matrix).all():
         raise InputError("stiffness over mass is too large to be computed with")
-    squares = np.linalg.eigvalsh(matrix)
-    elastic = squares[squares > RIGID * squares[-1]]
-    return 2.0 * math.pi / math.sqrt(elastic[0]) if elastic.size else None
+    return np.asarray(matrix)
 
 
 def period_called(scene: Scene, word: str) -> float:

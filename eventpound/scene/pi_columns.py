@@ -127,7 +127,7 @@ def numbers_with_terms(
             ]
         )
     solving = _Solving(scene, first, terms, columns or {})
-    for body in (first, *(other for other in scene.bodies if other is not first)):
+    for body in sorted(scene.bodies, key=lambda body: body is not first):
         solving.oscillator(body)
     solving.contacts()
     solving.supports()

@@ -71,7 +71,7 @@ def pi_terms(scene: Scene, oscillator: str | None = None) -> dict[str, float]:
     """
     first = looked_at(scene, oscillator)
     terms: dict[str, float] = {}
-    for body in (first, *_others(scene, first)):
+    for body in sorted(scene.bodies, key=lambda body: body is not first):
         terms |= _oscillator_terms(scene, body, first)
     for contact in scene.contacts:
         terms |= _contact_terms(scene, contact)
@@ -155,10 +155,6 @@ def looked_at(scene: Scene, oscillator: str | None) -> Body:
             return body
     names = ", ".join(body.name for body in scene.bodies)
     raise InputError(f"oscillator {oscillator!r}: no body has this name; bodies are {names}")
-
-
-def _others(scene: Scene, first: Body) -> tuple[Body, ...]:
-    return tuple(body for body in scene.bodies if body is not first)
 
 
 def own_spring(scene: Scene, body: str) -> Spring | None:

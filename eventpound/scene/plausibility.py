@@ -21,6 +21,7 @@ LARGEST_RATIO = 0.3
 """Of critical damping."""
 SHORTEST_PERIOD, LONGEST_PERIOD = 0.02, 20.0
 """Of a structure or a ground motion (s)."""
+_PERIODS = f"usual are {SHORTEST_PERIOD:g} to {LONGEST_PERIOD:g} s"
 WEAKEST, STRONGEST = 0.01, 2.0
 """Peak acceleration of a ground motion (g)."""
 LIKE_G = 0.05, 1.0
@@ -106,7 +107,7 @@ def _motion_doubts(scene: Scene) -> Iterator[Doubt]:
         usual = f"usual are {WEAKEST:g} to {STRONGEST:g} g"
         yield "peak", f"excitation: a peak of {scales.a_g:.4g} m/s^2 is {peak:.3g} g; {usual}"
     if not SHORTEST_PERIOD <= period <= LONGEST_PERIOD:
-        yield "motion's period", f"excitation: a period of {period:.4g} s; {_usual_periods()}"
+        yield "motion's period", f"excitation: a period of {period:.4g} s; {_PERIODS}"
 
 
 def _spring_doubts(scene: Scene) -> Iterator[Doubt]:
@@ -211,7 +212,7 @@ def _period_doubts(scene: Scene, output_step: float | None) -> Iterator[Doubt]:
         if period < SHORTEST_PERIOD:
             yield (
                 "short period",
-                f"body '{name}': a period of {period:.3g} s on its springs; {_usual_periods()}",
+                f"body '{name}': a period of {period:.3g} s on its springs; {_PERIODS}",
             )
     if len(scene.bodies) <= _MOST_BODIES:
         try:
@@ -219,7 +220,7 @@ def _period_doubts(scene: Scene, output_step: float | None) -> Iterator[Doubt]:
         except InputError:
             longest = None
         if longest is not None and longest > LONGEST_PERIOD:
-            yield "long period", f"a period of {longest:.4g} s; {_usual_periods()}"
+            yield "long period", f"a period of {longest:.4g} s; {_PERIODS}"
     least = min(shortest.values(), default=0.0)
     if output_step is not None and output_step > least / ROWS_A_PERIOD:
         yield (
@@ -238,10 +239,6 @@ def _gap_doubts(scene: Scene) -> Iterator[Doubt]:
                 f"contact '{contact.name}': a gap of {contact.gap:.4g} m; "
                 f"usual is up to {LARGEST_GAP:g} m",
             )
-
-
-def _usual_periods() -> str:
-    return f"usual are {SHORTEST_PERIOD:g} to {LONGEST_PERIOD:g} s"
 
 
 def _masses_joined(scene: Scene) -> Mapping[str, float]:

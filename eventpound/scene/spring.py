@@ -260,25 +260,15 @@ class BoucWen(Hysteretic):
         InputError
             Naming what is out of its range.
         """
-        from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
+        from eventpound.scene.bouc_wen_parameters import OF_LAW, Parameter, bouc_wen_parameters
 
-        given = {
-            Parameter.INITIAL_STIFFNESS: number(
-                "initial_stiffness", initial_stiffness, Dimension.STIFFNESS
-            ),
-            Parameter.YIELD_FORCE: number("yield_force", yield_force, Dimension.FORCE),
-            Parameter.HARDENING: number("hardening", hardening, Dimension.NUMBER),
-        }
-        found = bouc_wen_parameters(given)
-        return cls(
-            found.stiffness,
-            found.strength,
-            found.yield_displacement,
-            exponent,
-            beta,
-            gamma,
-            initial_z,
+        given = (
+            (Parameter.INITIAL_STIFFNESS, initial_stiffness, Dimension.STIFFNESS),
+            (Parameter.YIELD_FORCE, yield_force, Dimension.FORCE),
+            (Parameter.HARDENING, hardening, Dimension.NUMBER),
         )
+        found = bouc_wen_parameters({p: number(p.value, value, of) for p, value, of in given})
+        return cls(*(found[p] for p in OF_LAW), exponent, beta, gamma, initial_z)
 
 
 @converting_base()

@@ -30,34 +30,15 @@ def mass_on(scene: Scene, spring: Spring) -> float | None:
         to the ground, and None of a spring between two bodies.
     """
     scene = grounded(scene)
-    spring = next(s for s in scene.springs if s.name == spring.name)
-    others = [s for s in scene.springs if set(s.between) != set(spring.between)]
-    held, waiting = {GROUND}, [GROUND]
-    while waiting:
-        end = waiting.pop()
-        new = {e for s in others if end in s.between for e in s.between} - held
-        held |= new
-        waiting += new
-    above = _beyond(spring, others, held)
-    if above:
-        return sum(body.mass for body in scene.bodies if body.name in above)
-    own = set(spring.between) - {GROUND}
-    masses = [body.mass for body in scene.bodies if body.name in own]
-    return masses[0] if len(masses) == 1 else None
-
-
-def _beyond(spring: Spring, others: list[Spring], held: set[str]) -> set[str]:
-    """Bodies that hang on the end of a spring which nothing else holds."""
-    loose = [end for end in spring.between if end not in held]
-    if len(loose) != 1:
-        return set()
-    group, waiting = set(loose), loose
-    while waiting:
-        end = waiting.pop()
-        new = {e for s in others if end in s.between for e in s.between} - group
-        group |= new
-        waiting += new
-    return group
+    between = next(s.between for s in scene.springs if s.name == spring.name)
+    others = [s.between for s in scene.springs if set(s.between) != set(between)]
+    held, *loose = joined_groups([GROUND, *(body.name for body in scene.bodies)], others)
+    hanging = [group for group in loose if not set(between).isdisjoint(group)]
+    # On one end a group that nothing else holds; or both ends are held, or neither.
+    one_end = len(set(between).difference(held)) == 1
+    carried = hanging[0] if one_end else between
+    masses = [body.mass for body in scene.bodies if body.name in carried]
+    return sum(masses) if one_end or len(masses) == 1 else None
 
 
 def structures_of(scene: Scene) -> list[list[str]]:

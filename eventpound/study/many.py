@@ -17,6 +17,7 @@ from eventpound.given import Count, checked, positive
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.lookup import chosen, values_of
 from eventpound.scene.scene import Scene
+from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
 from eventpound.study.plan import base_of
 from eventpound.study.runs import results_of
@@ -96,6 +97,7 @@ def simulate_many(
     solver = SolverOptions(name, tolerance)
     if isinstance(case, Case):
         solver = replace(solver_instead(case.solver, name, "solver"), rtol=tolerance)
+    check_case(case)
     base = base_of(case, axes, (), solver, math.nan if lengths is None else float(lengths.max()))
     if unknown := [f"parameters: {key}: {text}" for key, text in unknown_axes(base)]:
         raise InputError(unknown)

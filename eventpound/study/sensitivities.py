@@ -30,6 +30,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.quantities.lookup import FREE, Named, chosen, find, values_of
 from eventpound.scene.parameters import dimension_of_number, places_of, value_at
 from eventpound.scene.scene import Scene
+from eventpound.simulation import check_case
 from eventpound.study.axes import PI, NumberAxis
 from eventpound.study.many import simulate_many
 from eventpound.study.plan import Base, base_of
@@ -117,6 +118,7 @@ def sensitivities(
     length = np.nan if duration is None else positive("duration", duration, Dimension.TIME)
     given = case.scene if isinstance(case, Case) else case
     solver = SolverOptions(default_solver([given], many=True), tolerance)
+    check_case(case)
     base = base_of(case, (), (), solver, length)
     names = _with_derivatives(base.case, of)
     numbers = _numbers(base, to)

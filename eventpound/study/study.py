@@ -19,6 +19,7 @@ from eventpound.case.suite import Member, Suite
 from eventpound.errors import InputError
 from eventpound.given import Count, checked, positive
 from eventpound.scene.scene import Scene
+from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
 from eventpound.study.engines.local import Batch, Processes
 from eventpound.study.plan import RECORD, base_of, described
@@ -89,6 +90,7 @@ class Study:
         if isinstance(case, Case) and records:
             # Each of these sets its own.
             case = replace(case, run=replace(case.run, duration=math.nan, output_step=math.nan))
+        check_case(case)
         base = described(base_of(case, varied, members, options, length))
         columns = (*([RECORD] if base.records else []), *axes)
         self.plan, problems = planned((base,), columns, quantities, options)
