@@ -80,7 +80,7 @@ class Terminable:
             and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
         )
         if self._here:
-            signal.signal(signal.SIGTERM, _interrupt)
+            signal.signal(signal.SIGTERM, signal.default_int_handler)
 
     def __exit__(self, *_: object) -> None:
         if self._here:
@@ -96,7 +96,3 @@ def is_interruption(error: BaseException) -> bool:
     while isinstance(error, SystemError) and error.__cause__ is not None:
         error = error.__cause__
     return isinstance(error, KeyboardInterrupt)
-
-
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    raise KeyboardInterrupt

@@ -199,9 +199,10 @@ def bounds_of(
     conditioning = 2.0 * np.nan_to_num(conditions.of_rounding)
     bound = np.maximum(truncation, disagreement) + conditioning + rounding
     parts = np.vstack((truncation, disagreement, conditioning, rounding))
+    names = (Limit.TOLERANCE, Limit.DISAGREEMENT, Limit.CONDITIONING, Limit.ROUNDING)
     limit = [
-        Limit.GRAZE if k is Limit.CONDITIONING and p < SMOOTH else k
-        for k, p in zip(_largest(parts), conditions.exponent, strict=True)
+        Limit.GRAZE if names[k] is Limit.CONDITIONING and p < SMOOTH else names[k]
+        for k, p in zip(np.argmax(parts, axis=0), conditions.exponent, strict=True)
     ]
     gone = np.isnan(conditions.large)
     unmeasured = gone & np.isnan(conditions.small)
@@ -220,9 +221,3 @@ def bounds_of(
 def _masked(values: Floats, without: np.ndarray, instead: float) -> Floats:
     """Rows of values, some and what is NaN replaced."""
     return np.where(np.isnan(values) | without[:, np.newaxis], instead, values)
-
-
-def _largest(parts: Floats) -> list[Limit]:
-    """The largest part of every bound, parts of shape (4, n)."""
-    names = (Limit.TOLERANCE, Limit.DISAGREEMENT, Limit.CONDITIONING, Limit.ROUNDING)
-    return [names[k] for k in np.argmax(parts, axis=0)]

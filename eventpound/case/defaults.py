@@ -75,14 +75,10 @@ def default_duration(scene: Scene, start_time: float) -> float:
 
 def _after(motion: GroundMotion, scene: Scene) -> float:
     """Time for which a run goes on after a motion (s)."""
-    if isinstance(_undelayed(motion), Record):
+    if isinstance(motion.motion if isinstance(motion, Delayed) else motion, Record):
         return _PERIODS_AFTER_RECORD * _longest_period(scene)
     scales = motion.scales()
     return 0.0 if scales is None else _PERIODS_AFTER_FORMULA * scales.period
-
-
-def _undelayed(motion: GroundMotion) -> GroundMotion:
-    return motion.motion if isinstance(motion, Delayed) else motion
 
 
 def default_output_step(motion: GroundMotion, duration: float) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -50,7 +49,10 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
         key: case.understood[key] for key in ("support", "force") if key in case.understood
     }
     if records:
-        driven["support"] = [_with_record(table, records) for table in driven["support"]]
+        driven["support"] = [
+            {**table, "excitation": records[table["name"]]} if table["name"] in records else table
+            for table in driven["support"]
+        ]
     return replace(
         case,
         title=f"{case.title}: {member.name}",
@@ -61,11 +63,3 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
         figure=None,
         understood=understood | driven,
     )
-
-
-def _with_record(
-    support: Mapping[str, object], records: Mapping[str, object]
-) -> Mapping[str, object]:
-    """The table of a support with its record of those of its suite."""
-    name = str(support["name"])
-    return {**support, "excitation": records[name]} if name in records else support

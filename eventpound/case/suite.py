@@ -194,7 +194,8 @@ class Suite:
             raise InputError(f"suite: {error}") from error
         if not paths:
             raise InputError(f"suite: found {self.pattern!r}, but no file matches it in {root}")
-        if len(paths) == 1 and (rows := _list_rows(paths[0])) is not None:
+        listed = len(paths) == 1 and paths[0].suffix.lower() == ".csv"
+        if listed and (rows := read_list(paths[0])) is not None:
             return _unique_names([_listed(row, paths[0].parent, self.options) for row in rows])
         common = Path(os.path.commonpath([path.parent for path in paths]))
         return [
@@ -278,11 +279,6 @@ def _read_synthetic(table: Table) -> tuple[tuple[int, int], ...]:
     table.close()
     first = numbers["first"]
     return tuple((numbers["seed"], n) for n in range(first, first + numbers["count"]))
-
-
-def _list_rows(path: Path) -> list[ListedRecord] | None:
-    """Lines of a list of records; None where the file is something else."""
-    return read_list(path) if path.suffix.lower() == ".csv" else None
 
 
 def _listed(row: ListedRecord, directory: Path, common: RecordOptions) -> Member:

@@ -16,7 +16,7 @@ from eventpound.report import style
 from eventpound.report.markers import draw_circles
 from eventpound.report.view import View
 from eventpound.results.trade import Trade
-from eventpound.scene.contact import Contact, weights_of
+from eventpound.scene.contact import Contact
 from eventpound.scene.scene import Scene
 from eventpound.study.design import FRACTILES
 from eventpound.study.records import FAILED
@@ -102,7 +102,7 @@ def governing_figure(view: View, contact: Contact | None, body: str, trade: Trad
     trade : Trade
         Units.
     """
-    ends = [body] if contact is None else _bodies(view, contact)
+    ends = [body] if contact is None else [end for end in contact.ends if end in view.bodies]
     view = view.within(_strong(view, ends))
     figure = style.new_figure(_WIDE, 3.6 if contact else 2.6)
     heights = [1.0, 1.6, 1.2] if contact else [1.0, 1.6]
@@ -137,12 +137,6 @@ def _draw_gap(axes: Axes, view: View, contact: Contact, trade: Trade) -> None:
     draw_circles(axes, view, contact.name, (view.t[:1], np.zeros(1)), style.PALETTE[2])
     axes.set_ylabel(f"gap ({unit})")
     axes.legend(**_ABOVE)
-
-
-def _bodies(view: View, contact: Contact) -> list[str]:
-    """Bodies at the ends of a contact."""
-    ends = [name for end in (contact.left, contact.right) for name, _ in weights_of(end)]
-    return [name for name in ends if name in view.bodies]
 
 
 def _strong(view: View, bodies: Sequence[str]) -> tuple[float, float]:

@@ -126,7 +126,8 @@ def _corners(layout: Layout, link: Link, shift: float) -> tuple[Corner, ...]:
     else:
         y = -0.22 + 0.5 * shift
         straight = (near.right, near.y + y), (far.left, far.y + y)
-    if _free(layout, *straight):
+    # It may begin and end at a body.
+    if not any(crosses(box, *straight) for box in layout.boxes.values()):
         return straight
     if low.x == high.x:
         x = min(low.left, high.left) - _INSIDE + shift
@@ -155,11 +156,6 @@ def _to_ground(
 
 def _overlap(one: Box, other: Box) -> bool:
     return abs(one.x - other.x) < 0.5 * (one.wide + other.wide) and abs(one.y - other.y) < HIGH
-
-
-def _free(layout: Layout, start: Corner, end: Corner) -> bool:
-    """Whether a straight line passes through no body; it may begin and end at one."""
-    return not any(crosses(box, start, end) for box in layout.boxes.values())
 
 
 def crosses(box: Box, start: Corner, end: Corner) -> bool:

@@ -21,7 +21,6 @@ from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
 from eventpound.motion.base import moves
 from eventpound.motion.record import Record
-from eventpound.results.description import describe_spring
 from eventpound.scene.contact import Contact, written
 from eventpound.scene.contact_law import Element
 from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
@@ -138,7 +137,7 @@ def _mass_on(case: Case, spring: Spring) -> float | None:
 def _spring(spring: Spring, mass: float | None) -> Row:
     law = spring.law
     k_0, k_s = initial_stiffness(law), post_yield_stiffness(law)
-    row: Row = {"name": spring.name, "between": list(spring.between), "law": _law_name(spring)}
+    row: Row = {"name": spring.name, "between": list(spring.between), "law": law.word.value}
     if spring.height is not None:
         row["height"] = spring.height
     if isinstance(law, BilinearElastic | Series):
@@ -158,10 +157,6 @@ def _spring(spring: Spring, mass: float | None) -> Row:
             row["F_y/W"] = row["F_y"] / (mass * STANDARD_GRAVITY)
             row["T_post_yield"] = _finite(period_of(mass, law.stiffness))
     return row
-
-
-def _law_name(spring: Spring) -> str:
-    return str(describe_spring(spring)["law"])
 
 
 def _parts(law: BilinearElastic | Series) -> Row:

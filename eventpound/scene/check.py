@@ -50,7 +50,7 @@ class _Element:
 
     def numbers(self, owner: Any, prefix: str = "") -> Iterator[Problem]:
         """Those of its numbers that are not what their fields say they may be."""
-        for key, (accepted, fits) in accepted_numbers(type(owner)):
+        for key, (accepted, fits) in accepted_numbers(owner.__class__):
             value = getattr(owner, key)
             if value is not None and not (math.isfinite(value) and fits(owner, value)):
                 yield self.problem(prefix + _KEYS.get(key, key), value, accepted)

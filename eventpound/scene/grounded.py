@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 
-from eventpound.scene.contact import BARRIER, End
+from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 
@@ -29,7 +29,11 @@ def grounded(scene: Scene, names: Collection[str] | None = None) -> Scene:
         springs=tuple(replace(s, between=ends_on_ground(s.between, gone)) for s in scene.springs),
         dashpots=tuple(replace(d, between=ends_on_ground(d.between, gone)) for d in scene.dashpots),
         contacts=tuple(
-            replace(c, left=_contact_end(c.left, gone), right=_contact_end(c.right, gone))
+            replace(
+                c,
+                left=BARRIER if c.left in gone else c.left,
+                right=BARRIER if c.right in gone else c.right,
+            )
             for c in scene.contacts
         ),
     )
@@ -37,13 +41,5 @@ def grounded(scene: Scene, names: Collection[str] | None = None) -> Scene:
 
 def ends_on_ground(between: tuple[str, str], supports: Collection[str]) -> tuple[str, str]:
     """Ends of a spring or dashpot with the ground in the place of supports."""
-    first, second = between
-    return _at(first, supports, GROUND), _at(second, supports, GROUND)
-
-
-def _at(end: str, supports: Collection[str], fixed: str) -> str:
-    return fixed if end in supports else end
-
-
-def _contact_end(end: End, supports: Collection[str]) -> End:
-    return _at(end, supports, BARRIER) if isinstance(end, str) else end
+    first, second = (GROUND if end in supports else end for end in between)
+    return first, second

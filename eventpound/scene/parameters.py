@@ -88,7 +88,7 @@ def places_of(scene: Scene) -> dict[str, Place]:
     places: dict[str, Place] = {}
 
     def add(key: str, kind: str, index: int, owner: object, part: int = -1) -> None:
-        for name in _numbers(owner):
+        for name in numbers_of(type(owner)) if is_dataclass(owner) else ():
             places[f"{key}.{name}"] = Place(kind, index, name, part)
 
     for i, body in enumerate(scene.bodies):
@@ -112,13 +112,6 @@ def places_of(scene: Scene) -> dict[str, Place]:
             add(f"support.{support.name}", "support", i, support)
     add("excitation", "excitation", 0, scene.motion)
     return places
-
-
-def _numbers(owner: object) -> list[str]:
-    """Fields that hold a number, given or not."""
-    if not is_dataclass(owner):
-        return []
-    return list(numbers_of(type(owner)))
 
 
 def value_at(scene: Scene, place: Place) -> Any:

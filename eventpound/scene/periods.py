@@ -7,7 +7,7 @@ slip, one with a kink with the smaller of its stiffnesses that are not zero.
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
-from eventpound.scene.grounded import grounded
+from eventpound.scene.grounded import ends_on_ground, grounded
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Linear, Series, Slider, Spring
 from eventpound.scene.structures import joined_groups
@@ -103,22 +103,17 @@ def period_called(scene: Scene, word: str) -> float:
         held = {end for s in scene.springs if GROUND in s.between for end in s.between}
         joints = [s.between for s in scene.springs if not held.issuperset(s.between)]
         group = next(set(each) for each in joined_groups(names, joints) if name in each)
+    others = set(names) - group
     springs = [
         replace(s, between=ends)
         for s in scene.springs
-        if set(ends := _kept_still(s.between, group)) != {GROUND}
+        if set(ends := ends_on_ground(s.between, others)) != {GROUND}
     ]
     bodies = tuple(body for body in scene.bodies if body.name in group)
     period = longest_period(Scene(bodies, tuple(springs)))
     if period is None:
         raise InputError(f"found {word!r}, but no spring resists; accepted: a period (s)")
     return period
-
-
-def _kept_still(between: tuple[str, str], group: Container[str]) -> tuple[str, str]:
-    """Ends of a spring, with the ground in the place of bodies that are not of a group."""
-    first, second = (end if end in group else GROUND for end in between)
-    return first, second
 
 
 def joined(bodies: Sequence[str], links: Iterable[tuple[tuple[str, str], float]]) -> Floats:

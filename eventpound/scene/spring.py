@@ -268,7 +268,8 @@ class BoucWen(Hysteretic):
             (Parameter.HARDENING, hardening, Dimension.NUMBER),
         )
         found = bouc_wen_parameters({p: number(p.value, value, of) for p, value, of in given})
-        return cls(*(found[p] for p in OF_LAW), exponent, beta, gamma, initial_z)
+        k, strength, u_y = (found[p] for p in OF_LAW)
+        return cls(k, strength, u_y, exponent, beta, gamma, initial_z)
 
 
 @converting_base()

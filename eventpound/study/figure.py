@@ -157,7 +157,10 @@ def _read_figure(table: Table) -> FigurePlan:
     further: dict[str, Any] = {
         **{key: table.text(key, "some text") if table.has(key) else "" for key in _TEXTS},
         **{key: table.optional_quantity(key, Dimension.NUMBER) for key in ("y_max", "largest")},
-        **{key: _numbers(table, key) for key in ("marks", "levels")},
+        **{
+            key: table.numbers(key, "a list of numbers") if table.has(key) else ()
+            for key in ("marks", "levels")
+        },
         **{
             k: table.choice(k, _SCALES) if table.has(k) else "linear"
             for k in ("x_scale", "y_scale")
@@ -203,7 +206,3 @@ def _columns(table: Table, key: str, default: tuple[str, ...] | None = None) -> 
         return default
     text = table.text(key, "a column of the table")
     return (text,) if text else ()
-
-
-def _numbers(table: Table, key: str) -> tuple[float, ...]:
-    return table.numbers(key, "a list of numbers") if table.has(key) else ()

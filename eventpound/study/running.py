@@ -59,7 +59,8 @@ def run_study(
     """
     check_writable(directory)
     store = Store(directory, study)
-    details = details or (lambda: ({}, _details(study)))
+    own = {"title": study.title, "runs": study.size}
+    details = details or (lambda: ({}, own | study.described()))
     moved = None
     with only_one(directory, AT_WORK):
         if again or not store.finished():
@@ -88,7 +89,3 @@ def _compute_missing(study: Plan, store: Store, engine: Engine, progress: Progre
         done += chunk.high - chunk.low
         if progress is not None:
             progress(done, before)
-
-
-def _details(study: Plan) -> dict[str, object]:
-    return {"title": study.title, "runs": study.size, **study.described()}
