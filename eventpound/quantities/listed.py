@@ -13,6 +13,7 @@ import numpy as np
 from eventpound.quantities import values as v
 from eventpound.quantities.base import Quantity, TakenFrom, column, of_contact, six_of, sum_of
 from eventpound.scene.separation import is_between_bodies, is_between_structures
+from eventpound.scene.spring import Backfill, BoucWen, Hysteretic, Slider
 from eventpound.units import Dimension
 
 D = Dimension
@@ -34,7 +35,7 @@ LISTED: tuple[Quantity, ...] = (
             " of an elastic spring, without the dashpot beside it", v.elastic_force_of,
             TakenFrom.FORCES, v.is_elastic),
     *six_of(_SPRING + "*_force", "force", D.FORCE,
-            " of a spring with a memory, without the dashpot beside it", only=v.is_hysteretic),
+            " of a spring with a memory, without the dashpot beside it", only=v.law_is(Hysteretic)),
     Quantity(_SPRING + "dissipated_energy", "energy dissipated", D.ENERGY,
              "Work done on the Q z part of a Bouc-Wen spring, less Q u_y z^2/2, which it can "
              "give back.", v.close_work(_SPRING + "dissipated_energy"), TakenFrom.BETWEEN,
@@ -43,19 +44,20 @@ LISTED: tuple[Quantity, ...] = (
              "Work that the soil of a backfill, or a degrading Bouc-Wen spring, does not give "
              "back.", v.by_law("dissipated"), TakenFrom.LAWS, v.told_by_law("dissipated")),
     Quantity(_SPRING + "dissipated_energy", "energy dissipated", D.ENERGY,
-             "Work of the friction of a slider.", v.friction_work, TakenFrom.LAWS, v.is_slider),
+             "Work of the friction of a slider.", v.friction_work, TakenFrom.LAWS,
+             v.law_is(Slider)),
     Quantity(_SPRING + "slip_path", "slip path", D.LENGTH,
-             "Length of all slips of a slider.", v.slip_path, TakenFrom.LAWS, v.is_slider),
+             "Length of all slips of a slider.", v.slip_path, TakenFrom.LAWS, v.law_is(Slider)),
     *(Quantity(_SPRING + name, name.replace("_", " "), D.NUMBER, text, v.by_law(name),
                TakenFrom.LAWS, v.told_by_law(name))
       for name, text in (
           ("strength_left", "Strength after the run over that of a new degrading Bouc-Wen spring."),
           ("stiffness_left", "Stiffness at z = 0 after the run over that of a new one."))),
     Quantity(_SPRING + "passive_force", "peak passive force", D.FORCE,
-             "Largest force of the soil of a backfill.", v.passive_force, only=v.is_backfill),
+             "Largest force of the soil of a backfill.", v.passive_force, only=v.law_is(Backfill)),
     Quantity(_SPRING + "passive_depth", "depth pushed in", D.LENGTH,
              "How far the soil of a backfill was pushed in beyond its gap.", v.passive_depth,
-             only=v.is_backfill),
+             only=v.law_is(Backfill)),
     Quantity(_SPRING + "residual_gap", "residual gap", D.LENGTH,
              "Compression at which the soil of a backfill would be touched again after the run.",
              v.by_law("residual_gap"), TakenFrom.LAWS, v.told_by_law("residual_gap")),
@@ -73,7 +75,7 @@ LISTED: tuple[Quantity, ...] = (
             "body", only=v.stands_apart),
     Quantity(_SPRING + "ductility", "ductility", D.NUMBER,
              "Largest elongation of either sign over the yield displacement (Bouc-Wen springs).",
-             v.ductility, only=v.is_bouc_wen),
+             v.ductility, only=v.law_is(BoucWen)),
     Quantity(_SPRING + "residual_elongation", "residual elongation", D.LENGTH,
              "Elongation when the run ends: what is left if the motion has died down by then.",
              v.residual_elongation, only=v.moves_with_bodies),
@@ -150,8 +152,8 @@ LISTED: tuple[Quantity, ...] = (
                f"Distance by {text} of the peaks of its two ends without contact{where}.",
                value, TakenFrom.FREE, only, tabled=False)
       for rule, called, text, where, value, only in (
-          ("absolute_sum", "sum", "the sum", "", v.absolute_sum_of_peaks, is_between_bodies),
-          ("srss", "SRSS", "SRSS", "", v.srss_of_peaks, is_between_bodies),
+          ("absolute_sum", "sum", "the sum", "", v.of_peaks(np.add), is_between_bodies),
+          ("srss", "SRSS", "SRSS", "", v.of_peaks(np.hypot), is_between_bodies),
           ("cqc", "CQC", "CQC", ", of two structures", v.cqc_of_peaks, is_between_structures))),
     Quantity(_CONTACT + "estimated_force", "impact force (estimate)", D.FORCE,
              "Estimate only: force of the strongest impact if the contact were a spring of the "
@@ -162,7 +164,7 @@ LISTED: tuple[Quantity, ...] = (
     Quantity("final.<body>.v", "final velocity", D.VELOCITY,
              "Velocity at the end, relative to the ground.", column("v")),
     Quantity("final.<spring>.z", "final $z$", D.NUMBER, "Hysteretic variable at the end.", v.z_of,
-             only=v.is_hysteretic),
+             only=v.law_is(Hysteretic)),
     Quantity("final.<spring>.epsilon", "final $\\varepsilon$", D.NUMBER,
              "Hysteretic energy of a degrading Bouc-Wen spring at the end, in parts of Q u_y.",
              v.by_law("epsilon"), TakenFrom.LAWS, v.told_by_law("epsilon")),

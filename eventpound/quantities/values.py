@@ -9,36 +9,20 @@ from typing import Any
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.distinct import distinct
 from eventpound.quantities.base import SIX, Value, name_of
 from eventpound.quantities.runs import Runs
 from eventpound.scene.elastic_laws import elastic_force, reduced
-from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.parameters import places_of, told_of_variants
 from eventpound.scene.scene import Scene
-from eventpound.scene.separation import absolute_sum, correlation, cqc, srss
-from eventpound.scene.spring import GROUND, Backfill, BoucWen, Hysteretic, Slider
+from eventpound.scene.separation import correlation, cqc
+from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes, Recording
 
 
-def is_hysteretic(scene: Scene, i: int) -> bool:
-    """Whether spring i has a memory."""
-    return isinstance(scene.springs[i].law, Hysteretic)
-
-
-def is_bouc_wen(scene: Scene, i: int) -> bool:
-    """Whether spring i has a Bouc-Wen law."""
-    return isinstance(scene.springs[i].law, BoucWen)
-
-
-def is_slider(scene: Scene, i: int) -> bool:
-    """Whether spring i is a slider."""
-    return isinstance(scene.springs[i].law, Slider)
-
-
-def is_backfill(scene: Scene, i: int) -> bool:
-    """Whether spring i is soil behind a wall."""
-    return isinstance(scene.springs[i].law, Backfill)
+def law_is(kind: type) -> Callable[[Scene, int], bool]:
+    """Whether spring i has a law of a kind."""
+    return lambda scene, i: isinstance(scene.springs[i].law, kind)
 
 
 def is_plain_bouc_wen(scene: Scene, i: int) -> bool:
@@ -53,8 +37,8 @@ def told_by_law(name: str) -> Callable[[Scene, int], bool]:
 
 
 def is_elastic(scene: Scene, i: int) -> bool:
-    """Whether spring i has none."""
-    return not is_hysteretic(scene, i)
+    """Whether spring i has no memory."""
+    return not isinstance(scene.springs[i].law, Hysteretic)
 
 
 def has_height(scene: Scene, i: int) -> bool:
@@ -243,14 +227,9 @@ def avoiding_gap_alone(many: Runs, i: int) -> Floats:
     return many.t * np.nan if many.apart is None else many.apart(joint)[:, joint.index(i)]
 
 
-def absolute_sum_of_peaks(many: Runs, i: int) -> Floats:
-    """Sum of the peaks of the ends of contact i without contact (m)."""
-    return absolute_sum(*_peaks_of_ends(many, i))
-
-
-def srss_of_peaks(many: Runs, i: int) -> Floats:
-    """SRSS of the peaks of the ends of contact i without contact (m)."""
-    return srss(*_peaks_of_ends(many, i))
+def of_peaks(rule: Callable[[Floats, Floats], Any]) -> Value:
+    """What a rule makes of the peaks of the ends of contact i without contact (m)."""
+    return lambda many, i: rule(*_peaks_of_ends(many, i))
 
 
 def cqc_of_peaks(many: Runs, i: int) -> Floats:
@@ -274,9 +253,7 @@ def _correlations(many: Runs, i: int) -> Floats:
     still = {
         place: v for place, v in numbers.items() if place.kind in ("body", "spring", "dashpot")
     }
-    first, which = distinct(list(still.values()), many.t.size)
-    own = [with_values(many.scene, {p: float(v[k]) for p, v in still.items()}) for k in first]
-    return np.array([correlation(scene, i) for scene in own])[which]
+    return told_of_variants(many.scene, still, many.t.size, lambda own: correlation(own, i))
 
 
 def of_scales(key: str) -> Value:
@@ -316,20 +293,18 @@ def stands_apart(scene: Scene, i: int) -> bool:
     return held and len(groups) > 1
 
 
+def _of_each(tell: Callable[[Recording, int], float]) -> Value:
+    """What each recording tells of owner i."""
+    return lambda many, i: np.array([tell(run, i) for run in many.recordings], dtype=np.float64)
+
+
 def of_ledger(term: str) -> Value:
     """A term of the energy ledger (J), NaN where none is kept."""
-
-    def values(many: Runs, _: int) -> Floats:
-        ledgers = [recording.energy for recording in many.recordings]
-        return np.array([getattr(energy, term, np.nan) for energy in ledgers], dtype=np.float64)
-
-    return values
+    return _of_each(lambda run, _: getattr(run.energy, term, np.nan))
 
 
-def work_of_support(many: Runs, i: int) -> Floats:
-    """What support i put in (J), NaN where no ledger is kept."""
-    ledgers = [recording.energy for recording in many.recordings]
-    return np.array([np.nan if x is None else x.supports[i] for x in ledgers], dtype=np.float64)
+work_of_support = _of_each(lambda run, i: run.energy.supports[i] if run.energy else np.nan)
+"""What support i put in (J), NaN where no ledger is kept."""
 
 
 def has_law(scene: Scene, i: int) -> bool:
@@ -339,12 +314,7 @@ def has_law(scene: Scene, i: int) -> bool:
 
 def of_laws(name: str) -> Value:
     """A number of what contacts with laws did, NaN where the solver does not tell."""
-
-    def values(many: Runs, i: int) -> Floats:
-        found = [np.nan if r.laws is None else getattr(r.laws, name)[i] for r in many.recordings]
-        return np.array(found, dtype=np.float64)
-
-    return values
+    return _of_each(lambda run, i: np.nan if run.laws is None else getattr(run.laws, name)[i])
 
 
 def estimated_force(many: Runs, i: int) -> Floats:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -141,7 +142,7 @@ def _spring(spring: Spring, mass: float | None) -> Row:
     if spring.height is not None:
         row["height"] = spring.height
     if isinstance(law, BilinearElastic | Series):
-        return row | _parts(law)
+        return row | asdict(reduced(law))
     if isinstance(law, Hysteretic) and law.has_branches:
         return row | law.numbers
     assert k_0 is not None
@@ -157,16 +158,6 @@ def _spring(spring: Spring, mass: float | None) -> Row:
             row["F_y/W"] = row["F_y"] / (mass * STANDARD_GRAVITY)
             row["T_post_yield"] = _finite(period_of(mass, law.stiffness))
     return row
-
-
-def _parts(law: BilinearElastic | Series) -> Row:
-    """Numbers of a law with a kink, of one in series those of the whole."""
-    whole = reduced(law)
-    return {
-        "compression": whole.compression,
-        "extension": whole.extension,
-        "offset": whole.offset,
-    }
 
 
 def _dashpots(scene: Scene, carried: Mapping[str, float | None]) -> list[Row]:

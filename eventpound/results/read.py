@@ -23,12 +23,12 @@ import numpy as np
 from eventpound.case.case import Case
 from eventpound.case.loading import SUMMARY as SUMMARY
 from eventpound.errors import InputError
+from eventpound.input_files import read_columns, to_numbers
 from eventpound.numerics.arrays import Floats
 from eventpound.response import EVENT_COLUMNS, Response
 from eventpound.results.jsontext import read_json
 from eventpound.results.manifest import FORMAT, describe_run, sha256
 from eventpound.results.summary import summarise
-from eventpound.results.tables import read_columns, to_numbers
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -55,11 +55,8 @@ def summarise(
     for name, value in response.named.items():
         _put_named(summary, response.scene, name, value)
     scales = response.scene.motion.scales()
-    summary["scales"] = {
-        "a_g": None if scales is None else scales.a_g,
-        "omega_g": None if scales is None else scales.omega_g,
-        "L_e": None if scales is None else scales.length,
-    }
+    known = (None,) * 3 if scales is None else (scales.a_g, scales.omega_g, scales.length)
+    summary["scales"] = dict(zip(("a_g", "omega_g", "L_e"), known, strict=True))
     estimate = response.error_estimate if error_estimate is None else error_estimate
     return summary | {
         "pi": _pi(response.scene, runs),

@@ -7,9 +7,6 @@ import io
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from eventpound.input_files import read_columns as read_columns
-from eventpound.input_files import to_numbers as to_numbers
-
 if TYPE_CHECKING:
     import pandas as pd
 

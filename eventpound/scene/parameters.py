@@ -10,9 +10,11 @@ excitation.<number of the motion>: amplitude, period, start, scale, ...
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, is_dataclass, replace
 from typing import Any, get_args
+
+import numpy as np
 
 from eventpound.given import numbers_of
 from eventpound.motion.base import GroundMotion
@@ -20,6 +22,8 @@ from eventpound.motion.mavroeidis_papageorgiou import MavroeidisPapageorgiou
 from eventpound.motion.pulses import TypeC
 from eventpound.motion.record import Record
 from eventpound.motion.ricker import Ricker
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.distinct import distinct
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import ContactLaw
@@ -162,6 +166,15 @@ def with_values(scene: Scene, values: Mapping[Place, float]) -> Scene:
         motion=motion_with(scene.motion, values),
         **{collection: tuple(owners) for collection, owners in changes.items()},
     )
+
+
+def told_of_variants(
+    scene: Scene, values: Mapping[Place, Floats], count: int, tell: Callable[[Scene], float]
+) -> Floats:
+    """What is told of each variant of a scene, once of those with the same numbers, (count,)."""
+    first, which = distinct(list(values.values()), count)
+    at = ({place: float(column[i]) for place, column in values.items()} for i in first.tolist())
+    return np.array([tell(with_values(scene, each)) for each in at])[which]
 
 
 def motion_with(motion: GroundMotion, values: Mapping[Place, float]) -> GroundMotion:

@@ -79,16 +79,6 @@ def _structures_at(scene: Scene, contact: Contact, sign: float) -> set[int]:
     return {k for k, group in enumerate(structures_of(scene)) if names.intersection(group)}
 
 
-def absolute_sum(left: Floats, right: Floats) -> Floats:
-    """Sum of two peaks (m)."""
-    return left + right
-
-
-def srss(left: Floats, right: Floats) -> Floats:
-    """Root of the sum of squares of two peaks (m)."""
-    return np.asarray(np.hypot(left, right))
-
-
 def cqc(left: Floats, right: Floats, rho: Floats) -> Floats:
     """Combination of two peaks (m) whose motions go together by rho."""
     return np.sqrt(left**2 + right**2 - 2.0 * rho * left * right)

@@ -15,12 +15,13 @@ import numpy as np
 
 from eventpound.case.suite import Member
 from eventpound.errors import InputError
+from eventpound.input_files import read_columns, to_numbers
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.lookup import is_whole
 from eventpound.response import Response
 from eventpound.results.jsontext import read_json
 from eventpound.results.read import read_manifest as read_stated
-from eventpound.results.tables import read_columns, rows_csv, to_numbers
+from eventpound.results.tables import rows_csv
 from eventpound.study.plan import RECORD, Chunk, Plan
 from eventpound.study.records import FAILED, about, peak_errors, reason
 from eventpound.study.runs import Refused, Results, parts_of

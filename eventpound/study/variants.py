@@ -8,7 +8,7 @@ another, what no term on an axis describes keeps its number.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,9 +20,8 @@ from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.distinct import distinct
 from eventpound.scene.check import check_scene
-from eventpound.scene.parameters import Place, places_of, with_values
+from eventpound.scene.parameters import places_of, told_of_variants, with_values
 from eventpound.scene.periods import period_called
 from eventpound.scene.pi_columns import ScaleColumns, numbers_with_terms, scale_columns
 from eventpound.scene.pi_terms import of_all
@@ -153,16 +152,9 @@ def _own_periods(scene: Scene, numbers: Mapping[str, Floats], count: int) -> dic
     if not (isinstance(motion, Record) and moving) or PSA_PERIOD in numbers:
         return {}
     word = motion.psa_at
-    return {PSA_PERIOD: _told(scene, moving, count, lambda own: period_called(own, word))}
-
-
-def _told(
-    scene: Scene, values: Mapping[Place, Floats], count: int, tell: Callable[[Scene], float]
-) -> Floats:
-    """What is told of each variant of a scene, once of those with the same numbers, (count,)."""
-    first, which = distinct(list(values.values()), count)
-    at = ({place: float(column[i]) for place, column in values.items()} for i in first.tolist())
-    return np.array([tell(with_values(scene, each)) for each in at])[which]
+    return {
+        PSA_PERIOD: told_of_variants(scene, moving, count, lambda own: period_called(own, word))
+    }
 
 
 def complete(rows: Rows) -> Rows:
@@ -213,7 +205,7 @@ def _lengths(rows: Rows, scales: ScaleColumns | None) -> Floats:
     deciding = {places[key]: v for key, v in rows.numbers.items() if places[key].kind in kinds}
     if not deciding:
         return np.full(count, own)
-    return _told(scene, deciding, count, lambda own: default_duration(own, start))
+    return told_of_variants(scene, deciding, count, lambda own: default_duration(own, start))
 
 
 def kinds_that_set_lengths(scene: Scene) -> tuple[str, ...]:
