@@ -176,8 +176,8 @@ def numbers_of(made: type) -> dict[str, Dimension]:
 
 
 @cache
-def accepted_numbers(made: Any) -> tuple[tuple[str, Accepted], ...]:
-    """Fields of a class of `converting` that say which numbers they may be, with that."""
+def accepted_numbers(made: Any) -> tuple[tuple[str, Any], ...]:
+    """Fields of a class of `converting` that say which numbers they may be, with what they say."""
     hints = get_type_hints(made, include_extras=True)
     said = ((name, getattr(hint, "__metadata__", ())) for name, hint in hints.items())
     return tuple((name, each) for name, all_of in said for each in all_of[1:])

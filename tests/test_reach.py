@@ -14,7 +14,6 @@ OTHERS = {
     "accuracy/bound.py",
     "accuracy/conditioning.py",
     "accuracy/work_precision.py",
-    "case/excitation.py",
     "cli/finished.py",
     "mechanics/series.py",
     "motion/mavroeidis_papageorgiou.py",

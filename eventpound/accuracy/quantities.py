@@ -15,7 +15,8 @@ impulse what stops the lighter body from that speed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -68,22 +69,7 @@ def values_of(
     moments : sequence of float
         Times (s) at which displacements are wanted.
     """
-    x, history = recording.displacement, recording.history
-    found: dict[str, float] = {}
-    for i, body in enumerate(scene.bodies):
-        found[f"{PEAKS}.{body.name}.max"] = float(x.maximum[i])
-        found[f"{PEAKS}.{body.name}.t_max"] = float(x.time_of_maximum[i])
-        found[f"{PEAKS}.{body.name}.min"] = float(x.minimum[i])
-        found[f"{PEAKS}.{body.name}.t_min"] = float(x.time_of_minimum[i])
-    for i, body in enumerate(scene.bodies):
-        found[f"{FINAL}.{body.name}.u"] = float(recording.u[i])
-        found[f"{FINAL}.{body.name}.v"] = float(recording.v[i])
-    for i, (spring, name) in enumerate(scene.memory):
-        found[f"{FINAL}.{spring}.{name}"] = float(recording.z[i])
-    for i, body in enumerate(scene.bodies if len(moments) else ()):
-        at = np.interp(moments, history.t, history.u[:, i])
-        found |= {f"history.{k}.{body.name}": float(u) for k, u in enumerate(at)}
-    return found
+    return {name: float(value) for name, value, _, _ in _stated(scene, recording, moments)}
 
 
 def quantities_of(
@@ -107,22 +93,33 @@ def quantities_of(
     """
     scene, duration = task.scene, task.end - task.start
     scales = motion_scales(task, recording)
-    found: list[tuple[str, str, float]] = []
+    of_time = np.full(len(scene.bodies), duration)
+    by_unit: Any = {"m": scales.u, "s": of_time, "m/s": scales.v, "": scales.z}
+    found = [
+        ScaledValue(name, float(value), float(by_unit[unit][i]), unit)
+        for name, value, unit, i in _stated(scene, recording, moments)
+    ]
+    return [*found, *(_of_events(scene, recording, duration) if events else ())]
+
+
+def _stated(
+    scene: Scene, recording: Recording, moments: Sequence[float]
+) -> Iterator[tuple[str, float, str, int]]:
+    """Name, value and unit of each quantity that is no event's, and the place of what it is of."""
+    x, history = recording.displacement, recording.history
     for i, body in enumerate(scene.bodies):
-        for key in ("max", "min"):
-            found.append((f"{PEAKS}.{body.name}.{key}", "m", scales.u[i]))
-            found.append((f"{PEAKS}.{body.name}.t_{key}", "s", duration))
+        yield f"{PEAKS}.{body.name}.max", x.maximum[i], "m", i
+        yield f"{PEAKS}.{body.name}.t_max", x.time_of_maximum[i], "s", i
+        yield f"{PEAKS}.{body.name}.min", x.minimum[i], "m", i
+        yield f"{PEAKS}.{body.name}.t_min", x.time_of_minimum[i], "s", i
     for i, body in enumerate(scene.bodies):
-        found.append((f"{FINAL}.{body.name}.u", "m", scales.u[i]))
-        found.append((f"{FINAL}.{body.name}.v", "m/s", scales.v[i]))
+        yield f"{FINAL}.{body.name}.u", recording.u[i], "m", i
+        yield f"{FINAL}.{body.name}.v", recording.v[i], "m/s", i
     for i, (spring, name) in enumerate(scene.memory):
-        found.append((f"{FINAL}.{spring}.{name}", "", scales.z[i]))
-    for k in range(len(moments)):
+        yield f"{FINAL}.{spring}.{name}", recording.z[i], "", i
+    for k, moment in enumerate(moments):
         for i, body in enumerate(scene.bodies):
-            found.append((f"history.{k}.{body.name}", "m", scales.u[i]))
-    values = values_of(scene, recording, moments)
-    stated = [ScaledValue(name, values[name], float(scale), unit) for name, unit, scale in found]
-    return [*stated, *(_of_events(scene, recording, duration) if events else ())]
+            yield f"history.{k}.{body.name}", np.interp(moment, history.t, history.u[:, i]), "m", i
 
 
 def row_of(quantity: ScaledValue) -> int:

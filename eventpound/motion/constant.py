@@ -78,11 +78,7 @@ class PhasedSine(Harmonic):
         At the start (rad).
     """
 
-    phase: Annotated[Number, Dimension.ANGLE] = default(0.0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_finite(self.kind, "phase", self.phase)
+    phase: Annotated[Number, Dimension.ANGLE, require_finite] = default(0.0)
 
     def sinusoids(self) -> tuple[Sinusoid, ...]:
         """The sine as a cosine: sin x = cos(x - pi/2)."""

@@ -11,7 +11,7 @@ import math
 from typing import Annotated, ClassVar
 
 from eventpound.given import OptionalNumber, converting_base, default
-from eventpound.motion.parametric import Sinusoid, SinusoidMotion, require_positive
+from eventpound.motion.parametric import SinusoidMotion, require_positive
 from eventpound.units import Dimension
 
 
@@ -32,12 +32,7 @@ class Harmonic(SinusoidMotion):
         Also for `cycles` that is not a positive number.
     """
 
-    cycles: Annotated[OptionalNumber, Dimension.NUMBER] = default(None)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.cycles is not None:
-            require_positive(self.kind, "cycles", self.cycles)
+    cycles: Annotated[OptionalNumber, Dimension.NUMBER, require_positive] = default(None)
 
     kind: ClassVar[str] = "harmonic"
     """The word a case names it by."""
@@ -46,7 +41,3 @@ class Harmonic(SinusoidMotion):
     def duration(self) -> float:
         """The cycles times T_p (s), or inf."""
         return math.inf if self.cycles is None else self.cycles * self.period
-
-    def sinusoids(self) -> tuple[Sinusoid, ...]:
-        """The sine as a cosine: sin x = cos(x - pi/2)."""
-        return (Sinusoid(self.signed_amplitude, self.omega, -0.5 * math.pi),)

@@ -16,12 +16,12 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.given import Number, converting_base, default, read_fields
+from eventpound.given import Number, accepted_numbers, converting_base, default, read_fields
 from eventpound.motion.base import LARGEST, SMALLEST, Family, Piece, Scales
 from eventpound.numerics.arrays import Floats
 from eventpound.units import Dimension
@@ -29,6 +29,46 @@ from eventpound.units import Dimension
 # No double lies closer than this to the zero of a cosine other than 0 itself,
 # so a smaller value stands for an exact zero (a sine pulse starts at 0).
 ZERO_OF_PHASE = 1.0e-15
+
+
+def require_positive(kind: str, key: str, value: float) -> None:
+    """Refuse a value that is not a positive number of a size that can be computed with.
+
+    Raises
+    ------
+    InputError
+        Naming the motion, the key and the value.
+    """
+    if not (math.isfinite(value) and value > 0.0):
+        raise InputError(f"excitation '{kind}': {key} = {value!r}; a positive number is needed")
+    if not SMALLEST <= value <= LARGEST:
+        raise InputError(
+            f"excitation '{kind}': {key} = {value!r}; "
+            f"a number from {SMALLEST:g} to {LARGEST:g} is needed"
+        )
+
+
+def require_finite(kind: str, key: str, value: float) -> None:
+    """Refuse a value that is not a number of a size that can be computed with.
+
+    Raises
+    ------
+    InputError
+        Naming the motion, the key and the value.
+    """
+    if not math.isfinite(value):
+        raise InputError(f"excitation '{kind}': {key} = {value!r}; a finite number is needed")
+    if abs(value) > LARGEST:
+        raise InputError(
+            f"excitation '{kind}': {key} = {value!r}; a number within {LARGEST:g} is needed"
+        )
+
+
+def require_accepted(motion: Any) -> None:
+    """Refuse numbers of a motion that its fields, declared with either of these, do not accept."""
+    for key, require in accepted_numbers(motion.__class__):
+        if (value := getattr(motion, key)) is not None:
+            require(motion.kind, key, value)
 
 
 @converting_base()
@@ -52,16 +92,14 @@ class Parametric:
         For a number that is not finite, or an amplitude or period not positive.
     """
 
-    amplitude: Annotated[Number, Dimension.ACCELERATION]
-    period: Annotated[Number, Dimension.TIME]
+    amplitude: Annotated[Number, Dimension.ACCELERATION, require_positive]
+    period: Annotated[Number, Dimension.TIME, require_positive]
     reverse: bool = False
-    start: Annotated[Number, Dimension.TIME] = default(0.0)
+    start: Annotated[Number, Dimension.TIME, require_finite] = default(0.0)
 
     def __post_init__(self) -> None:
         read_fields(self)
-        require_positive(self.kind, "amplitude", self.amplitude)
-        require_positive(self.kind, "period", self.period)
-        require_finite(self.kind, "start", self.start)
+        require_accepted(self)
 
     kind: ClassVar[str]
     """The word a case names it by."""
@@ -105,9 +143,9 @@ class SinusoidMotion(Parametric, ABC):
     def duration(self) -> float:
         """D (s); inf for a motion without end."""
 
-    @abstractmethod
     def sinusoids(self) -> tuple[Sinusoid, ...]:
-        """The terms, in s = t - start, with the sign of `reverse`."""
+        """The terms, in s = t - start, with the sign of `reverse`; a sine is cos(x - pi/2)."""
+        return (Sinusoid(self.signed_amplitude, self.omega, -0.5 * math.pi),)
 
     @property
     def end(self) -> float:
@@ -157,39 +195,6 @@ class SinusoidMotion(Parametric, ABC):
             return d
         past = np.maximum(t - self.end, 0.0)
         return d + self.velocity(np.asarray(self.end)) * past
-
-
-def require_positive(kind: str, key: str, value: float) -> None:
-    """Refuse a value that is not a positive number of a size that can be computed with.
-
-    Raises
-    ------
-    InputError
-        Naming the motion, the key and the value.
-    """
-    if not (math.isfinite(value) and value > 0.0):
-        raise InputError(f"excitation '{kind}': {key} = {value!r}; a positive number is needed")
-    if not SMALLEST <= value <= LARGEST:
-        raise InputError(
-            f"excitation '{kind}': {key} = {value!r}; "
-            f"a number from {SMALLEST:g} to {LARGEST:g} is needed"
-        )
-
-
-def require_finite(kind: str, key: str, value: float) -> None:
-    """Refuse a value that is not a number of a size that can be computed with.
-
-    Raises
-    ------
-    InputError
-        Naming the motion, the key and the value.
-    """
-    if not math.isfinite(value):
-        raise InputError(f"excitation '{kind}': {key} = {value!r}; a finite number is needed")
-    if abs(value) > LARGEST:
-        raise InputError(
-            f"excitation '{kind}': {key} = {value!r}; a number within {LARGEST:g} is needed"
-        )
 
 
 def _cosine_sine(term: Sinusoid, s: Floats) -> tuple[Floats, Floats]:

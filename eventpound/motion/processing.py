@@ -67,8 +67,8 @@ class Processing:
             raise InputError(
                 f"order = {self.order!r}; accepted: a whole number from 1 to {HIGHEST_ORDER}"
             )
-        for name, corner in (("highpass", self.highpass), ("lowpass", self.lowpass)):
-            if corner is not None and not 0.0 < corner < np.inf:
+        for name, corner in self._corners.items():
+            if not 0.0 < corner < np.inf:
                 raise InputError(f"{name} = {corner!r}; accepted: a positive frequency (Hz)")
         if (self.highpass or 0.0) >= (self.lowpass or np.inf):
             raise InputError(
@@ -79,15 +79,18 @@ class Processing:
     @property
     def does_something(self) -> bool:
         """Whether anything is asked for."""
-        return any(x is not None for x in (self.baseline, self.highpass, self.lowpass))
+        return bool(self.described())
+
+    @property
+    def _corners(self) -> dict[str, float]:
+        """Those of the filter that are asked for, by name (Hz)."""
+        named = {"highpass": self.highpass, "lowpass": self.lowpass}
+        return {name: corner for name, corner in named.items() if corner is not None}
 
     def described(self) -> dict[str, float]:
         """What is asked for, by name, as a case has it."""
-        named = {"baseline": self.baseline, "highpass": self.highpass, "lowpass": self.lowpass}
-        given: dict[str, float] = {key: x for key, x in named.items() if x is not None}
-        if self.highpass is not None or self.lowpass is not None:
-            given["order"] = self.order
-        return given
+        baseline = {} if self.baseline is None else {"baseline": self.baseline}
+        return baseline | self._corners | ({"order": self.order} if self._corners else {})
 
     def apply(self, data: RecordData) -> RecordData:
         """A record with its samples processed, and a note that says how.
@@ -113,7 +116,7 @@ class Processing:
         acceleration = data.acceleration
         if self.baseline is not None:
             acceleration = _without_polynomial(acceleration, self.baseline)
-        if self.highpass is not None or self.lowpass is not None:
+        if self._corners:
             acceleration = self._filtered(acceleration, data)
         if np.max(np.abs(acceleration)) <= _NOTHING * np.max(np.abs(data.acceleration)):
             raise InputError(f"{data.file}: nothing is left of the record after processing")
@@ -125,7 +128,7 @@ class Processing:
         from scipy.signal import butter, sosfiltfilt
 
         nyquist = 0.5 / data.time_step
-        corners = [corner for corner in (self.highpass, self.lowpass) if corner is not None]
+        corners = list(self._corners.values())
         if max(corners) >= nyquist:
             raise InputError(
                 f"{data.file}: a corner of {max(corners):g} Hz; with a time step of "

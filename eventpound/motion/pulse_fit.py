@@ -25,12 +25,11 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Literal
+from typing import Literal, TypeAlias
 
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.motion.base import GroundMotion
 from eventpound.motion.mavroeidis_papageorgiou import MavroeidisPapageorgiou
 from eventpound.motion.parametric import SinusoidMotion
 from eventpound.motion.pulses import Cosine, Sine, TypeC
@@ -39,8 +38,9 @@ from eventpound.motion.ricker import AntisymmetricRicker, Ricker
 from eventpound.numerics.arrays import Floats
 
 On = Literal["velocity", "acceleration"]
+Pulse: TypeAlias = Ricker | AntisymmetricRicker | SinusoidMotion
 
-PULSES: Mapping[str, Callable[..., GroundMotion]] = {
+PULSES: Mapping[str, Callable[..., Pulse]] = {
     "sine": Sine,
     "cosine": Cosine,
     "type-c": TypeC,
@@ -69,7 +69,7 @@ class PulseFit:
     ----------
     kind : str
         As in a case.
-    motion : GroundMotion
+    motion : Pulse
         The pulse, with a_p, T_p and start of the record's own time.
     on : str
         What was fitted, ``"velocity"`` or ``"acceleration"``.
@@ -78,30 +78,24 @@ class PulseFit:
     """
 
     kind: str
-    motion: GroundMotion
+    motion: Pulse
     on: On
     explained: float
 
     @property
     def a_p(self) -> float:
         """Amplitude (m/s^2)."""
-        scales = self.motion.scales()
-        assert scales is not None
-        return scales.a_g
+        return self.motion.scales().a_g
 
     @property
     def length(self) -> float:
         """Length scale L_e = a_p / omega_p^2 (m)."""
-        scales = self.motion.scales()
-        assert scales is not None
-        return scales.length
+        return self.motion.scales().length
 
     @property
     def T_p(self) -> float:  # noqa: N802 - the paper's symbol
         """Period (s)."""
-        scales = self.motion.scales()
-        assert scales is not None
-        return scales.period
+        return self.motion.scales().period
 
 
 def fit_pulse(
@@ -151,11 +145,11 @@ class _Target:
         # The acceleration at the last sample is zero: what comes after the record.
         return cls(record, on, t, record.values if on == "acceleration" else record.velocity(t))
 
-    def shape(self, motion: GroundMotion, t: Floats) -> Floats:
+    def shape(self, motion: Pulse, t: Floats) -> Floats:
         """Values of a pulse, shape of `t`."""
         return motion.acceleration(t) if self.on == "acceleration" else motion.velocity(t)
 
-    def sampled(self, motion: GroundMotion) -> tuple[slice, Floats]:
+    def sampled(self, motion: Pulse) -> tuple[slice, Floats]:
         """Which samples a pulse reaches, and its values there."""
         low = int(np.searchsorted(self.t, _begin(motion)))
         high = int(np.searchsorted(self.t, motion.end, side="right"))
@@ -184,7 +178,7 @@ def _fit(target: _Target, kind: str) -> PulseFit:
     return max(fits, key=lambda fit: fit.explained)
 
 
-def _pulse(kind: str, amplitude: float, period: float, start: float, *shape: float) -> GroundMotion:
+def _pulse(kind: str, amplitude: float, period: float, start: float, *shape: float) -> Pulse:
     """A pulse of either sign; `shape` is gamma and phase where it has them."""
     numbers = dict(zip(("gamma", "phase"), shape, strict=False))
     return PULSES[kind](
@@ -192,11 +186,10 @@ def _pulse(kind: str, amplitude: float, period: float, start: float, *shape: flo
     )
 
 
-def _begin(motion: GroundMotion) -> float:
+def _begin(motion: Pulse) -> float:
     """Time before which a pulse is zero, to rounding for a wavelet (s)."""
     if isinstance(motion, Ricker | AntisymmetricRicker):
         return 2.0 * motion.middle - motion.end
-    assert isinstance(motion, SinusoidMotion)
     return motion.start
 
 
@@ -225,7 +218,7 @@ def _grid(target: _Target, kind: str) -> Iterator[_Candidate]:
         yield _Candidate(float(period), float(target.t[best]), shape, explained)
 
 
-def _refined(target: _Target, kind: str, candidate: _Candidate) -> GroundMotion:
+def _refined(target: _Target, kind: str, candidate: _Candidate) -> Pulse:
     """The pulse at the minimum near a candidate; a_p follows from the rest."""
     from scipy.optimize import least_squares, minimize
 
@@ -265,7 +258,7 @@ def _refined(target: _Target, kind: str, candidate: _Candidate) -> GroundMotion:
     return _pulse(kind, amplitude or 1e-300, math.exp(found.x[0]), *map(float, found.x[1:]))
 
 
-def _explained(target: _Target, motion: GroundMotion) -> float:
+def _explained(target: _Target, motion: Pulse) -> float:
     """Share of the sum of squares that a pulse explains."""
     inside, w = target.sampled(motion)
     rest = target.y.copy()

@@ -42,10 +42,6 @@ class Sine(SinusoidMotion):
         """T_p (s)."""
         return self.period
 
-    def sinusoids(self) -> tuple[Sinusoid, ...]:
-        """The sine as a cosine: sin x = cos(x - pi/2)."""
-        return (Sinusoid(self.signed_amplitude, self.omega, -0.5 * math.pi),)
-
 
 @converting_base()
 class Cosine(SinusoidMotion):

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 from eventpound.errors import InputError
 from eventpound.given import Given, Number, OptionalNumber, converting_base, default, read_fields
 from eventpound.motion.base import Family, Piece, Scales
-from eventpound.motion.parametric import require_finite, require_positive
+from eventpound.motion.parametric import require_accepted, require_finite, require_positive
 from eventpound.motion.readers.base import RecordData
 from eventpound.motion.scales import mean_period
 from eventpound.numerics.arrays import Floats
@@ -72,14 +72,14 @@ class Record:
     """
 
     samples: Given[Floats, ArrayLike]
-    time_step: Annotated[Number, Dimension.TIME]
-    scale: Annotated[Number, Dimension.NUMBER] = default(1.0)
-    pga: Annotated[OptionalNumber, Dimension.ACCELERATION] = default(None)
+    time_step: Annotated[Number, Dimension.TIME, require_positive]
+    scale: Annotated[Number, Dimension.NUMBER, require_positive] = default(1.0)
+    pga: Annotated[OptionalNumber, Dimension.ACCELERATION, require_positive] = default(None)
     reverse: bool = False
-    start: Annotated[Number, Dimension.TIME] = default(0.0)
+    start: Annotated[Number, Dimension.TIME, require_finite] = default(0.0)
     source: RecordData | None = None
-    psa: Annotated[OptionalNumber, Dimension.ACCELERATION] = default(None)
-    psa_period: Annotated[OptionalNumber, Dimension.TIME] = default(None)
+    psa: Annotated[OptionalNumber, Dimension.ACCELERATION, require_positive] = default(None)
+    psa_period: Annotated[OptionalNumber, Dimension.TIME, require_positive] = default(None)
     psa_damping: Annotated[OptionalNumber, Dimension.NUMBER] = default(None)
     psa_at: str = ""
 
@@ -104,12 +104,7 @@ class Record:
             )
         if not np.any(samples):
             raise InputError("excitation 'record': every sample is zero; use kind = \"none\"")
-        require_positive(self.kind, "time_step", self.time_step)
-        require_positive(self.kind, "scale", self.scale)
-        require_finite(self.kind, "start", self.start)
-        for name in ("pga", "psa", "psa_period"):
-            if (value := getattr(self, name)) is not None:
-                require_positive(self.kind, name, value)
+        require_accepted(self)
         sizes = {"pga": self.pga, "psa": self.psa}
         given = [f"{name} = {value!r}" for name, value in sizes.items() if value is not None]
         if self.scale != 1.0:

@@ -51,17 +51,12 @@ class _Wavelet(Parametric, ABC):
         Time of the middle of the wavelet (s); None: `LEAD` periods after `start`.
     """
 
-    center: Annotated[OptionalNumber, Dimension.TIME] = default(None)
+    center: Annotated[OptionalNumber, Dimension.TIME, require_finite] = default(None)
 
     LEAD: ClassVar[float]
     """Periods from `start` to the default center."""
     TAIL: ClassVar[float]
     """Periods after the center beyond which |a| < 1e-15 a_p."""
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.center is not None:
-            require_finite(self.kind, "center", self.center)
 
     @property
     def middle(self) -> float:
