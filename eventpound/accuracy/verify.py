@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -125,32 +126,28 @@ def verify(
             runs.append(run_route(route, task, patience))
         finished = [run for run in runs if isinstance(run, RouteRun)]
         if not finished:
-            return _nothing(title, _reported(task, runs))
+            nothing: Any = {}, False, "", (), (), (), (), None, None, ("no route finished",)
+            return Certificate(title, _reported(task, runs), *nothing)
         found = compare_routes(task, finished, times)
         say("the inputs changed in their last digits")
         conditions = _conditioning(task, found, times, patience)
     except KeyboardInterrupt:
-        missing = [RouteFailure(route, INTERRUPTED) for route in routes[len(runs) :]]
-        kept = _interrupted(title, task, [*runs, *missing])
-        if kept is None:
+        finished = [run for run in runs if isinstance(run, RouteRun)]
+        if not finished:
             raise
+        missing = [RouteFailure(route, INTERRUPTED) for route in routes[len(runs) :]]
+        reports, done = _reported(task, [*runs, *missing]), compare_routes(task, finished)
+        kept = _refused(_certificate(title, task, reports, done, None))
         raise CertificateInterrupted(kept) from None
     return _certificate(title, task, _reported(task, runs), found, conditions)
 
 
-def _interrupted(
-    title: str, task: Task, runs: Sequence[RouteRun | RouteFailure]
-) -> Certificate | None:
-    """The refused certificate of what was done, None where nothing was."""
-    finished = [run for run in runs if isinstance(run, RouteRun)]
-    if not finished:
-        return None
-    found = compare_routes(task, finished)
-    kept = _certificate(title, task, _reported(task, runs), found, None)
+def _refused(certificate: Certificate) -> Certificate:
+    """Of what was done before Ctrl-C."""
     # Without the changed inputs no bound is known to hold.
-    refused = tuple(replace(q, bound=None, certified=False) for q in kept.quantities)
-    warnings = ("interrupted: nothing is certified", *kept.warnings)
-    return replace(kept, certified=False, quantities=refused, warnings=warnings)
+    refused = tuple(replace(q, bound=None, certified=False) for q in certificate.quantities)
+    warnings = ("interrupted: nothing is certified", *certificate.warnings)
+    return replace(certificate, certified=False, quantities=refused, warnings=warnings)
 
 
 def _reported(task: Task, runs: Sequence[RouteRun | RouteFailure]) -> tuple[RouteReport, ...]:
@@ -195,12 +192,6 @@ def _conditioning(
         return conditioning(task.scene, measure)
     except ComputationError:
         return None
-
-
-def _nothing(title: str, reports: tuple[RouteReport, ...]) -> Certificate:
-    return Certificate(
-        title, reports, {}, False, "", (), (), (), (), None, None, ("no route finished",)
-    )
 
 
 def _certificate(

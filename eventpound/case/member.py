@@ -13,6 +13,12 @@ from eventpound.case.understood import sources_of, understood_case
 from eventpound.motion import RecordData
 
 
+def member_of(case: Case, name: str) -> Member:
+    """A record of the suite of a case, by its name."""
+    assert case.suite is not None
+    return next(m for m in case.suite.members(case.directory) if m.name == name)
+
+
 def member_case(case: Case, member: Member, data: RecordData) -> Case:
     """What a suite's case says for one of its records.
 

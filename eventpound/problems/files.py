@@ -183,27 +183,12 @@ def _law(spring: Spring) -> dict[str, float]:
     if isinstance(law, Hysteretic) and law.beyond_bouc_wen:
         raise InputError(f"spring {spring.name}: its law is {law.word.value}; accepted: any other")
     if isinstance(law, BoucWen):
-        line = {"compression": law.stiffness, "extension": law.stiffness, "offset": 0.0}
-        return line | {
-            "strength": law.strength,
-            "yield_displacement": law.yield_displacement,
-            "n": law.exponent,
-            "beta": law.beta,
-            "gamma": law.gamma,
-            "z0": law.initial_z,
-        }
-    curve = reduced(law)
-    return {
-        "compression": curve.compression,
-        "extension": curve.extension,
-        "offset": curve.offset,
-        "strength": 0.0,
-        "yield_displacement": 1.0,
-        "n": 1.0,
-        "beta": 0.5,
-        "gamma": 0.5,
-        "z0": 0.0,
-    }
+        memory = law.strength, law.yield_displacement, law.exponent, law.beta, law.gamma
+        numbers = law.stiffness, law.stiffness, 0.0, *memory, law.initial_z
+    else:
+        curve = reduced(law)
+        numbers = curve.compression, curve.extension, curve.offset, 0.0, 1.0, 1.0, 0.5, 0.5, 0.0
+    return dict(zip(LAW, numbers, strict=True))
 
 
 def _pieces(motion: GroundMotion, start: float, end: float) -> list[dict[str, object]]:

@@ -12,7 +12,7 @@ from typing import Any
 import pandas as pd
 
 from eventpound.case.case import Case
-from eventpound.case.member import member_case
+from eventpound.case.member import member_case, member_of
 from eventpound.motion.record import Record
 from eventpound.quantities.lookup import Named
 from eventpound.report.design_figures import demand_figure, governing_figure
@@ -139,8 +139,7 @@ def governing_record(scene: Scene, design: pd.DataFrame) -> str:
 
 def motion_under(case: Case, record: str) -> Response:
     """The response to one record of a suite, with its history."""
-    assert case.suite is not None
-    member = next(m for m in case.suite.members(case.directory) if m.name == record)
+    member = member_of(case, record)
     return simulate(member_case(case, member, member.read()))
 
 

@@ -11,9 +11,8 @@ from matplotlib.figure import Figure
 from eventpound.case.case import Case
 from eventpound.case.figure import Figure as Wanted
 from eventpound.case.figure import FigureKind
-from eventpound.case.member import member_case
+from eventpound.case.member import member_case, member_of
 from eventpound.case.record_file import find_record
-from eventpound.case.suite import Member
 from eventpound.errors import InputError
 from eventpound.motion import read_record
 from eventpound.motion.pulse_fit import fit_pulse
@@ -74,7 +73,7 @@ def plot_suite(
             drawn = similarity_contours_figure(lengths, names, wanted, title, named)
         case FigureKind.BRIDGE_RESPONSE:
             name = done["record"].iloc[0]
-            member = _member_of(case, name)
+            member = member_of(case, name)
             one = member_case(case, member, member.read())
             run = simulate(one, solver or case.solver.name, rtol or case.solver.rtol)
             view = View(gather(run, one), one.scene)
@@ -127,7 +126,7 @@ def named_lengths(case: Case, wanted: Wanted) -> dict[str, float]:
 
 def _scales_figure(case: Case, wanted: Wanted, records: list[str], title: str) -> Figure:
     """The first record with its pulse, the last without."""
-    members = [_member_of(case, name) for name in (records[0], records[-1])]
+    members = [member_of(case, name) for name in (records[0], records[-1])]
     pulsed, plain = (member.options.motion(member.read()) for member in members)
     names = [PurePath(member.name).name for member in members]
     assert case.suite is not None
@@ -138,13 +137,6 @@ def _scales_figure(case: Case, wanted: Wanted, records: list[str], title: str) -
         names[0] += f" with a {pulse.kind} pulse added"
     best = fit_pulse(pulsed, wanted.pulses)[0]
     return record_scales_figure(pulsed, best, plain, names, title)
-
-
-def _member_of(case: Case, name: str) -> Member:
-    """A record of a suite, by its name."""
-    assert case.suite is not None
-    (member,) = (m for m in case.suite.members(case.directory) if m.name == name)
-    return member
 
 
 def kind_of_motions(done: pd.DataFrame) -> str:
