@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
-from eventpound.cli.progress import Counter, Forecast, Progress, StudyProgress, Watch
+from eventpound.cli.progress import Counter, Progress, StudyProgress, Watch
 from eventpound.cli.talk import complain, going_on, say
 
 if TYPE_CHECKING:
@@ -94,8 +94,7 @@ def _of_run(case: Case, out: Path) -> DesignRuns:
     from eventpound.study.design import made_of_run
 
     results.check_writable(out)
-    forecast = Forecast(case.run.start_time, case.run.start_time + case.run.duration)
-    with Progress(case, forecast) as progress, Watch(None, progress) as watch:
+    with Progress(case) as progress, Watch(None, progress) as watch:
         made = made_of_run(case, watch, lambda: progress.begins("again, without contacts"))
     assert made.response is not None
     results.write(made.response, out, case=case)

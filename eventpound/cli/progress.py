@@ -56,7 +56,8 @@ class _Line:
             if sys.stderr.isatty():
                 print(f"\r{text()}\033[K", end="", file=sys.stderr, flush=True)
 
-    def clear(self) -> None:
+    @staticmethod
+    def clear() -> None:
         """Take the line away."""
         if sys.stderr.isatty():
             print("\r\033[K", end="", file=sys.stderr, flush=True)
@@ -97,12 +98,12 @@ def _compilation_text(state: Compiling) -> str:
 
 
 class Progress(_Line):
-    """The share of a run that is done, and the time left."""
+    """The share of a run that is done, and the time left, as its `forecast` has it."""
 
-    def __init__(self, case: Case, forecast: Forecast) -> None:
+    def __init__(self, case: Case) -> None:
         super().__init__()
         self._start, self._duration = case.run.start_time, case.run.duration
-        self._forecast = forecast
+        self.forecast = Forecast(self._start, self._start + self._duration)
         self._pass = ""
 
     def begins(self, what: str) -> None:
@@ -112,7 +113,7 @@ class Progress(_Line):
 
     def __call__(self, t: float) -> None:
         """Show that the run has reached the time t (s)."""
-        self._show(lambda: self._line(t, self._forecast.left(t)))
+        self._show(lambda: self._line(t, self.forecast.left(t)))
 
     def _line(self, t: float, left: float | None) -> str:
         line = f"{self._pass}{(t - self._start) / self._duration:5.0%}  t = {t:.6g} s"
@@ -202,8 +203,7 @@ class Forecast:
             return
         self._warned = True
         done = (t - self._start) / (self._end - self._start)
-        if sys.stderr.isatty():
-            print("\r\033[K", end="", file=sys.stderr)
+        _Line.clear()
         complain(
             f"warning: {done:.2g} of the run is done; at this rate the rest takes "
             f"about {duration_text(left)}; --time-limit or --max-steps bounds it, a larger rtol "

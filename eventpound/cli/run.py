@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
-from eventpound.cli.progress import Forecast, Progress, Watch
+from eventpound.cli.progress import Progress, Watch
 from eventpound.cli.suite_run import run_suite
 from eventpound.cli.talk import complain, say
 from eventpound.errors import ComputationError, InputError
@@ -127,15 +127,12 @@ def _compute(case: Case, options: Options, out: Path) -> tuple[Response, dict[st
     from eventpound.simulation import simulate
 
     started = datetime.now(UTC)
-    forecast = Forecast(case.run.start_time, case.run.start_time + case.run.duration)
     bounded = options.time_limit is not None or options.max_steps is not None
-    shows = [] if bounded else [forecast.warn]
     response = estimate = None
     try:
-        with (
-            Progress(case, forecast) as progress,
-            Watch(options.time_limit, progress, *shows) as watch,
-        ):
+        progress = Progress(case)
+        shows = [progress] if bounded else [progress, progress.forecast.warn]
+        with progress, Watch(options.time_limit, *shows) as watch:
             say(f"solve by {case.solver.name}, rtol {case.solver.rtol:g}")
             response = simulate(case, progress=watch, max_steps=options.max_steps)
             say(f"solved: {response.message}, {response.work.steps} steps")

@@ -4,7 +4,7 @@ import sys
 
 import eventpound.cli.progress as module
 from eventpound.case import load_case, write_template
-from eventpound.cli.progress import Forecast, Progress, StudyProgress
+from eventpound.cli.progress import Progress, StudyProgress
 
 
 def test_rate_and_time_left_count_the_runs_of_this_call(monkeypatch, capsys):
@@ -26,7 +26,7 @@ def test_a_further_pass_is_called_what_it_is(monkeypatch, capsys, tmp_path):
     now = [0.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    progress = Progress(case, Forecast(0.0, length))
+    progress = Progress(case)
     progress(0.5 * length)
     assert "\r  50%  t = " in capsys.readouterr().err
     progress.begins("without contact, for the gaps")
