@@ -1268,12 +1268,9 @@ def _values(
         if crests.beyond[i] > LEVELS["engineering"] * size:
             coarse.append(body)
             continue
-        values[f"peaks.{body}.max"], values[f"peaks.{body}.min"] = (
-            float(crests.highest[i]),
-            float(crests.lowest[i]),
-        )
-        for key, when in zip(("t_max", "t_min"), crests.when, strict=True):
-            values[f"peaks.{body}.{key}"] = float(when[i])
+        extremes = crests.highest, crests.lowest, *crests.when
+        for key, of_bodies in zip(("max", "min", "t_max", "t_min"), extremes, strict=True):
+            values[f"peaks.{body}.{key}"] = float(of_bodies[i])
     if coarse:
         left_out.append(
             f"peaks of {', '.join(coarse[:5])}: the rows are too far apart to tell them; "
@@ -1452,6 +1449,9 @@ def _unseen(problem: Problem, t: Floats) -> Floats:
 
 # ---------------------------------------------------------------- the card of an answer
 
+UNKNOWN: dict[str, Any] = dict.fromkeys(("expected", "matched", "missed", "extra", "largest_shift"))
+"""What is counted of events of a kind, where nothing is known of them."""
+
 
 @dataclass
 class Card:
@@ -1507,9 +1507,8 @@ class Card:
     @classmethod
     def of_failure(cls, problem: str, why: str, size: str = "") -> Card:
         """Of a run that gave no answer."""
-        nothing = {"expected": 0, "matched": None, "missed": None, "extra": None}
         reasons = {level: [why] for level in LEVELS}
-        return cls(problem, impacts=nothing | {"largest_shift": None}, reasons=reasons, size=size)
+        return cls(problem, impacts=UNKNOWN | {"expected": 0}, reasons=reasons, size=size)
 
     @property
     def levels(self) -> dict[str, str]:
@@ -1598,8 +1597,7 @@ def _counts(problem: Problem, events: Paired, kind: str, known: bool) -> dict[st
         p for p in events.of(kind).pairs
         if impact or p.reference is None or p.reference.bound is not None
     ))  # fmt: skip
-    nothing = {"expected": of_kind.expected, "matched": None, "missed": None, "extra": None,
-               "largest_shift": None}  # fmt: skip
+    nothing = UNKNOWN | {"expected": of_kind.expected}
     if not known:
         return nothing
     unit = UNIT_OF_TIME * problem.duration
@@ -1680,10 +1678,8 @@ def card_text(card: Card) -> str:
         said = "not judged" if digits is None else f"{digits:.1f} digits"
         worst = card.worst.get(group)
         lines.append((group, f"{said}{f', fewest at {worst}' if worst else ''}"))
-    found = card.impacts
-    if found["matched"] is not None:
-        counts = f"{found['missed']} missed, {found['extra']} extra"
-        lines.append(("", f"{found['expected']} expected, {found['matched']} matched, {counts}"))
+    if card.impacts["matched"] is not None:
+        lines.append(("", _counted(card.impacts)))
     lines += [("restitution", said) for said in _restitution_words(card)]
     lines += [(f"{kind}s", said) for kind, said in event_words(card).items()]
     lines.append(("penetration", f"{card.penetration:.1e} of the largest displacement"))
@@ -1723,11 +1719,13 @@ def event_words(card: Card) -> dict[str, str]:
         elif found["expected"] or found["extra"]:
             shift = found["largest_shift"]
             digits = "" if shift is None else f", {digits_of(shift):.1f} digits"
-            said[kind] = (
-                f"{found['expected']} expected, {found['matched']} matched, "
-                f"{found['missed']} missed, {found['extra']} extra{digits}"
-            )
+            said[kind] = _counted(found) + digits
     return said
+
+
+def _counted(found: dict[str, Any]) -> str:
+    words = ("expected", "matched", "missed", "extra")
+    return ", ".join(f"{found[word]} {word}" for word in words)
 
 
 # ---------------------------------------------------------------- pages and drawings
@@ -1831,9 +1829,7 @@ class Axes:
     def word(self, x: float, y: float, text: str, anchor: str = "start") -> None:
         """A word at a point."""
         a, b = self.place(x, y)
-        self.marks.append(
-            f'<text x="{a:.1f}" y="{b:.1f}" text-anchor="{anchor}">{html.escape(text)}</text>'
-        )
+        self.marks.append(_text(a, b, html.escape(text), anchor))
 
     def svg(
         self, x_ticks: dict[float, str], y_ticks: dict[float, str], label: str, upwards: str = ""
@@ -1841,19 +1837,11 @@ class Axes:
         """The picture with its axes and what they show."""
         grid = []
         for x, text in x_ticks.items():
-            a, b = self.place(x, self.y[0])
-            top = self.place(x, self.y[1])[1]
-            grid.append(
-                f'<line x1="{a:.1f}" x2="{a:.1f}" y1="{b:.1f}" y2="{top:.1f}" stroke="#eee"/>'
-            )
-            grid.append(f'<text x="{a:.1f}" y="{b + 15:.1f}" text-anchor="middle">{text}</text>')
+            (a, b), (_, top) = self.place(x, self.y[0]), self.place(x, self.y[1])
+            grid += [_line(a, a, b, top), _text(a, b + 15.0, text, "middle")]
         for y, text in y_ticks.items():
-            a, b = self.place(self.x[0], y)
-            right = self.place(self.x[1], y)[0]
-            grid.append(
-                f'<line x1="{a:.1f}" x2="{right:.1f}" y1="{b:.1f}" y2="{b:.1f}" stroke="#eee"/>'
-            )
-            grid.append(f'<text x="{a - 5:.1f}" y="{b + 4:.1f}" text-anchor="end">{text}</text>')
+            (a, b), (right, _) = self.place(self.x[0], y), self.place(self.x[1], y)
+            grid += [_line(a, right, b, b), _text(a - 5.0, b + 4.0, text, "end")]
         a, b = self.place(0.5 * sum(self.x), 0.5 * sum(self.y))
         grid.append(f'<text x="{a:.1f}" y="{self.height - 3}" text-anchor="middle">{label}</text>')
         turned = f'transform="translate(13 {b:.1f}) rotate(-90)" text-anchor="middle"'
@@ -1864,6 +1852,14 @@ class Axes:
             + "".join(grid + self.marks)
             + "</svg>"
         )
+
+
+def _text(x: float, y: float, text: str, anchor: str) -> str:
+    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{text}</text>'
+
+
+def _line(x: float, to_x: float, y: float, to_y: float) -> str:
+    return f'<line x1="{x:.1f}" x2="{to_x:.1f}" y1="{y:.1f}" y2="{to_y:.1f}" stroke="#eee"/>'
 
 
 def _ticks(low: float, high: float, count: int = 5) -> dict[float, str]:
