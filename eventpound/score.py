@@ -1361,10 +1361,6 @@ def _sag(t: Floats, u: Floats, k: int) -> float:
     return float(sum(sides)) / 8.0
 
 
-def _penetration(problem: Problem, history: Motion) -> float:
-    return abs(float(problem.gaps(history.u).min(initial=0.0))) / problem.length
-
-
 # ---------------------------------------------------------------- energy from nowhere
 
 
@@ -1577,7 +1573,7 @@ def judge(problem: Problem, history: Motion, seconds: float | None = None) -> Ca
     }
     shift = card.impacts["largest_shift"]
     card.digits["impacts"] = None if shift is None else digits_of(shift)
-    card.penetration = _penetration(problem, history)
+    card.penetration = abs(float(problem.gaps(history.u).min(initial=0.0))) / problem.length
     card.energy, why = _created_energy(problem, history, impacts)
     if why:
         card.not_judged.append(f"energy: {why}")

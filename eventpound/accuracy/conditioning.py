@@ -30,7 +30,6 @@ from eventpound.scene.spring import GROUND, BoucWen, Law
 
 LARGE, SMALL = 1e-10, 1e-13
 """Relative changes of the inputs."""
-Law = Law
 DRAWS = 8
 """Scenes at each of them."""
 ROUNDING = 2.0**-53

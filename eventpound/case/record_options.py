@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from eventpound.case.record_file import find_record
 from eventpound.case.record_scaling import RecordScaling, read_scaling
@@ -69,16 +70,10 @@ class RecordOptions:
         InputError
             Where it cannot be read.
         """
-        data = read_record(
-            path,
-            format=self.format,
-            units=self.units,
-            time_step=self.time_step,
-            component=self.component,
-            response=self.response_path,
-            as_needed=as_needed,
+        beside: Any = {"component": self.component, "response": self.response_path}
+        return self.processing.apply(
+            read_record(path, **self.said(), **beside, as_needed=as_needed)
         )
-        return self.processing.apply(data)
 
     def motion(self, data: RecordData) -> Record:
         """The ground motion of a file that was read."""
@@ -94,7 +89,7 @@ class RecordOptions:
         read = {"format": data.format, "units": data.units, "time_step": data.time_step}
         return {"kind": "record", "file": file, **read, **self.understood()}
 
-    def said(self) -> Mapping[str, object]:
+    def said(self) -> Mapping[str, Any]:
         """Format, units and time step of the file, where they were given."""
         given = {"format": self.format, "units": self.units, "time_step": self.time_step}
         return {key: value for key, value in given.items() if value is not None}
@@ -102,9 +97,7 @@ class RecordOptions:
     def understood(self) -> Mapping[str, object]:
         """Component, scale, start and direction in SI, with the defaults filled in."""
         chosen = {"component": self.component, "response": self.response}
-        named: dict[str, object] = {
-            key: value for key, value in chosen.items() if value is not None
-        }
+        named: dict[str, object] = {key: text for key, text in chosen.items() if text is not None}
         if self.processing.does_something:
             named["processing"] = self.processing.described()
         return {**named, **self.size.understood(), "start": self.start, "reverse": self.reverse}
@@ -129,7 +122,7 @@ def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
     time_step = table.optional_quantity("time_step", Dimension.TIME, "a positive number")
     start = table.quantity("start", Dimension.TIME, 0.0)
     reverse = table.flag("reverse")
-    texts = {
+    texts: dict[str, Any] = {
         key: table.text(key, f"the {key} of the file") if table.has(key) else None
         for key in ("format", "units", "component", "response")
     }
@@ -140,19 +133,9 @@ def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
     processing = _read_processing(table.table("processing"))
     if processing is None or size is None:
         return None
-    response = texts["response"]
-    return RecordOptions(
-        texts["format"],
-        texts["units"],
-        time_step,
-        start,
-        reverse,
-        texts["component"],
-        response,
-        None if response is None else find_record(response, directory),
-        processing,
-        size,
-    )
+    path = None if texts["response"] is None else find_record(texts["response"], directory)
+    numbers: Any = {"time_step": time_step, "start": start, "reverse": reverse}
+    return RecordOptions(**texts, **numbers, response_path=path, processing=processing, size=size)
 
 
 def _read_processing(table: Table) -> Processing | None:
@@ -168,21 +151,15 @@ def _read_processing(table: Table) -> Processing | None:
     Processing or None
         None where there are problems; they are noted.
     """
-    whole = {key: _whole_number(table, key) for key in ("baseline", "order")}
-    corners = {
-        key: table.optional_quantity(key, Dimension.FREQUENCY) for key in ("highpass", "lowpass")
-    }
+    read = {key: _whole_number(table, key) for key in ("baseline", "order")}
+    for key in ("highpass", "lowpass"):
+        read[key] = table.optional_quantity(key, Dimension.FREQUENCY)
     table.close()
-    if any(x is not None and math.isnan(x) for x in (*whole.values(), *corners.values())):
+    given: dict[str, Any] = {key: value for key, value in read.items() if value is not None}
+    if any(map(math.isnan, given.values())):
         return None
-    baseline, order = whole["baseline"], whole["order"]
     try:
-        return Processing(
-            None if baseline is None else int(baseline),
-            corners["highpass"],
-            corners["lowpass"],
-            4 if order is None else int(order),
-        )
+        return Processing(**given)
     except InputError as error:
         table.report("", str(error))
         return None

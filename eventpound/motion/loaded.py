@@ -106,7 +106,7 @@ class LoadedMotion:
         signals = [self.ground.pieces(), *(load.signal.pieces() for load in self.loads)]
         ends = {piece.end for pieces in signals for piece in pieces} | _partings(self._moved)
         return [
-            self._together(start, end, [_at(pieces, start) for pieces in signals])
+            self._together(start, end, [next(p for p in each if p.end > start) for each in signals])
             for start, end in pairwise([-np.inf, *sorted(ends)])
         ]
 
@@ -156,8 +156,3 @@ def _with_sums(piece: Piece) -> Floats:
     if piece.samples.size == 0:
         return piece.samples
     return np.concatenate((piece.samples, *integrals(piece.samples, float(piece.coefficients[1]))))
-
-
-def _at(pieces: list[Piece], start: float) -> Piece:
-    """The piece that holds just after a time (s)."""
-    return next(piece for piece in pieces if piece.end > start)
