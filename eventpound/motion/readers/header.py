@@ -131,19 +131,11 @@ def record_data(
     )
     units, factor = _agreed_units(source, header, given)
     acceleration = _in_si(source, values, factor)
-    return RecordData(
-        acceleration=acceleration,
-        time_step=_agreed_time_step(source, header, given),
-        units=units,
-        format=format,
-        file=source.file,
-        sha256=source.sha256,
-        event=header.event,
-        station=header.station,
-        component=header.component,
-        date=header.date,
-        notes=notes + _other_peak(header.peak, acceleration),
-    )
+    step = _agreed_time_step(source, header, given)
+    read = units, format, source.file, source.sha256
+    named = header.event, header.station, header.component, header.date
+    notes += _other_peak(header.peak, acceleration)
+    return RecordData(acceleration, step, *read, *named, notes)
 
 
 def ask_for_missing(
