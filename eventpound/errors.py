@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 _LONGEST = 600
@@ -36,6 +38,15 @@ class InputError(EventpoundError):
         given = [problems] if isinstance(problems, str) else list(problems)
         self.problems = [_readable(problem) for problem in given]
         super().__init__("\n".join(self.problems))
+
+
+@contextmanager
+def told_of(where: str) -> Iterator[None]:
+    """Begin every problem of an InputError from within by where it is."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError([where + problem for problem in error.problems]) from None
 
 
 def _readable(problem: str) -> str:

@@ -33,7 +33,7 @@ from typing import (
     overload,
 )
 
-from eventpound.errors import InputError
+from eventpound.errors import InputError, told_of
 from eventpound.units import Dimension, quantity
 
 _Class = TypeVar("_Class")
@@ -191,10 +191,8 @@ def number(key: str, value: object, dimension: Dimension) -> float:
     InputError
         Naming the argument, where it is no such number.
     """
-    try:
+    with told_of(f"{key}: "):
         return quantity(value, dimension)
-    except InputError as error:
-        raise InputError(f"{key}: {error}") from None
 
 
 @overload

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from enum import StrEnum
 
 from eventpound.case.case import DEFAULTS, Case, RunOptions
-from eventpound.errors import InputError
+from eventpound.errors import InputError, told_of
 from eventpound.quantities.lookup import asked, ledger_of, needs_energy
 from eventpound.scene.scene import Scene
 from eventpound.warned import OptionWarning, warn_caller
@@ -140,10 +140,8 @@ def quantities_asked(parts: Iterable[tuple[Scene, RunOptions]]) -> list[str]:
         Naming every option that no scene has anything for.
     """
     parts = list(parts)
-    try:
+    with told_of("[run]: "):
         names = asked((scene, run.stated) for scene, run in parts)
-    except InputError as error:
-        raise InputError([f"[run]: {problem}" for problem in error.problems]) from error
     ledger = [
         name
         for scene, run in parts

@@ -16,7 +16,7 @@ from pathlib import Path
 from eventpound.case.record_file import record_root
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.table import Table
-from eventpound.errors import InputError
+from eventpound.errors import InputError, told_of
 from eventpound.input_files import MOST_MATCHES, matching_files
 from eventpound.motion import Record, RecordData
 from eventpound.motion.record_list import ListedRecord, read_list
@@ -90,10 +90,8 @@ class Member:
 
     def at_support(self, name: str) -> Record:
         """Its ground motion, of a support that messages name."""
-        try:
+        with told_of(f"support '{name}': "):
             return self.motion()
-        except InputError as error:
-            raise InputError([f"support '{name}': {each}" for each in error.problems]) from error
 
     def on(self, scene: Scene) -> Scene:
         """A scene moved by it, and by what goes with it at supports.
@@ -188,10 +186,8 @@ class Suite:
                 for name in [f"synthetic-{seed}-{number:04d}.AT2"]
             ]
         root, pattern = record_root(self.pattern, directory)
-        try:
+        with told_of("suite: "):
             paths = matching_files(pattern, root)
-        except InputError as error:
-            raise InputError(f"suite: {error}") from error
         if not paths:
             raise InputError(f"suite: found {self.pattern!r}, but no file matches it in {root}")
         listed = len(paths) == 1 and paths[0].suffix.lower() == ".csv"

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from eventpound.cli.talk import add_loudness, complain, located, say
-from eventpound.errors import InputError
+from eventpound.errors import InputError, told_of
 
 if TYPE_CHECKING:
     from eventpound.case import Case
@@ -188,7 +188,8 @@ def load(path: Path, suite: str | None = None) -> Case:
     if any(case.run.stated.named()):
         from eventpound.quantities.lookup import asked
 
-        _naming(f"{_file_of(case)}[run]: ", lambda: asked([(scene, case.run.stated)]))
+        with told_of(f"{_file_of(case)}[run]: "):
+            asked([(scene, case.run.stated)])
     return case
 
 
@@ -242,21 +243,14 @@ def check_solver_of(case: Case, in_file: bool = True) -> None:
         return
     from eventpound.simulation import check_solver
 
-    _naming(_file_of(case) if in_file else "", lambda: check_solver(case.solver, scene))
+    with told_of(_file_of(case) if in_file else ""):
+        check_solver(case.solver, scene)
 
 
 def _file_of(case: Case) -> str:
     from eventpound.case.loading import CASE_FILE
 
     return f"{case.directory / CASE_FILE}: "
-
-
-def _naming(where: str, check: Callable[[], object]) -> None:
-    """Check, and name the place before every problem."""
-    try:
-        check()
-    except InputError as error:
-        raise InputError([where + problem for problem in error.problems]) from error
 
 
 def write(out: Path, files: Mapping[str, bytes]) -> None:

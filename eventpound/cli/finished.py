@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import PAPER, Command, Options
-from eventpound.errors import InputError
+from eventpound.errors import InputError, told_of
 from eventpound.given import number
 
 if TYPE_CHECKING:
@@ -51,10 +51,8 @@ def fit_fragility(options: Options, out: Path) -> dict[str, bytes]:
     of_demand = dimension_of(options.demand)
     limits = [number("--limit", text, of_demand) for text in options.limit]
     records = None if options.counts else _records(table, options.measure)
-    try:
+    with told_of(f"{out}: "):
         curves = fragility_table(table, options.measure, options.demand, limits, records)
-    except InputError as error:
-        raise InputError(f"{out}: {error}") from None
     figure = fragility_figure(curves, table, options.measure, options.demand)
     units = [f" {dimension_of(key).unit}".rstrip() for key in (options.measure, options.demand)]
     for _, row in curves.iterrows():

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from eventpound.errors import InputError
+from eventpound.given import number
 from eventpound.numerics.arrays import Floats
-from eventpound.units import STANDARD_GRAVITY, Dimension, quantity
+from eventpound.units import STANDARD_GRAVITY, Dimension
 
 PERIODS = np.geomspace(0.05, 10.0, 200)
 """Where a spectrum is computed that does not say (s)."""
@@ -22,10 +23,7 @@ def read_damping(damping: float | str) -> float:
     InputError
         Where it is none from 0 to below 1.
     """
-    try:
-        ratio = quantity(damping, Dimension.NUMBER)
-    except InputError as error:
-        raise InputError(f"damping: {error}") from None
+    ratio = number("damping", damping, Dimension.NUMBER)
     if not 0.0 <= ratio < 1.0:
         raise InputError(f"damping: found {damping!r}; accepted: a ratio from 0 to below 1")
     return ratio

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from eventpound.errors import InputError
+from eventpound.errors import told_of
 from eventpound.given import (
     Accepted,
     Given,
@@ -60,10 +60,8 @@ class Contact:
         for side in ("left", "right"):
             end = getattr(self, side)
             if isinstance(end, Mapping):
-                try:
+                with told_of(f"Contact: {side}: "):
                     object.__setattr__(self, side, Point(end))
-                except InputError as error:
-                    raise InputError(f"Contact: {side}: {error}") from None
         read_fields(self)
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventpound.errors import InputError
+from eventpound.errors import InputError, told_of
 from eventpound.given import Given, converting, read_fields
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.constant import Constant
@@ -31,10 +31,8 @@ class Force:
 
     def __post_init__(self) -> None:
         if not isinstance(self.history, GroundMotion):
-            try:
+            with told_of("Force: history: "):
                 value, per_mass = constant_force(self.history)
-            except InputError as error:
-                raise InputError(f"Force: history: {error}") from None
             object.__setattr__(self, "history", Constant(value))
             if per_mass:
                 object.__setattr__(self, "per_mass", True)
