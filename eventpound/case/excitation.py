@@ -13,7 +13,6 @@ from eventpound.case.record_file import find_record
 from eventpound.case.record_options import RecordOptions, read_record_options
 from eventpound.case.suite import Suite, read_suite, understood_suite
 from eventpound.case.table import Table, read_numbers
-from eventpound.errors import InputError
 from eventpound.motion import (
     AntisymmetricRicker,
     GroundMotion,
@@ -74,7 +73,7 @@ def read_excitation(table: Table, directory: Path) -> Excitation | None:
     if not kind:
         return None
     excitation: Excitation | None = None
-    try:
+    with table.noting(""):
         match kind:
             case "none":
                 excitation = Excitation(NoMotion(), {"kind": kind})
@@ -82,9 +81,6 @@ def read_excitation(table: Table, directory: Path) -> Excitation | None:
                 excitation = _read_record(table, directory)
             case _:
                 excitation = _read_formula(table, kind)
-    except InputError as error:
-        for problem in error.problems:
-            table.report("", problem)
     table.close()
     return excitation
 

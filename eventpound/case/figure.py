@@ -177,11 +177,9 @@ def _read_pulse(table: Table) -> GroundMotion | None:
     period = own.quantity("period", Dimension.TIME)
     start = own.quantity("start", Dimension.TIME, 0.0)
     own.close()
-    try:
+    with table.noting("added_pulse"):
         return MavroeidisPapageorgiou(amplitude, period, False, start)
-    except InputError as error:
-        table.report("added_pulse", str(error))
-        return None
+    return None
 
 
 def _read_contours(table: Table, kind: FigureKind) -> Figure:

@@ -222,16 +222,14 @@ def _at_own_period(
     top: Table, excitation: Excitation, scene: Scene, of_pi: bool
 ) -> tuple[Excitation, Scene]:
     """Motion and scene with records scaled at a period of the scene, if the case says so."""
-    try:
+    with top.table("excitation").noting("psa_period"):
         own = for_scene(excitation, scene)
         if own is not excitation and of_pi:
             raise InputError(
                 "found a period of the scene, which [pi] makes; accepted: a period (s)"
             )
-    except InputError as error:
-        top.table("excitation").report("psa_period", str(error))
-        return excitation, scene
-    return own, scene if own is excitation else replace(scene, motion=own.motion)
+        return own, scene if own is excitation else replace(scene, motion=own.motion)
+    return excitation, scene
 
 
 def _suite(
@@ -241,11 +239,8 @@ def _suite(
     if excitation is None or excitation.suite is None:
         return None
     suite = replace(excitation.suite, supports=driven.suites)
-    try:
+    with top.noting("[[support]]"):
         suite.members(directory)
-    except InputError as error:
-        for problem in error.problems:
-            top.report("[[support]]", problem)
     return suite
 
 

@@ -15,7 +15,6 @@ from eventpound.case.case import (
 )
 from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.table import Table
-from eventpound.errors import InputError
 from eventpound.given import number
 from eventpound.motion.base import LARGEST, SMALLEST
 from eventpound.scene.contact_law import Element
@@ -79,10 +78,8 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
         length, step = (math.nan if x is None else x for x in (duration, output_step))
         return RunOptions(start_time, length, step, energy, errors, stated, balanced)
     if duration is None and scene is not None and not math.isnan(start_time):
-        try:
+        with table.noting(""):
             duration = default_duration(scene, start_time)
-        except InputError as error:
-            table.report("", str(error))
     table.close()
     if scene is None or duration is None or not duration > 0.0:
         return None

@@ -13,7 +13,6 @@ from itertools import pairwise
 from eventpound.case.case import PiTable
 from eventpound.case.excitation import Excitation
 from eventpound.case.table import Table
-from eventpound.errors import InputError
 from eventpound.scene.body import Body
 from eventpound.scene.check import check_scene
 from eventpound.scene.contact import BARRIER
@@ -83,12 +82,9 @@ def read_pi(top: Table) -> PiTable | None:
     table.close()
     if not word:
         return None
-    try:
-        structure = PiStructure(Kind[word.upper()], row)
-    except InputError as error:
-        table.report("", str(error))
-        return None
-    return PiTable(structure, terms, periods)
+    with table.noting(""):
+        return PiTable(PiStructure(Kind[word.upper()], row), terms, periods)
+    return None
 
 
 def _read_row(table: Table) -> tuple[str, ...]:
@@ -118,16 +114,13 @@ def scene_of_pi(top: Table, pi: PiTable | None, excitation: Excitation | None) -
     if pi is None or excitation is None or any(math.isnan(term) for term in pi.terms.values()):
         return _PLACEHOLDER
     try:
-        scene = pi.structure.scene(excitation.motion, pi.terms)
-        check_scene(scene)
-    except InputError as error:
-        for problem in error.problems:
-            top.report("[pi]", problem)
-        return _PLACEHOLDER
+        with top.noting("[pi]"):
+            scene = pi.structure.scene(excitation.motion, pi.terms)
+            check_scene(scene)
+            return scene
     except ArithmeticError:
         top.report("[pi]", "these terms make a number of the case too large or too small")
-        return _PLACEHOLDER
-    return scene
+    return _PLACEHOLDER
 
 
 def with_periods(run: Table, pi: PiTable | None, scene: Scene) -> Table:

@@ -11,7 +11,6 @@ from typing import Any
 from eventpound.case.record_file import find_record
 from eventpound.case.record_scaling import RecordScaling, read_scaling
 from eventpound.case.table import Table
-from eventpound.errors import InputError
 from eventpound.motion import Record, RecordData, read_record
 from eventpound.motion.processing import Processing
 from eventpound.units import Dimension
@@ -158,11 +157,9 @@ def _read_processing(table: Table) -> Processing | None:
     given: dict[str, Any] = {key: value for key, value in read.items() if value is not None}
     if any(map(math.isnan, given.values())):
         return None
-    try:
+    with table.noting(""):
         return Processing(**given)
-    except InputError as error:
-        table.report("", str(error))
-        return None
+    return None
 
 
 def _whole_number(table: Table, key: str) -> float | None:

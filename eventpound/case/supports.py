@@ -207,12 +207,10 @@ def _formula(table: Table, directory: Path) -> _History:
         **numbers,
         "reverse": reverse,
     }
-    try:
+    with table.noting(""):
         history = PhasedSine(amplitude, period, reverse, **numbers, cycles=cycles)
-    except InputError as error:
-        table.report("", str(error))
-        return NoMotion(), per_mass, {}
-    return history, per_mass, understood
+        return history, per_mass, understood
+    return NoMotion(), per_mass, {}
 
 
 def _from_file(table: Table, directory: Path) -> _History:

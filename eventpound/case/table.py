@@ -10,7 +10,8 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import MISSING, dataclass, fields
 
 from eventpound.errors import InputError
@@ -74,6 +75,15 @@ class Table:
         problem = CaseProblem(self.where, self._prefix + key if key else "", text)
         self._problems.append(problem)
         return problem
+
+    @contextmanager
+    def noting(self, key: str) -> Iterator[None]:
+        """Note the problems of an InputError from within with a key, and go on behind."""
+        try:
+            yield
+        except InputError as error:
+            for problem in error.problems:
+                self.report(key, problem)
 
     def reject(self, key: str, accepted: str) -> None:
         """Note that the value of a key is not accepted."""
