@@ -110,14 +110,12 @@ class Table:
         """
         if not self.has(key):
             return None
-        try:
+        with self.noting(key):
             value = quantity(self.data[key], dimension)
-        except InputError as error:
-            self.report(key, str(error))
-            return math.nan
-        if positive:
-            self.require(key, value > 0.0, positive)
-        return value
+            if positive:
+                self.require(key, value > 0.0, positive)
+            return value
+        return math.nan
 
     def whole_number(
         self, key: str, least: int, most: int, default: int | None = None
