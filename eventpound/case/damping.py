@@ -127,13 +127,12 @@ def _read_stiffness_coefficient(
         return b
     ratio = table.quantity("ratio", Dimension.NUMBER)
     table.require("ratio", not ratio < 0.0, "a ratio that is not negative")
-    if len(where) != 1:
-        found = " and ".join(where) or "none"
-        table.report("mode", f"found {found} of {', '.join(_WHERE)}; accepted: one of them")
+    key = table.one_of(_WHERE)
+    if not key:
         return math.nan
-    if where != ["mode"]:
+    if key != "mode":
         omega, _ = optional_frequency(table) or (math.nan, math.nan)
-        table.require(where[0], omega != 0.0, "a positive frequency (rad/s)")
+        table.require(key, omega != 0.0, "a positive frequency (rad/s)")
         return 2.0 * ratio / omega if omega else math.nan
     stiffnesses = [nominal_stiffness(spring) for spring in standing]
     usable = all(body.mass > 0.0 for body in bodies) and all(k >= 0.0 for k in stiffnesses)
@@ -247,15 +246,9 @@ _TWO = ("frequencies", "periods", "modes")
 def _read_two_frequencies(
     table: Table, group: Sequence[Body], springs: Sequence[Spring]
 ) -> tuple[float, float]:
-    keys = [key for key in _TWO if table.has(key)]
-    if len(keys) != 1:
-        table.report(
-            "frequencies",
-            f"found {' and '.join(keys) or 'none'} of {', '.join(_TWO)}; "
-            "accepted: one of them, a list of two",
-        )
+    key = table.one_of(_TWO, ", a list of two")
+    if not key:
         return math.nan, math.nan
-    (key,) = keys
     values = table.data[key]
     if not isinstance(values, list) or len(values) != 2:
         table.reject(key, f"a list of two {key}")

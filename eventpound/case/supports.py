@@ -141,16 +141,12 @@ def _read_forces(
         if name and name not in bodies:
             key = "bodies" if table.has("bodies") else "body"
             table.report(key, f"found {name!r}; accepted: one of {', '.join(bodies[:8])}")
-    given = [key for key in ("value", "file", "kind") if table.has(key)]
-    if len(given) != 1:
-        table.report(
-            "value",
-            f"found {' and '.join(given) or 'none'} of value, file, kind; accepted: one of them: "
-            f"a constant force, a history in a file, or {', '.join(_CYCLES)}",
-        )
+    ways = {"value": _constant, "file": _from_file, "kind": _formula}
+    said = f": a constant force, a history in a file, or {', '.join(_CYCLES)}"
+    given = table.one_of(tuple(ways), said)
+    if not given:
         return []
-    read = {"value": _constant, "file": _from_file, "kind": _formula}[given[0]]
-    history, per_mass, understood = read(table, directory)
+    history, per_mass, understood = ways[given](table, directory)
     table.close()
     return [
         (Force(name, history, per_mass), {"body": name, **understood})

@@ -186,6 +186,15 @@ class Table:
             return ""
         return value
 
+    def one_of(self, keys: Sequence[str], more: str = "") -> str:
+        """Which of some keys is given; empty, with a problem noted, where that is not just one."""
+        given = [key for key in keys if self.has(key)]
+        if len(given) == 1:
+            return given[0]
+        found = f"found {' and '.join(given) or 'none'} of {', '.join(keys)}"
+        self.report(keys[0], f"{found}; accepted: one of them{more}")
+        return ""
+
     def flag(self, key: str) -> bool:
         """True or false; false where it is not given."""
         value = self.data[key] if self.has(key) else False
