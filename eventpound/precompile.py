@@ -13,6 +13,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from dataclasses import replace
+from itertools import pairwise
 from multiprocessing import get_context
 from typing import Any, NamedTuple
 
@@ -88,11 +89,9 @@ def _row(motion: GroundMotion, restitution: float, gap: float) -> Scene:
             Spring("bc", ("b", "c"), _LAW),
         ),
         dashpots=(Dashpot(("a", "b"), 0.05),),
-        contacts=(
-            Contact("left", BARRIER, "a", gap, restitution),
-            Contact("joint", "a", "b", gap, restitution),
-            Contact("second", "b", "c", gap, restitution),
-            Contact("right", "c", BARRIER, gap, restitution),
+        contacts=tuple(
+            Contact(f"{left}-{right}", left, right, gap, restitution)
+            for left, right in pairwise((BARRIER, "a", "b", "c", BARRIER))
         ),
         motion=motion,
     )

@@ -143,9 +143,8 @@ def _within_bound(law: Law) -> Law:
 
 def _closings(scene: Scene) -> list[float]:
     """The gap with which each contact would be closed at the start (m)."""
-    u = {body.name: body.displacement for body in scene.bodies} | {BARRIER: 0.0}
+    u = {body.name: body.displacement for body in scene.bodies} | {BARRIER: 0.0, GROUND: 0.0}
     u |= starts_of_supports(scene, 0.0)
-    u[GROUND] = 0.0
     return [-sum(w * u[end] for end, w in contact.direction) for contact in scene.contacts]
 
 

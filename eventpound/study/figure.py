@@ -105,10 +105,9 @@ class FigurePlan:
     def problems(self, study: Plan) -> Iterator[str]:
         """Columns of the figure that the table does not have, axes that a map does not show."""
         known = (*study.columns, *study.quantities)
-        named = {"curves": self.curves, "rows": self.rows, "columns": self.columns}
-        named |= {"pages": self.pages, "grey": self.grey}
+        words = ("curves", "rows", "columns", "pages", "grey")
         found = [("x", name) for name in self.x if name] + [("y", name) for name in self.y]
-        found += [(key, name) for key, name in named.items() if name]
+        found += [(key, name) for key in words if (name := getattr(self, key))]
         if self.regions is not None:
             found.append(("regions", "amplification"))
         for key, name in found:
