@@ -18,7 +18,8 @@ class NamedNumbers(_Record):
     """A record whose fields are the annotations of its class.
 
     `layout` is the dtype of an array that has such records. A field of ``Floats`` has as many as
-    the class has `room` for.
+    the class has `room` for. What Python asks often it takes from the array, ``now["t"][0]``: a
+    sixth of the time of ``now[0].t``.
     """
 
     layout: ClassVar[np.dtype]

@@ -64,9 +64,9 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
     ComputationError
         Where an instant has no solution or cascades have no end.
     """
-    progress = now.state.progress[0]
-    progress.knots = progress.short_steps = 0
-    progress.phase = DUTIES
+    progress = now.state.progress
+    progress["knots"][0] = progress["short_steps"][0] = 0
+    progress["phase"][0] = DUTIES
     most = now.steps
     ended = DONE
     while ended != OVER:
@@ -104,7 +104,7 @@ def _settle_sliders(now: Underway, piece: CurrentPiece) -> int:
     def rests() -> int:
         ended = decide_sticks(run.state.z, forcing_now(piece, now.t), noise, run.instant, model)
         if ended == DONE:
-            run.state.now[0].stale |= bool((run.instant.branch != now.mode.branch).any())
+            run.state.now["stale"][0] |= (run.instant.branch != now.mode.branch).any()
         return ended
 
     return settle_in_python(run, impacts, rests)
@@ -142,11 +142,11 @@ def _choose_branches(now: Underway, piece: CurrentPiece) -> None:
     mode = table.mode(resting, state.branch, state.pressed, now.run.instant.opening)
     now.take_closing_speeds(mode)
     make_ready(now, mode, piece)
-    now.state.progress[0].phase = RESTS
+    now.state.progress["phase"][0] = RESTS
     seen = now.run.looks[0]
     onset = ground_onset(piece, now.t, ORDER, np.empty(ORDER))
     in_python(choose_branches)(seen.a, 0.0, onset, now.run.instant)
-    state.now[0].stale = True
+    state.now["stale"][0] = True
 
 
 def make_ready(now: Underway, mode: Mode, piece: CurrentPiece) -> None:

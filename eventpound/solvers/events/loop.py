@@ -92,7 +92,7 @@ class Segment:
         self._first = self._reached_row = 0
         self._excess = -1.0
         self._length = piece.stop - self.origin
-        now.state.progress[0].finder = INTEGRATOR if integrator.finds_events else OURSELVES
+        now.state.progress["finder"][0] = INTEGRATOR if integrator.finds_events else OURSELVES
         pressed = self.mode.bodies.resting.size > 0
         self._longest = _longest_under(piece) if pressed else np.inf
         # In a moving frame a step is inspected from sample to sample.
@@ -181,7 +181,7 @@ class Segment:
                 raise
             self._first, self.start, self.end = done.first, done.start, done.end
             self.reached, self._reached_row = done.start, done.first
-            now.state.progress[0].steps += done.steps
+            now.state.progress["steps"][0] += done.steps
             if done.end <= done.start:
                 raise ComputationError(
                     "the integrator makes no progress; try a larger rtol", self.origin + self.end
@@ -194,7 +194,7 @@ class Segment:
             if done.verdict != BEYOND_BOUND:
                 self._excess = done.excess
                 if done.verdict == HAPPENED and integrator.happened is not None:
-                    now.state.progress[0].finder = FOUND_AT_END
+                    now.state.progress["finder"][0] = FOUND_AT_END
                     now.mark_happened(*integrator.happened)
                 return done.verdict in (MARKED, HAPPENED)
             tau, first = done.start, done.first

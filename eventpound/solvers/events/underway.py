@@ -136,7 +136,7 @@ class Underway:
     @property
     def t(self) -> float:
         """The present time (s)."""
-        return float(self.state.now[0].t)
+        return float(self.state.now["t"][0])
 
     @property
     def names(self) -> list[str]:
@@ -150,14 +150,14 @@ class Underway:
     @property
     def steps(self) -> int:
         """Steps so far."""
-        return int(self.state.progress[0].steps)
+        return int(self.state.progress["steps"][0])
 
     def enter_mode(self) -> None:
         """Bring `mode` up to date with who rests and on which branches links are."""
         state, model = self.state, self.model
         opening = self.run.instant.opening
         mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed, opening)
-        state.now[0].stale = False
+        state.now["stale"][0] = False
         self.table.place_ends(mode, state.u, state.z)
         self.take_closing_speeds(mode)
         if not mode.clusters.tree:
@@ -187,7 +187,7 @@ class Underway:
     def make_room(self) -> None:
         """Double the room for lines and for events, where it is half full."""
         record, journal = self.record, self.record.journal
-        written, taken = int(journal.cursor[WRITTEN]), int(self.state.now[0].events)
+        written, taken = int(journal.cursor[WRITTEN]), int(self.state.now["events"][0])
         if 2 * (written + journal.times.size - journal.cursor[PASSED]) > journal.rows.shape[0]:
             record = record._replace(journal=journal._replace(rows=_doubled(journal.rows, written)))
         if 2 * taken > record.events.shape[0]:
@@ -198,8 +198,8 @@ class Underway:
 
     def events(self) -> list[Event]:
         """Everything listed so far, in order of time."""
-        listed = events_of(self.record.events[: self.state.now[0].events])
-        group = int(self.state.now[0].groups)
+        listed = events_of(self.record.events[: self.state.now["events"][0]])
+        group = int(self.state.now["groups"][0])
         return with_unfinished(listed, self.model, self.run.laws, self.state.v, group)
 
     def law_recording(self) -> LawRecording | None:

@@ -201,7 +201,7 @@ class Arrays:
             raise ComputationError(recording.message, recording.t, recording)
         if left.energy is not None:
             try:
-                check_energy(float(run.state.now[0].t), left.energy, task.rtol)
+                check_energy(float(run.state.now["t"][0]), left.energy, task.rtol)
             except ComputationError as error:
                 error.recording = left.recording()
                 raise
@@ -242,7 +242,6 @@ class Arrays:
     ) -> Left:
         """What a run leaves, in arrays of its own."""
         state, record, model = run.state, run.record, self._model
-        # By the columns: an attribute of a record takes Python five times as long.
         events = record.events[: state.now["events"][0]].copy()
         energy: Energy | None = None
         if task.energy:
@@ -328,7 +327,7 @@ class Left(NamedTuple):
         message = MESSAGES.get(self.ended, "left before its end")
         if self.ended == ENDLESS:
             message = endless_message(events, self.contacts)
-        elif self.ended == STUCK and now[0].in_a_row > LONGEST_CASCADE:
+        elif self.ended == STUCK and now["in_a_row"][0] > LONGEST_CASCADE:
             message = long_message(events, self.contacts)
         elif self.ended == CROWDED:
             message = crowded_message(events, self.contacts)
@@ -377,21 +376,21 @@ def _run(
     plan, state, most = run.plan, run.state, task.max_steps
     carry = oscillate_alone if plan.oscillator.alone else advance
     while True:
-        budget = BUDGET if most is None else min(BUDGET, most - int(state.progress[0].steps))
+        budget = BUDGET if most is None else min(BUDGET, most - int(state.progress["steps"][0]))
         ended = carry(budget, run)
         if ended == IN_PYTHON:
             ended = settle_sliders(noise, run, model) or GOING_ON
         if ended == FULL:
-            if state.now[0].events > MOST_EVENTS:
+            if state.now["events"][0] > MOST_EVENTS:
                 return run, CROWDED, None
             run = on_loan(run._replace(record=_enlarged(run.record, plan, state)))
         elif ended != GOING_ON:
             return run, ended, None
         try:
             if task.progress is not None:
-                task.progress(float(state.now[0].t))
-            if most is not None and state.progress[0].steps >= most:
-                raise steps_used_up(most, float(state.now[0].t))
+                task.progress(float(state.now["t"][0]))
+            if most is not None and state.progress["steps"][0] >= most:
+                raise steps_used_up(most, float(state.now["t"][0]))
         except ComputationError as stopped:
             return run, ended, stopped
 
