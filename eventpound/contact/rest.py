@@ -9,7 +9,8 @@ found pressed moving as one. What no order decides stays closed.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from eventpound.mechanics.clusters import Clusters, form_clusters, is_support
 from eventpound.mechanics.contact_problem import parts, solve_contacts
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
 from eventpound.mechanics.link_law import LinkLaw
+from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce, state_vector
 from eventpound.mechanics.reduced_loads import support_of
 from eventpound.mechanics.series import motion_series
@@ -70,21 +72,58 @@ class Touching(NamedTuple):
     time: float
 
 
-class _Gaps(NamedTuple):
-    """Coefficients of the gap accelerations of one order.
+class Pairs(NamedTuple):
+    """What moves with the contacts pressed, C clusters, as gaps between two of them.
 
-    opening, level (K,): the coefficients and their noise. first, second (K,): clusters.
+    system, y: its equations of motion and its state. rough (C,): clusters of whose accelerations an
+    own part of those of the scene is rounding. leaves (K,): gaps that are not closed for good.
+    first, second (K,): clusters of the contacts. members: the undecided contacts that are left,
+    label: the part of the scene of each.
     """
 
-    opening: Floats
-    level: Floats
+    system: Reduced
+    y: Floats
+    rough: Bools
+    leaves: Bools
     first: Ints
     second: Ints
+    members: Ints
+    label: Ints
 
 
 @kernel
 def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
+    """The acceleration problem, order by order; returns as `decide_by_orders`."""
+    return decide_by_orders(_pairs, _opening_of_pairs, _left_over, _solve_pairs, touching, touching)
+
+
+@kernel
+def decide_by_orders(
+    form: Callable[[Any, Touching, Bools, Bools], Any],
+    opening_of: Callable[[Any, Floats, Floats, Floats, Floats], None],
+    left_over: Callable[[Any, Floats, Touching], Floats],
+    solve: Callable[[Any, Ints, Floats, float], tuple[Floats, Floats, bool]],
+    given: Any,
+    touching: Touching,
+) -> tuple[Bools, Bools, bool]:
     """The acceleration problem, order by order.
+
+    Parameters
+    ----------
+    form : callable
+        From `given` and which contacts (K,) are pressed and undecided: what moves then, with the
+        first four fields of `Pairs` at least. The others are handed it first.
+    opening_of : callable
+        Fills in, from the accelerations of clusters (C,) of one order and their noise, those of all
+        gaps and theirs, (K,).
+    left_over : callable
+        What is left of the accelerations (C,) of released contacts, which counts as rounding.
+    solve : callable
+        Forces of some contacts and the accelerations left, from those without forces; if solved.
+    given
+        What `form` is handed.
+    touching : Touching
+        The problem.
 
     Returns
     -------
@@ -94,64 +133,59 @@ def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
     solved : bool
         False where no solution was found.
     """
-    left, right, mass, released = touching.left, touching.right, touching.mass, touching.released
-    undecided = touching.undecided.copy()
-    pressed, kept = touching.pressed.copy(), np.zeros(undecided.size, np.bool_)
-    no_ledger = np.empty(0)
+    undecided, pressed = touching.undecided.copy(), touching.pressed.copy()
+    kept = np.zeros(undecided.size, np.bool_)
     while undecided.any():
         # Those found pressed move as one.
-        clusters = form_clusters(left, right, touching.gap, pressed, pressed, mass)
-        system = reduce(
-            touching.link_ends,
-            touching.law,
-            mass,
-            touching.hysteretic,
-            clusters,
-            Branches(touching.stiffness, touching.preload),
-            no_ledger.size,
-        )
-        y = state_vector(clusters, system, mass, touching.u, touching.v, touching.z, no_ledger)
-        first, second = _clusters_of(left, clusters), _clusters_of(right, clusters)
-        order, opening, level = _first_deciding(y, system, first, second, undecided, touching)
+        now = form(given, touching, pressed, undecided)
+        for j in range(undecided.size):
+            if undecided[j] and not now.leaves[j]:
+                kept[j], undecided[j] = True, False
+        order, opening, level = _first_deciding(opening_of, left_over, now, undecided, touching)
         if order < 0:
             break
-        for j in range(undecided.size):
-            if undecided[j] and first[j] == second[j]:
-                kept[j], undecided[j] = True, False
-        passed_over = released & (order == 0)
-        gaps = _Gaps(opening, level, first, second)
-        decided, solved = _decide(gaps, system.mass, passed_over, undecided, pressed)
+        members = np.flatnonzero(undecided)
+        force, after, solved = solve(now, members, opening[members], level[members].max())
         if not solved:
             return undecided, pressed, False
-        if not decided:
+        passed_over = touching.released & (order == 0)
+        if not _take_decided(members, force, after, level, passed_over, undecided, pressed):
             break
     return pressed | kept | undecided, pressed, True
 
 
 @kernel
-def _decide(
-    gaps: _Gaps, mass: Floats, passed_over: Bools, undecided: Bools, pressed: Bools
-) -> tuple[bool, bool]:
-    """One order: who opens and who is pressed, taken from `undecided` (K,).
+def system_of(touching: Touching, clusters: Clusters) -> tuple[Reduced, Floats]:
+    """Equations of motion of clusters, and their state."""
+    t, no_ledger = touching, np.empty(0)
+    branches = Branches(t.stiffness, t.preload)
+    system = reduce(t.link_ends, t.law, t.mass, t.hysteretic, clusters, branches, no_ledger.size)
+    return system, state_vector(clusters, system, t.mass, t.u, t.v, t.z, no_ledger)
 
-    `mass` (kg) is that of the clusters; `passed_over` (K,) are not decided here. Returns whether
-    any was decided, and whether there was a solution.
-    """
-    members, level = np.flatnonzero(undecided), gaps.level
-    force, after, solved = solve_contacts(
-        gaps.first[members],
-        gaps.second[members],
-        1.0 / mass,
-        gaps.opening[members],
-        level[members].max(),
-    )
-    if not solved:
-        return False, False
-    return take_decided(members, force, after, level, passed_over, undecided, pressed), True
+
+@kernel
+def _pairs(given: Touching, touching: Touching, pressed: Bools, undecided: Bools) -> Pairs:
+    """What moves with these pressed."""
+    left, right, mass = touching.left, touching.right, touching.mass
+    clusters = form_clusters(left, right, touching.gap, pressed, pressed, mass)
+    system, y = system_of(touching, clusters)
+    first, second = _clusters_of(left, clusters), _clusters_of(right, clusters)
+    members = np.flatnonzero(undecided & (first != second))
+    label = parts(first[members], second[members], system.iv.size)
+    rough = round_as_the_scene(system, touching.forcing)
+    return Pairs(system, y, rough, first != second, first, second, members, label)
+
+
+@kernel
+def _solve_pairs(
+    now: Pairs, members: Ints, opening: Floats, level: float
+) -> tuple[Floats, Floats, bool]:
+    inverse = 1.0 / now.system.mass
+    return solve_contacts(now.first[members], now.second[members], inverse, opening, level)
 
 
 @scalar_kernel
-def take_decided(
+def _take_decided(
     members: Ints,
     force: Floats,
     after: Floats,
@@ -187,120 +221,107 @@ def _clusters_of(bodies: Ints, clusters: Clusters) -> Ints:
 
 @kernel
 def _first_deciding(
-    y: Floats,
-    system: Reduced,
-    first: Ints,
-    second: Ints,
+    opening_of: Callable[[Any, Floats, Floats, Floats, Floats], None],
+    left_over: Callable[[Any, Floats, Touching], Floats],
+    now: Any,
     undecided: Bools,
     touching: Touching,
 ) -> tuple[int, Floats, Floats]:
-    """Lowest order at which an undecided gap between clusters accelerates.
+    """Lowest order at which an undecided gap accelerates.
 
     Returns the order or -1, the coefficients of the accelerations of all
     gaps, shape (K,), and their noise, shape (K,).
     """
-    forcing, released = touching.forcing, touching.released
     opening, level = np.zeros(undecided.size), np.zeros(undecided.size)
-    members = np.flatnonzero(undecided & (first != second))
-    label = parts(first[members], second[members], system.iv.size)
-    pulled = _round_as_the_scene(system, forcing)
-    noise, ground = np.empty(system.iv.size), np.zeros(ORDER)
-    stiffness, damping = links_held(system)
-    # In the tails of a pulse high orders are large beside what they are derivatives of.
-    time = min(touching.time, decay_time(forcing, forcing.start))
     for highest in (1, ORDER):
-        Y = motion_series(0.0, y, system, forcing, highest, touching.speed_noise)
-        ground_taylor(forcing, forcing.start, highest, ground)
-        # Rounding of an order whose terms cancel, or vanish for every body.
-        rounding = np.zeros((highest + 2, noise.size))
-        own = ACCELERATION * touching.acceleration
+        found = accelerations(now.y, now.system, highest, touching)
+        left = left_over(now, found[0], touching)
+        noise = noise_of(found, left, now.rough, now.system, touching)
         for order in range(highest):
-            coefficient = Y[order + 1][system.iv]
-            take_noise(order, coefficient, ground[order], own, pulled, rounding[order], noise)
-            if order == 0:
-                _add_residual(coefficient, first, second, members, label, released, rounding[0])
-            pass_on(rounding, order, system, stiffness, damping)
-            _set_noise(noise, system.mass, first, second, members, label, level)
-            own /= time * (order + 1)
+            opening_of(now, found[order], noise[order], opening, level)
             deciding = False
             for j in range(opening.size):
-                ahead = coefficient[second[j]] if second[j] >= 0 else 0.0
-                behind = coefficient[first[j]] if first[j] >= 0 else 0.0
-                opening[j] = ahead - behind if abs(ahead - behind) > level[j] else 0.0
-                vanished = opening[j] == 0.0 or (order == 0 and released[j])
+                opening[j] = opening[j] if abs(opening[j]) > level[j] else 0.0
+                vanished = opening[j] == 0.0 or (order == 0 and touching.released[j])
                 deciding |= undecided[j] and not vanished
             if deciding:
                 return order, opening, level
     return -1, opening, level
 
 
-@scalar_kernel
-def take_noise(
-    order: int,
-    coefficient: Floats,
-    ground: float,
-    own: float,
-    pulled: Bools,
-    rounding: Floats,
-    noise: Floats,
-) -> None:
-    """Noise of the accelerations of clusters (C,) of one order, and the `rounding` in it.
-
-    ground: Taylor coefficient of its acceleration. own: what one of the scene's own rounds to.
-    """
-    part = DIRECT if order == 0 else UNDECIDED
-    for c in range(noise.size):
-        absolute = abs(coefficient[c] + ground / (order + 1))
-        rounding[c] = max(rounding[c], own) if pulled[c] else 0.0
-        noise[c] = max(part * absolute, rounding[c])
+@kernel
+def accelerations(y: Floats, system: Reduced, highest: int, touching: Touching) -> Floats:
+    """Taylor coefficients of the accelerations of clusters, (highest, C)."""
+    Y = motion_series(0.0, y, system, touching.forcing, highest, touching.speed_noise)
+    return Y[1:][:, system.iv]
 
 
 @kernel
-def _add_residual(
-    acceleration: Floats,
-    first: Ints,
-    second: Ints,
-    members: Ints,
-    label: Ints,
-    released: Bools,
-    rounding: Floats,
-) -> None:
-    """Add to the rounding of accelerations (C,) what is left of those of released contacts.
+def noise_of(
+    found: Floats, left_over: Floats, rough: Bools, system: Reduced, touching: Touching
+) -> Floats:
+    """Noise of `accelerations` that are `found`, (orders, C).
+
+    left_over (C,): what counts as rounding of the first beside its own. rough: of `Pairs`.
+    """
+    orders, forcing = found.shape[0], touching.forcing
+    ground, stiffness = np.zeros(orders), _stiffness_held(system)
+    ground_taylor(forcing, forcing.start, orders, ground)
+    # In the tails of a pulse high orders are large beside what they are derivatives of.
+    time = min(touching.time, decay_time(forcing, forcing.start))
+    # Rounding of an order whose terms cancel, or vanish for every body.
+    noise, rounding = np.empty(found.shape), np.zeros((orders + 2, found.shape[1]))
+    own, part = ACCELERATION * touching.acceleration, DIRECT
+    for order in range(orders):
+        for c in range(found.shape[1]):
+            absolute = abs(found[order, c] + ground[order] / (order + 1))
+            rounding[order, c] = max(rounding[order, c], own) if rough[c] else 0.0
+            noise[order, c] = max(part * absolute, rounding[order, c])
+            if order == 0:
+                rounding[0, c] = max(rounding[0, c], left_over[c])
+        _pass_on(rounding, order, system, stiffness)
+        own, part = own / (time * (order + 1)), UNDECIDED
+    return noise
+
+
+@kernel
+def _left_over(now: Pairs, acceleration: Floats, touching: Touching) -> Floats:
+    """What is left of the accelerations (C,) of released contacts.
 
     These vanish at the instant of the release, which is known to rounding; so all bodies of a
     chain of undecided contacts err by as much, and their stiffness makes higher derivatives of it.
     """
-    left_over, of_part = np.zeros(acceleration.size), np.zeros(acceleration.size)
-    for j in range(released.size):
-        if released[j] and first[j] != second[j]:
-            ahead = acceleration[second[j]] if second[j] >= 0 else 0.0
-            behind = acceleration[first[j]] if first[j] >= 0 else 0.0
+    first, second, members, label = now.first, now.second, now.members, now.label
+    own, of_part = np.zeros(acceleration.size), np.zeros(acceleration.size)
+    result = np.zeros(acceleration.size)
+    for j in range(first.size):
+        if touching.released[j] and first[j] != second[j]:
+            left = LEFT_OVER * abs(difference(acceleration, first[j], second[j]))
             for c in (first[j], second[j]):
                 if c >= 0:
-                    left_over[c] = max(left_over[c], LEFT_OVER * abs(ahead - behind))
+                    own[c] = max(own[c], left)
     for i in range(members.size):
         for c in (first[members[i]], second[members[i]]):
             if c >= 0:
-                of_part[label[i]] = max(of_part[label[i]], left_over[c])
+                of_part[label[i]] = max(of_part[label[i]], own[c])
     for i in range(members.size):
         for c in (first[members[i]], second[members[i]]):
             if c >= 0:
-                rounding[c] = max(rounding[c], of_part[label[i]])
+                result[c] = of_part[label[i]]
+    return result
 
 
 @kernel
-def links_held(system: Reduced) -> tuple[Floats, Floats]:
-    """Initial stiffness (N/m) and dashpot (N s/m) of each link, shape (A,)."""
+def _stiffness_held(system: Reduced) -> Floats:
+    """Initial stiffness of each link (N/m), shape (A,)."""
     stiffness = system.stiffness.copy()
     for a in range(stiffness.size):
         stiffness[a] += memory_stiffness(a, system.memory)
-    return stiffness, system.damping
+    return stiffness
 
 
 @kernel
-def pass_on(
-    rounding: Floats, order: int, system: Reduced, stiffness: Floats, damping: Floats
-) -> None:
+def _pass_on(rounding: Floats, order: int, system: Reduced, stiffness: Floats) -> None:
     """What the rounding of an order makes by way of the links in the next two.
 
     `rounding` (orders, C) is that of the Taylor coefficients of velocities, the first that of an
@@ -316,54 +337,44 @@ def pass_on(
         for c in system.ends[a]:
             if c >= 0:
                 part = error / (system.mass[c] * (order + 2))
-                rounding[order + 1, c] += damping[a] * part
+                rounding[order + 1, c] += system.damping[a] * part
                 rounding[order + 2, c] += stiffness[a] * part / (order + 3)
 
 
 @kernel
-def clusters_pulled(system: Reduced) -> Bools:
-    """Clusters (C,) on which a link acts."""
-    pulled = np.zeros(system.mass.size, np.bool_)
+def round_as_the_scene(system: Reduced, forcing: Forcing) -> Bools:
+    """Clusters (C,) of whose accelerations an own part of those of the scene is rounding.
+
+    Those on which a link acts, and not those that the tail of a Gaussian pulse alone moves, nor
+    those of supports, which are said to the last digit; but sinusoids pass zero at times that are
+    not.
+    """
+    rough = np.full(system.mass.size, forcing.family != _GAUSSIAN)
     for a in range(system.stiffness.size):
         pulls = system.stiffness[a] != 0.0 or system.damping[a] != 0.0
         if pulls or pull_per_z(a, system.memory) != 0.0:
             for c in system.ends[a]:
                 if c >= 0:
-                    pulled[c] = True
-    return pulled
-
-
-@kernel
-def _round_as_the_scene(system: Reduced, forcing: Forcing) -> Bools:
-    """Clusters (C,) of whose accelerations an own part of those of the scene is rounding.
-
-    Not those that the tail of a Gaussian pulse alone moves, nor those of supports, which are said
-    to the last digit; but sinusoids pass zero at times that are not.
-    """
-    result = clusters_pulled(system) | (forcing.family != _GAUSSIAN)
+                    rough[c] = True
     if forcing.family == LOADED:
         for a in range(system.link.size):
             if support_of(system.link[a], forcing.coefficients) >= 0:
                 row = row_of_link(system.link[a], forcing.coefficients)
-                result[system.ends[a, 0]] = is_sinusoidal(row, forcing.coefficients)
-    return result
+                rough[system.ends[a, 0]] = is_sinusoidal(row, forcing.coefficients)
+    return rough
 
 
 @kernel
-def _set_noise(
-    noise: Floats,
-    mass: Floats,
-    first: Ints,
-    second: Ints,
-    members: Ints,
-    label: Ints,
-    level: Floats,
+def _opening_of_pairs(
+    now: Pairs, acceleration: Floats, noise: Floats, opening: Floats, level: Floats
 ) -> None:
-    """Noise of the undecided `members` into `level` (K,): of each part the largest of clusters.
+    """Accelerations of the gaps and their noise: in each part the largest of its clusters.
 
-    `noise`, `mass` (C,) are those of each cluster, `label` the part of each member. What is between
-    two whose motion is given has their own alone.
+    What is between two whose motion is given has their own alone.
     """
+    first, second, members, label = now.first, now.second, now.members, now.label
+    for j in range(opening.size):
+        opening[j] = difference(acceleration, first[j], second[j])
     largest = np.zeros(noise.size)
     for i in range(members.size):
         for c in (first[members[i]], second[members[i]]):
@@ -372,6 +383,7 @@ def _set_noise(
     for i in range(members.size):
         one, other = first[members[i]], second[members[i]]
         level[members[i]] = largest[label[i]]
+        mass = now.system.mass
         if (one < 0 or is_support(one, mass)) and (other < 0 or is_support(other, mass)):
             level[members[i]] = max(
                 noise[one] if one >= 0 else 0.0, noise[other] if other >= 0 else 0.0

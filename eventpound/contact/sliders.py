@@ -34,19 +34,25 @@ from eventpound.contact.instant import (
     touching_of,
 )
 from eventpound.contact.kinks import still_rate
-from eventpound.contact.rest import ORDER, Touching, rest_contacts, take_noise
+from eventpound.contact.rest import (
+    ORDER,
+    Touching,
+    accelerations,
+    noise_of,
+    rest_contacts,
+    round_as_the_scene,
+    system_of,
+)
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import Clusters, form_clusters, form_clusters_of_few
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.reduced import Branches, Forcing, motion_rate, reduce, state_vector
-from eventpound.motion.forcing import decay_time, ground_taylor
-from eventpound.motion.loads import is_sinusoidal, load_taylor
+from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.box import least_in_box
 from eventpound.numerics.compiled import in_python
-from eventpound.tolerances import ACCELERATION, LAST_SPEED_OF_SLIDERS
+from eventpound.tolerances import LAST_SPEED_OF_SLIDERS
 
 
 def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Model) -> int:
@@ -155,7 +161,7 @@ def _forces(members: Ints, touching: Touching, at: Instant, model: Model) -> Flo
     """
     W = contact_rows(model)[members]
     low, high = np.zeros(members.size), np.full(members.size, np.inf)
-    a, start = _accelerations(touching), low.copy()
+    (a, *later), start = _accelerations(touching, model.supports), low.copy()
     of_sliders = members >= model.own_contacts
     links = model.sliders[members[of_sliders] - model.own_contacts]
     high[of_sliders] = model.law.memory[links, STRENGTH]
@@ -163,50 +169,25 @@ def _forces(members: Ints, touching: Touching, at: Instant, model: Model) -> Flo
     start[of_sliders] = low[of_sliders] * np.sign(at.branch[links])
     # What slips along its branch has been pulled by that force.
     a -= W.T @ start / model.mass
-    given = _given_motion(model.supports, touching)
-    a[: model.supports] = given[0]
-    q = np.column_stack((W @ a, *(W[:, : model.supports] @ later for later in given[1:])))
+    supports = slice(model.supports)
+    q = np.column_stack((W @ a, *(W[:, supports] @ further[supports] for further in later)))
     return least_in_box(W / model.mass @ W.T, q, low, high, start)
 
 
-def _accelerations(touching: Touching) -> Floats:
-    """Accelerations of the bodies (N,) without forces of contacts (m/s²)."""
+def _accelerations(touching: Touching, supports: int) -> Floats:
+    """Taylor coefficients of the accelerations of the bodies (orders, N) without contacts (m/s²).
+
+    The first, and those after it in which not all of the supports' vanish, these without rounding.
+    """
     mass, none = touching.mass, np.zeros_like(touching.undecided)
     clusters = form_clusters_of_few(touching.left, touching.right, touching.gap, none, none, mass)
-    branches = Branches(touching.stiffness, touching.preload)
-    ends, law, hysteretic = touching.link_ends, touching.law, touching.hysteretic
-    system = in_python(reduce)(ends, law, mass, hysteretic, clusters, branches, 0)
-    state, rate = (touching.u, touching.v, touching.z, np.empty(0)), np.empty(system.size)
-    y = in_python(state_vector)(clusters, system, mass, *state)
-    in_python(motion_rate)(0.0, y, rate, system, touching.forcing)
-    return np.asarray(rate[system.iv])
-
-
-def _given_motion(supports: int, touching: Touching) -> Floats:
-    """Taylor coefficients of the accelerations of supports, (orders, supports), without rounding.
-
-    Beside the ground (m/s²); the first, and those after it that do not all vanish.
-    """
-    forcing, numbers = touching.forcing, touching.forcing.coefficients
-    if supports == 0:
-        return np.zeros((1, 0))
-    ground, found = np.zeros(ORDER), np.zeros((supports, ORDER))
-    ground_taylor(forcing, forcing.start, ORDER, ground)
-    for row in range(1, supports + 1):
-        load_taylor(row, forcing, forcing.start, ORDER, found[row - 1])
-    rough = np.array([is_sinusoidal(row, numbers) for row in range(1, supports + 1)], np.bool_)
-    noise, own = np.zeros(supports), ACCELERATION * touching.acceleration
-    time = min(touching.time, decay_time(forcing, forcing.start))
-    kept = []
-    for order in range(ORDER):
-        beside = (found[:, order] - ground[order]) / (order + 1)
-        floor = np.zeros(supports)
-        in_python(take_noise)(order, beside, ground[order], own, rough, floor, noise)
-        beside[np.abs(beside) <= noise] = 0.0
-        if order == 0 or beside.any():
-            kept.append(beside)
-        own /= time * (order + 1)
-    return np.array(kept)
+    system, y = in_python(system_of)(touching, clusters)
+    found = in_python(accelerations)(y, system, ORDER if supports else 1, touching)
+    rough = in_python(round_as_the_scene)(system, touching.forcing)
+    noise = in_python(noise_of)(found, np.zeros(mass.size), rough, system, touching)
+    given = found[:, :supports]
+    given[np.abs(given) <= noise[:, :supports]] = 0.0
+    return found[np.append(True, given[1:].any(axis=1))]
 
 
 def _take_sides(members: Ints, force: Floats, noise: float, at: Instant, model: Model) -> Bools:

@@ -22,23 +22,19 @@ from eventpound.contact.impacts import (
 )
 from eventpound.contact.instant import begin_instant, end_instant, take_rests, touching_of
 from eventpound.contact.rest import (
-    ORDER,
+    LEFT_OVER,
     Touching,
-    clusters_pulled,
-    links_held,
-    pass_on,
-    take_decided,
-    take_noise,
+    decide_by_orders,
+    round_as_the_scene,
+    system_of,
 )
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.points import independent, on_clusters, projection_of
-from eventpound.mechanics.reduced import Branches, Reduced, reduce, state_vector
-from eventpound.mechanics.series import motion_series
-from eventpound.motion.base import Family
-from eventpound.motion.forcing import CurrentPiece, decay_time, ground_taylor
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.mechanics.reduced import Reduced
+from eventpound.motion.forcing import CurrentPiece
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lcp import solve_dense
 from eventpound.solvers.events.instant import settle_in_python
@@ -46,7 +42,6 @@ from eventpound.solvers.events.present import forcing_now
 from eventpound.solvers.events.run import Run
 from eventpound.solvers.events.underway import Underway
 from eventpound.tolerances import (
-    ACCELERATION,
     CANCELLED,
     DEPENDENT,
     LAST_SPEED,
@@ -146,20 +141,19 @@ def impact_over(
     return Impact(impulse, involved, lost, bool(solved))
 
 
-class _Pressed(NamedTuple):
-    """What moves with contacts pressed.
+class _AtPoints(NamedTuple):
+    """What moves with contacts pressed; the first four as in `Pairs`.
 
-    rows (K, C): directions of the gaps in the coordinates of the clusters. mass (C,) (kg).
-    leaves (K,): whether the contacts pressed leave the gap of a contact free. joined (C, C): which
-    clusters they make depend on each other.
+    rows (K, C): directions of the gaps in the coordinates of the clusters. together (K, C):
+    clusters that have to do with a contact by way of undecided and pressed ones.
     """
 
     system: Reduced
     y: Floats
-    rows: Floats
-    mass: Floats
+    rough: Bools
     leaves: Bools
-    joined: Bools
+    rows: Floats
+    together: Bools
 
 
 def rest_contacts_at_points(
@@ -176,46 +170,19 @@ def rest_contacts_at_points(
     at_points : ndarray of bool, shape (K,)
         Contacts at points.
     """
-    undecided = touching.undecided.copy()
-    pressed, kept = np.zeros(undecided.size, np.bool_), np.zeros(undecided.size, np.bool_)
-    while undecided.any():
-        now = _with_pressed(touching, rows, at_points, pressed)
-        kept |= undecided & ~now.leaves
-        undecided &= now.leaves
-        if not undecided.any():
-            break
-        order, opening, level = _first_deciding(touching, now, undecided)
-        if order < 0:
-            break
-        members = np.flatnonzero(undecided)
-        D, P = now.rows[members], now.system.projection
-        free = D / now.mass if P.size == 0 else (P @ (D / now.mass).T).T
-        force, after, solved = solve_dense(D @ free.T, opening[members], level[members].max())
-        if not solved:
-            return undecided, pressed, False
-        passed_over = touching.released & (order == 0)
-        take = in_python(take_decided)
-        if not take(members, force, after, level, passed_over, undecided, pressed):
-            break
-    return pressed | kept | undecided, pressed, True
+    given = rows, at_points
+    return in_python(decide_by_orders)(_pressed, _opening_of, _left_over, _solve, given, touching)
 
 
-def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: Bools) -> _Pressed:
+def _pressed(
+    given: tuple[Floats, Bools], touching: Touching, pressed: Bools, undecided: Bools
+) -> _AtPoints:
+    """What moves with these pressed."""
+    rows, at_points = given
     mass, ordinary = touching.mass, pressed & ~at_points
     left, right, gap = touching.left, touching.right, touching.gap
     clusters = in_python(form_clusters)(left, right, gap, ordinary, ordinary, mass)
-    system = in_python(reduce)(
-        touching.link_ends,
-        touching.law,
-        mass,
-        touching.hysteretic,
-        clusters,
-        Branches(touching.stiffness, touching.preload),
-        0,
-    )
-    y = in_python(state_vector)(
-        clusters, system, mass, touching.u, touching.v, touching.z, np.empty(0)
-    )
+    system, y = in_python(system_of)(touching, clusters)
     D, total = on_clusters(rows, clusters.of_body, mass, clusters.count)
     constraints = D[pressed & at_points]
     chosen = independent(constraints, total, np.ones(constraints.shape[0], np.bool_))
@@ -227,55 +194,37 @@ def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: B
     # In the metric of the masses, as the constraints are told apart.
     size = np.linalg.norm(left_of / np.sqrt(total), axis=1)
     leaves = size > DEPENDENT * np.linalg.norm(rows / np.sqrt(mass), axis=1)
-    return _Pressed(system, y, D, total, leaves, joined)
+    rough = joined @ in_python(round_as_the_scene)(system, touching.forcing)
+    together = _together(D != 0.0, joined, undecided & leaves)
+    return _AtPoints(system, y, rough, leaves, D, together)
 
 
-def _first_deciding(
-    touching: Touching, now: _Pressed, undecided: Bools
-) -> tuple[int, Floats, Floats]:
-    """Lowest order at which an undecided gap accelerates, or -1.
-
-    With it the coefficients of the accelerations of all gaps, shape (K,), and their noise.
-    """
-    forcing, system = touching.forcing, now.system
-    stiffness, damping = in_python(links_held)(system)
-    moved = (now.joined @ in_python(clusters_pulled)(system)) | (
-        forcing.family != int(Family.GAUSSIAN)
-    )
-    together = _parts(now, undecided)
-    time = min(touching.time, decay_time(forcing, forcing.start))
-    opening = level = np.zeros(undecided.size)
-    for highest in (1, ORDER):
-        Y = in_python(motion_series)(0.0, now.y, system, forcing, highest, touching.speed_noise)
-        ground = np.zeros(ORDER)
-        ground_taylor(forcing, forcing.start, highest, ground)
-        noise, rounding = np.empty(now.mass.size), np.zeros((highest + 2, now.mass.size))
-        own = ACCELERATION * touching.acceleration
-        for order in range(highest):
-            coefficient = Y[order + 1][system.iv]
-            in_python(take_noise)(
-                order, coefficient, ground[order], own, moved, rounding[order], noise
-            )
-            in_python(pass_on)(rounding, order, system, stiffness, damping)
-            level = np.max(np.where(together, noise, 0.0), axis=1, initial=0.0)
-            own /= time * (order + 1)
-            opening = now.rows @ coefficient
-            opening[np.abs(opening) <= level] = 0.0
-            deciding = undecided & (opening != 0.0)
-            if order == 0:
-                deciding &= ~touching.released
-            if deciding.any():
-                return order, opening, level
-    return -1, opening, level
-
-
-def _parts(now: _Pressed, undecided: Bools) -> Bools:
-    """Clusters that have to do with a contact by way of undecided and pressed ones, (K, C)."""
-    touched = now.rows != 0.0
-    linked = now.joined | (touched[undecided].T.astype(int) @ touched[undecided].astype(int) > 0)
+def _together(touched: Bools, joined: Bools, undecided: Bools) -> Bools:
+    """Of `_AtPoints`, from which clusters contacts touch (K, C), and which depend on each other."""
+    linked = joined | (touched[undecided].T.astype(int) @ touched[undecided].astype(int) > 0)
     for _ in range(max(1, int(np.ceil(np.log2(max(2, linked.shape[0])))))):
         linked = linked | (linked.astype(int) @ linked.astype(int) > 0)
     return np.asarray(touched.astype(int) @ linked.astype(int) > 0)
+
+
+def _opening_of(
+    now: _AtPoints, acceleration: Floats, noise: Floats, opening: Floats, level: Floats
+) -> None:
+    opening[:] = now.rows @ acceleration
+    level[:] = np.max(np.where(now.together, noise, 0.0), axis=1, initial=0.0)
+
+
+def _left_over(now: _AtPoints, acceleration: Floats, touching: Touching) -> Floats:
+    left = np.where(touching.released, LEFT_OVER * np.abs(now.rows @ acceleration), 0.0)
+    return np.max(np.where(now.together, left[:, None], 0.0), axis=0, initial=0.0)
+
+
+def _solve(
+    now: _AtPoints, members: Ints, opening: Floats, level: float
+) -> tuple[Floats, Floats, bool]:
+    D, P = now.rows[members], now.system.projection
+    free = D / now.system.mass if P.size == 0 else (P @ (D / now.system.mass).T).T
+    return solve_dense(D @ free.T, opening, level)
 
 
 def settle_points(now: Underway, piece: CurrentPiece) -> int:
