@@ -20,11 +20,11 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
-from eventpound.contact.cascade import TIRED
+from eventpound.contact.cascade import TIRED, last_speed
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import LawName
 from eventpound.solvers.base import Event, EventKind, Recording
-from eventpound.tolerances import EPS, FADED, LAST_SPEED, LAST_SPEED_OF_SLIDERS, LISTED_SPEED
+from eventpound.tolerances import EPS, FADED, LISTED_SPEED
 
 ROUNDINGS_OF_EVENT = 4
 """Of the state at an event: its place in time, the state there, the constraint, the impulse."""
@@ -43,12 +43,11 @@ def displaced(recording: Recording, scene: Scene) -> float:
         What moved.
     """
     sliders = LawName.SLIDER in scene.branched_springs.values()
-    last_speed = LAST_SPEED_OF_SLIDERS if sliders else LAST_SPEED
     roundings = recording.work.steps + ROUNDINGS_OF_EVENT * sum(e.count for e in recording.events)
-    return EPS * roundings + _taken(recording.events, last_speed)
+    return EPS * roundings + _taken(recording.events, last_speed(1.0, sliders))
 
 
-def _taken(events: Sequence[Event], last_speed: float) -> float:
+def _taken(events: Sequence[Event], last: float) -> float:
     """Speeds taken from cascades at their ends, in parts of the fastest."""
     groups: defaultdict[float, set[int]] = defaultdict(set)
     ends: defaultdict[float, int] = defaultdict(int)
@@ -59,7 +58,7 @@ def _taken(events: Sequence[Event], last_speed: float) -> float:
             ends[event.t] += event.count
     taken = 0.0
     for t, count in ends.items():
-        taken += last_speed
+        taken += last
         if len(groups[t]) > 1:
             taken += 10.0 * FADED
         taken += LISTED_SPEED * (count // TIRED)

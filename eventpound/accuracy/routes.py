@@ -145,7 +145,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
 """Module, what it does, and the formulations that run through it."""
 SHARED_AT_POINTS = {
     f"{_MECHANICS}.points": "constraints of resting contacts at points, their forces",
-    f"{_EVENTS}.point_instant": "impacts at points, and which contacts open there",
+    "eventpound.contact.points": "impacts at points, and which contacts open there",
 }
 """What routes of a scene with contacts at points between bodies share besides."""
 SHARED_WITH_LAWS = {

@@ -7,7 +7,7 @@ without an end while it loses energy, and has a limit; without a loss it has non
 
     what                                                   then
     closing speed below `LAST_SPEED` L/T                   plastic: the contacts rest
-    the same of all contacts, `LAST_SPEED_OF_SLIDERS`      the same, where there are sliders
+    or `LAST_SPEED_OF_SLIDERS`, where there are sliders    the same
     below `LISTED_SPEED` of the fastest, `TIRED` problems  plastic; n times after n as many
     below `FADED` of the fastest of the same instant       rounding: no speed at all
     interval below `LAST_INTERVAL` T                       gaps are zero, plastic
@@ -27,7 +27,14 @@ from eventpound.contact.state import Now
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.contact import Contact
 from eventpound.scene.spring import Spring
-from eventpound.tolerances import CASCADE_OVER, FLEETING, LAST_SPEED, LISTED_SPEED, LOSSLESS
+from eventpound.tolerances import (
+    CASCADE_OVER,
+    FLEETING,
+    LAST_SPEED,
+    LAST_SPEED_OF_SLIDERS,
+    LISTED_SPEED,
+    LOSSLESS,
+)
 
 TIRED = 10_000
 """Impact problems of one cascade after which those too slow to be listed are taken as plastic:
@@ -43,17 +50,25 @@ MOST_PROBLEMS = 10_000
 
 
 @scalar_kernel
-def is_plastic(approach: float, fastest: float, scale: float, in_a_row: int, here: int) -> bool:
+def last_speed(speed: float, slides: bool) -> float:
+    """Closing speed (m/s) up to which an impact is the last, of a scene's own L/T (m/s).
+
+    `slides`: whether the scene has sliders.
+    """
+    return (LAST_SPEED_OF_SLIDERS if slides else LAST_SPEED) * speed
+
+
+@scalar_kernel
+def is_plastic(approach: float, fastest: float, last: float, in_a_row: int, here: int) -> bool:
     """Whether an impact is the last of a cascade, after which its contacts rest.
 
     Parameters
     ----------
-    approach, fastest, scale : float
-        Closing speed, the fastest of the run so far, and the scene's own L/T (m/s).
+    approach, fastest, last : float
+        Closing speed, the fastest of the run so far, and `last_speed` (m/s).
     in_a_row, here : int
         Impact problems of the cascade and of this instant so far.
     """
-    last = LAST_SPEED * scale
     if in_a_row > TIRED:
         last = max(last, LISTED_SPEED * (in_a_row / TIRED) * fastest)
     return here > MOST_PROBLEMS or approach <= last

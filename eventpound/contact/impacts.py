@@ -123,15 +123,15 @@ def put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
 
 
 @scalar_kernel
-def is_last(approach: float, length: float, time: float, now: Now) -> bool:
+def is_last(approach: float, last_speed: float, time: float, now: Now) -> bool:
     """Whether an impact of this closing speed (m/s) is taken as plastic; counts it.
 
-    length, time: the scene's own, L (m) and T (s).
+    last_speed (m/s): that of `eventpound.contact.cascade`. time: the scene's own, T (s).
     """
     now.fastest = max(now.fastest, approach)
     now.here += 1
     now.in_a_row += 1
-    last = is_plastic(approach, now.fastest, length / time, now.in_a_row, now.here)
+    last = is_plastic(approach, now.fastest, last_speed, now.in_a_row, now.here)
     return last or _collapsed(now.interval, time)
 
 
@@ -139,14 +139,14 @@ class Meeting(NamedTuple):
     """A single contact that closes.
 
     contact. before: rate of its gap γ⁻ (m/s). restitution: ε. inverse: 1/m of both bodies together
-    (1/kg). length, time: the scene's own, L (m) and T (s).
+    (1/kg). last_speed, time: as `is_last` has them.
     """
 
     contact: int
     before: float
     restitution: float
     inverse: float
-    length: float
+    last_speed: float
     time: float
 
 
@@ -160,7 +160,7 @@ def rebound(meeting: Meeting, now: Now, events: Floats) -> tuple[float, float]:
         γ⁺ (m/s), and Λ (N s).
     """
     before, restitution = meeting.before, meeting.restitution
-    plastic = is_last(-before, meeting.length, meeting.time, now)
+    plastic = is_last(-before, meeting.last_speed, meeting.time, now)
     listed = -before >= LISTED_SPEED * now.fastest
     kind = kind_of_impact(listed, plastic, before, restitution)
     if plastic:
@@ -179,7 +179,7 @@ def _impact_of_only(j: int, at: Instant) -> None:
     """A single contact closes: a scalar instead of a complementarity problem."""
     left, right = at.left[j], at.right[j]
     inverse = inverse_mass(left, right, at.mass)
-    meeting = Meeting(j, at.gap_rate[j], at.restitution[j], inverse, at.length, at.time)
+    meeting = Meeting(j, at.gap_rate[j], at.restitution[j], inverse, at.last_speed, at.time)
     after, impulse = rebound(meeting, at.now[0], at.events)
     push_apart(j, impulse, at.mass, at.left, at.right, at.gap_rate, at.v)
     at.gap_rate[j] = after
@@ -221,7 +221,7 @@ def next_problem(shut: Bools, at: Instant) -> tuple[int, bool]:
         return ENDLESS, False
     if now.here % WINDOW == 0:
         now.lost_here = now.passed_on = 0.0
-    return PROBLEM, is_last(approach, at.length, at.time, now)
+    return PROBLEM, is_last(approach, at.last_speed, at.time, now)
 
 
 @deferred_kernel

@@ -25,14 +25,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.impacts import DONE, put_as_one, settle_closed
-from eventpound.contact.instant import (
-    any_may_rest,
-    begin_instant,
-    end_instant,
-    take_rests,
-    touching_of,
-)
+from eventpound.contact.impacts import DONE, put_as_one
+from eventpound.contact.instant import any_may_rest, settle_impacts, take_rests, touching_of
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import (
     ORDER,
@@ -52,7 +46,6 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.box import least_in_box
 from eventpound.numerics.compiled import in_python
-from eventpound.tolerances import LAST_SPEED_OF_SLIDERS
 
 
 def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Model) -> int:
@@ -71,12 +64,7 @@ def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Mode
     """
     _end_sticks_and_slips(force, kinked, at, model)
     at.gap[model.own_contacts :] = np.inf
-    in_python(begin_instant)(at)
-    approach = -at.gap_rate[at.gap == 0.0].min(initial=0.0)
-    if 0.0 < approach <= LAST_SPEED_OF_SLIDERS * at.length / at.time:
-        # As after an interval that is none.
-        at.now[0].interval = 0.0
-    return int(in_python(end_instant)(in_python(settle_closed)(at), at))
+    return int(in_python(settle_impacts)(at))
 
 
 def decide_sticks(z: Floats, forcing: Forcing, noise: float, at: Instant, model: Model) -> int:
@@ -96,6 +84,8 @@ def decide_sticks(z: Floats, forcing: Forcing, noise: float, at: Instant, model:
         The scene, its sliders with contacts of their own.
     """
     _offer(at, model)
+    # Branches of sliders are decided here.
+    at.now[0].stale = True
     if not in_python(any_may_rest)(at):
         # A cascade of impacts between what slips needs no more.
         return DONE

@@ -56,6 +56,7 @@ class Instant(NamedTuple):
     restitution: Floats  # (K,)
     length: float  # the scene's own (m)
     time: float  # the scene's own (s)
+    last_speed: float  # closing speed up to which an impact is the last (m/s)
 
     # What moves.
     u: Floats  # (N,): displacement (m)

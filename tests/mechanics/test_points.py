@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eventpound.contact.points import impact_over
 from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.points import independent, projection_of, unique_forces_of
 from eventpound.numerics.compiled import in_python
-from eventpound.solvers.events.point_instant import impact_over
 
 EPS = np.finfo(float).eps
 

@@ -12,6 +12,7 @@ from eventpound.contact.cascade import (
     WINDOW,
     is_endless,
     is_plastic,
+    last_speed,
     long_message,
 )
 from eventpound.contact.rest import is_none
@@ -98,12 +99,15 @@ def test_the_longer_an_elastic_contact_bounces_the_less_it_may_keep() -> None:
     # Plastic below 1e-15 L/T; after n times 10 000 in a row below n 1e-9 of the fastest, so
     # that bounces of any speed end.
     speeds = (0.9e-15, 1.1e-15, 0.9e-9, 1.9e-9)
-    plastic = [[is_plastic(speed, 1.0, 1.0, n, 1) for speed in speeds] for n in (1, 10_001, 20_000)]
+    last = last_speed(1.0, False)
+    plastic = [
+        [is_plastic(speed, 1.0, last, n, 1) for speed in speeds] for n in (1, 10_001, 20_000)
+    ]
     assert plastic == [[True, False, False, False], [True] * 3 + [False], [True] * 4]
-    assert is_plastic(1.0, 1.0, 1.0, 1, MOST_PROBLEMS + 1)
+    assert is_plastic(1.0, 1.0, last, 1, MOST_PROBLEMS + 1)
     # However fast the run was once, bounces end at the same speed.
-    assert [is_plastic(0.9e-15, fastest, 1.0, 1, 1) for fastest in (1e-9, 1e3)] == [True, True]
-    assert not is_plastic(1.1e-15, 1e3, 1.0, 1, 1)
+    assert [is_plastic(0.9e-15, fastest, last, 1, 1) for fastest in (1e-9, 1e3)] == [True, True]
+    assert not is_plastic(1.1e-15, 1e3, last, 1, 1)
     # Without any loss there is no limit, whenever it is looked at.
     assert not is_endless(0, 0.0, 0.0)
     assert [is_endless(WINDOW, lost, 1.0) for lost in (0.0, 1e-13, 1e-11)] == [True, True, False]

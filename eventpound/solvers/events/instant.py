@@ -9,8 +9,6 @@ are followed impact by impact until `eventpound.contact.cascade` calls them over
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from eventpound.contact.cascade import LONGEST_CASCADE, is_fleeting
@@ -21,7 +19,7 @@ from eventpound.contact.kinks import lacks_branch, pass_kinks
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import CurrentPiece, next_corner, time_to_look
-from eventpound.numerics.compiled import by_python, in_python, kernel
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, look
 from eventpound.solvers.events.law_contacts import gather, turn_elements
@@ -52,7 +50,7 @@ ready for a step; to put it, the last, into the history."""
 (OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, IN_PYTHON) = range(20, 25)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
 steps are used up; links have no branch yet; what is to be done is that of
-`eventpound.solvers.events.point_instant` or `eventpound.contact.sliders`."""
+`eventpound.contact.points` or `eventpound.contact.sliders`."""
 NOT_FINITE, UNENDING = 30, 32
 """How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
 
@@ -212,32 +210,6 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     if ended == OVER:
         end_cascade(state.resting, now, run.record.events)
     return ended
-
-
-def settle_in_python(run: Run, impacts: Callable[[], int], rests: Callable[[], int]) -> int:
-    """What `_settle` does in its first two phases, by other rules in Python; ends as `proceed`.
-
-    Parameters
-    ----------
-    run : Run
-        The run, at an instant whose phase is DUTIES or RESTS.
-    impacts, rests : callable
-        The impacts of the instant, and who rests after them; DONE, or how they fail.
-    """
-    progress = run.state.progress[0]
-    with by_python():
-        if progress.phase == DUTIES:
-            ended = impacts()
-            if ended != DONE:
-                return ended
-            progress.phase = RESTS
-        if in_python(lacks_branch)(run.instant):
-            return FIRST_BRANCHES
-        in_python(turn_elements)(run.laws, run.instant)
-        ended = rests()
-        if ended == DONE:
-            progress.phase = ARRIVAL
-        return ended
 
 
 @kernel

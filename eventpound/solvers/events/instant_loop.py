@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from eventpound.contact.cascade import endless_message, long_message
 from eventpound.contact.impacts import DONE, ENDLESS, FULL, NO_FORCES, NO_IMPACT
-from eventpound.contact.kinks import choose_branches, choose_clear_branches
+from eventpound.contact.kinks import choose_branches, choose_clear_branches, lacks_branch
+from eventpound.contact.points import decide_at_points, settle_at_points
 from eventpound.contact.rest import ORDER
 from eventpound.contact.sliders import decide_sticks, settle_beside_sliders
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import CurrentPiece, ground_onset
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python
+from eventpound.numerics.compiled import by_python, in_python
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.instant import (
     AGAIN,
+    ARRIVAL,
     DUTIES,
     FIRST_BRANCHES,
     IN_PYTHON,
@@ -33,10 +33,9 @@ from eventpound.solvers.events.instant import (
     TAKE,
     UNENDING,
     proceed,
-    settle_in_python,
 )
+from eventpound.solvers.events.law_contacts import turn_elements
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.point_instant import settle_points
 from eventpound.solvers.events.present import forcing_now
 from eventpound.solvers.events.second_look import BROKEN, EVENT
 from eventpound.solvers.events.underway import Underway
@@ -77,9 +76,7 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
         elif ended == NEW_MODE:
             now.enter_mode()
         elif ended == IN_PYTHON:
-            # No scene has both.
-            settle = _settle_sliders if now.model.sliders.size else settle_points
-            ended = settle(now, piece)
+            ended = _settle_in_python(now, piece)
         if ended == FULL:
             now.make_room()
         elif ended == FIRST_BRANCHES:
@@ -88,26 +85,36 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
             raise _failure(ended, now)
 
 
-def _settle_sliders(now: Underway, piece: CurrentPiece) -> int:
-    """What the present instant demands of a scene with sliders; ends as `proceed` does."""
-    run, model = now.run, now.model
-    # The last look is at the event.
-    impacts = partial(
-        settle_beside_sliders,
-        run.looks[2].contact_force[0],
-        run.happened.kinked,
-        run.instant,
-        model,
-    )
-    noise = now.table.force_noise
+def _settle_in_python(now: Underway, piece: CurrentPiece) -> int:
+    """What the present instant demands beside contacts at points or sliders; ends as `proceed`.
 
-    def rests() -> int:
-        ended = decide_sticks(run.state.z, forcing_now(piece, now.t), noise, run.instant, model)
+    No scene has both. This is what `eventpound.solvers.events.instant` does in its first two
+    phases, by other rules.
+    """
+    run, model, slides = now.run, now.model, now.model.sliders.size > 0
+    at, progress = run.instant, run.state.progress[0]
+    with by_python():
+        if progress.phase == DUTIES:
+            if slides:
+                # The last look is at the event.
+                force = run.looks[2].contact_force[0]
+                ended = settle_beside_sliders(force, run.happened.kinked, at, model)
+            else:
+                ended = settle_at_points(at, model)
+            if ended != DONE:
+                return ended
+            progress.phase = RESTS
+        if in_python(lacks_branch)(at):
+            return FIRST_BRANCHES
+        in_python(turn_elements)(run.laws, at)
+        z, forcing = run.state.z, forcing_now(piece, now.t)
+        if slides:
+            ended = decide_sticks(z, forcing, now.table.force_noise, at, model)
+        else:
+            ended = decide_at_points(z, forcing, at, model)
         if ended == DONE:
-            run.state.now["stale"][0] |= (run.instant.branch != now.mode.branch).any()
+            progress.phase = ARRIVAL
         return ended
-
-    return settle_in_python(run, impacts, rests)
 
 
 def _failure(ended: int, now: Underway) -> ComputationError:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import last_speed
 from eventpound.contact.event_rows import EVENT_WIDTH, events_of
 from eventpound.contact.state import Instant, Now, begin
 from eventpound.errors import ComputationError
@@ -359,6 +360,7 @@ def _instant_of(
         restitution=model.restitution,
         length=rules.length,
         time=rules.time,
+        last_speed=last_speed(rules.length / rules.time, model.sliders.size > 0),
         u=state.u,
         v=state.v,
         gap=state.gap,

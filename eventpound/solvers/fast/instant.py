@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.cascade import last_speed
 from eventpound.contact.impacts import DONE, put_as_one
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import still_rate
@@ -154,6 +155,7 @@ def instant_of(run: FastRun) -> Instant:
         contacts.restitution,
         limits.length,
         limits.time,
+        last_speed(limits.length / limits.time, links.sliders.size > 0),
         state.u,
         state.v,
         state.gap,

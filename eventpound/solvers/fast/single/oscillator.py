@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from eventpound.contact.cascade import end_flight
+from eventpound.contact.cascade import end_flight, last_speed
 from eventpound.contact.event_rows import new_group, write_change
 from eventpound.contact.impacts import DONE, FULL, Meeting, end_impacts, rebound
 from eventpound.contact.modes import ACCELERATION, IMPACT, duty, transition_code
@@ -83,7 +83,8 @@ from eventpound.tolerances import SAME_SAMPLE
 def impact_at_barrier(side: float, j: int, run: SingleRun) -> None:
     """Newton's law at the barrier on one side, contact j, which the body has met."""
     body, limits, restitution = run.body, run.limits, run.contacts.restitution[j]
-    meeting = Meeting(j, -side * body.v, restitution, 1.0 / body.mass, limits.length, limits.time)
+    last = last_speed(limits.length / limits.time, False)
+    meeting = Meeting(j, -side * body.v, restitution, 1.0 / body.mass, last, limits.time)
     after, _ = rebound(meeting, run.now, run.events)
     end_impacts(run.now)
     body.v = -side * after

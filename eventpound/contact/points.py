@@ -7,7 +7,6 @@ contacts have nothing more to compile. An instant takes some milliseconds.
 
 from __future__ import annotations
 
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -31,20 +30,15 @@ from eventpound.contact.rest import (
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.descriptor import contact_rows
+from eventpound.mechanics.model import Model
 from eventpound.mechanics.points import independent, on_clusters, projection_of
-from eventpound.mechanics.reduced import Reduced
-from eventpound.motion.forcing import CurrentPiece
+from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lcp import solve_dense
-from eventpound.solvers.events.instant import settle_in_python
-from eventpound.solvers.events.present import forcing_now
-from eventpound.solvers.events.run import Run
-from eventpound.solvers.events.underway import Underway
 from eventpound.tolerances import (
     CANCELLED,
     DEPENDENT,
-    LAST_SPEED,
     QUIET,
     ZERO_SINGULAR_VALUE,
 )
@@ -59,15 +53,30 @@ class Impact(NamedTuple):
     solved: bool
 
 
-def settle_closed_at_points(rows: Floats, at: Instant) -> int:
+def settle_at_points(at: Instant, model: Model) -> int:
+    """Impacts of an instant of a scene with contacts at points; ends as `settle_impacts`."""
+    rows = contact_rows(model)
+    in_python(begin_instant)(at)
+    ended = _settle_closed(rows, at)
+    # No force has vanished that presses bodies which an impact has moved.
+    moved = np.abs(rows) @ (at.v != at.before) > 0.0
+    at.released[moved] = at.vanished[moved] = False
+    return int(in_python(end_instant)(ended, at))
+
+
+def decide_at_points(z: Floats, forcing: Forcing, at: Instant, model: Model) -> int:
+    """Who rests after the impacts of an instant; as `decide_rests`."""
+    touching = in_python(touching_of)(z, forcing, at)
+    at_points = np.isin(np.arange(model.contacts), model.points)
+    given = contact_rows(model), at_points
+    found = in_python(decide_by_orders)(_pressed, _opening_of, _left_over, _solve, given, touching)
+    return int(in_python(take_rests)(*found, at))
+
+
+def _settle_closed(rows: Floats, at: Instant) -> int:
     """Put closed contacts on their constraints, and impacts until none approaches.
 
-    Parameters
-    ----------
-    rows : ndarray, shape (K, N)
-        Directions of the gaps, Wᵀ.
-    at : Instant
-        As `eventpound.contact.impacts.settle_closed` has it.
+    `rows` (K, N): directions of the gaps, Wᵀ.
     """
     in_python(close_collapsed)(at)
     shut = at.gap == 0.0
@@ -103,8 +112,7 @@ def _impacts(rows: Floats, shut: Bools, at: Instant) -> int:
         if plastic:
             # Beside a last impact nothing opens more slowly than such impacts are: else two
             # contacts of one body open each other until no number is small enough.
-            least = LAST_SPEED * at.length / at.time
-            gap_rate[shut & (gap_rate > 0.0) & (gap_rate <= least)] = 0.0
+            gap_rate[shut & (gap_rate > 0.0) & (gap_rate <= at.last_speed)] = 0.0
         in_python(list_impacts)(plastic, before, done.impulse, done.involved, done.lost, at)
 
 
@@ -154,24 +162,6 @@ class _AtPoints(NamedTuple):
     leaves: Bools
     rows: Floats
     together: Bools
-
-
-def rest_contacts_at_points(
-    touching: Touching, rows: Floats, at_points: Bools
-) -> tuple[Bools, Bools, bool]:
-    """The acceleration problem, order by order; returns as `rest_contacts`.
-
-    Parameters
-    ----------
-    touching : Touching
-        The problem.
-    rows : ndarray, shape (K, N)
-        Directions of the gaps, Wᵀ.
-    at_points : ndarray of bool, shape (K,)
-        Contacts at points.
-    """
-    given = rows, at_points
-    return in_python(decide_by_orders)(_pressed, _opening_of, _left_over, _solve, given, touching)
 
 
 def _pressed(
@@ -225,36 +215,3 @@ def _solve(
     D, P = now.rows[members], now.system.projection
     free = D / now.system.mass if P.size == 0 else (P @ (D / now.system.mass).T).T
     return solve_dense(D @ free.T, opening, level)
-
-
-def settle_points(now: Underway, piece: CurrentPiece) -> int:
-    """Impacts of the present instant, and who rests after them; ends as `proceed` does.
-
-    Parameters
-    ----------
-    now : Underway
-        The run.
-    piece : CurrentPiece
-        The ground motion.
-    """
-    rows = contact_rows(now.model)
-    return settle_in_python(
-        now.run, partial(_impacts_of, now.run, rows), partial(_rests, now, piece, rows)
-    )
-
-
-def _impacts_of(run: Run, rows: Floats) -> int:
-    at = run.instant
-    in_python(begin_instant)(at)
-    ended = settle_closed_at_points(rows, at)
-    # No force has vanished that presses bodies which an impact has moved.
-    moved = np.abs(rows) @ (at.v != at.before) > 0.0
-    at.released[moved] = at.vanished[moved] = False
-    return int(in_python(end_instant)(ended, at))
-
-
-def _rests(now: Underway, piece: CurrentPiece, rows: Floats) -> int:
-    at = now.run.instant
-    touching = in_python(touching_of)(now.run.state.z, forcing_now(piece, now.t), at)
-    at_points = np.isin(np.arange(now.model.contacts), now.model.points)
-    return int(in_python(take_rests)(*rest_contacts_at_points(touching, rows, at_points), at))
