@@ -56,6 +56,15 @@ def transition_code(was_resting: bool, rests: bool, gap_rate: float) -> int:
 
 
 @scalar_kernel
+def ends_of_stick(slip: float) -> tuple[float, float]:
+    """Contact forces between which a slider sticks (N), from the force of its slip on its branch.
+
+    From that friction is taken back by up to twice its bound.
+    """
+    return min(2.0 * slip, 0.0), max(2.0 * slip, 0.0)
+
+
+@scalar_kernel
 def depth_of(value: float, noise: float) -> float:
     """How far below zero a contact force, gap or room of a link on its branch has vanished.
 

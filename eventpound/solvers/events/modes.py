@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from eventpound.contact.modes import ends_of_stick
 from eventpound.contact.sliders import locked_beside_sliders
 from eventpound.mechanics.clusters import Clusters, form_clusters_of_few
 from eventpound.mechanics.elements import branch_ends, has_branches, memory_on_branches
@@ -180,12 +181,8 @@ class ModeTable:
 
 
 def _force_limits(model: Model) -> tuple[Floats, Floats]:
-    """Forces between which contacts stay at rest (N), shape (K,), of a model on its branches.
-
-    From that of a slip on its branch a slider is taken back by up to twice its friction.
-    """
+    """Forces between which contacts stay at rest (N), shape (K,), of a model on its branches."""
     low, high = np.zeros(model.contacts), np.full(model.contacts, np.inf)
-    twice = 2.0 * model.law.memory[model.sliders, STRENGTH]
-    own = model.own_contacts
-    low[own:], high[own:] = np.minimum(twice, 0.0), np.maximum(twice, 0.0)
+    for j, slip in enumerate(model.law.memory[model.sliders, STRENGTH], model.own_contacts):
+        low[j], high[j] = in_python(ends_of_stick)(slip)
     return low, high

@@ -100,7 +100,7 @@ def _put_supports(piece: CurrentPiece, run: FastRun) -> None:
 
     A step leaves them where its series end, off by a part of the tolerance. What rests on a
     support goes with it, and open gaps, which are variables of their own, follow. Rounding is left
-    alone: a gap may be smaller.
+    alone, as a gap may be smaller, but for velocities: they tell whether a slip ends.
     """
     state, mass, limits, contacts = run.state, run.plan.mass, run.plan.limits, run.plan.contacts
     for s in range(mass.size):
@@ -110,13 +110,13 @@ def _put_supports(piece: CurrentPiece, run: FastRun) -> None:
         u, v = support_motion(s + 1, piece, state.now[0].t)
         du, dv, time = u - state.u[s], v - state.v[s], limits.time
         size = limits.length + abs(u) + abs(v) * time
-        if max(abs(du), abs(dv) * time) <= LENGTH * size:
-            continue
+        strays = max(abs(du), abs(dv) * time) > LENGTH * size
         for b in range(mass.size):
             if _goes_with(b, s, run):
-                state.u[b], state.v[b] = state.u[b] + du, state.v[b] + dv
+                state.v[b] += dv
+                state.u[b] += du if strays else 0.0
         for j in range(state.gap.size):
-            if state.gap[j] > 0.0 and not state.resting[j]:
+            if strays and state.gap[j] > 0.0 and not state.resting[j]:
                 side = 1.0 if _goes_with(contacts.right[j], s, run) else 0.0
                 side -= 1.0 if _goes_with(contacts.left[j], s, run) else 0.0
                 state.gap[j] = max(0.0, state.gap[j] + side * du)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from eventpound.contact.impacts import DONE
 from eventpound.contact.kinks import still_rate
+from eventpound.contact.modes import ends_of_stick
 from eventpound.contact.sliders import (
     decide_sticks,
     locked_beside_sliders,
@@ -20,8 +21,6 @@ from eventpound.mechanics.clusters import form_clusters_of_few
 from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
-from eventpound.motion.forcing import CurrentPiece
-from eventpound.motion.loads import support_motion
 from eventpound.numerics.compiled import by_python
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.followed import put_on_branches
@@ -67,21 +66,21 @@ def room_at_rest(j: int, force: float, run: FastRun) -> float:
     """How far the force of a contact (N) is from where its rest ends, or the stick of a slider."""
     if not of_slider(j, run):
         return force
-    slip = _slip_force(j, run)
-    return abs(slip) - abs(slip - force)
+    low, high = ends_of_stick(_slip_force(j, run))
+    return min(force - low, high - force)
 
 
 @compiled_deferred
-def set_room(j: int, beyond: int, order: int, run: FastRun) -> None:
-    """Taylor coefficients of how far a slider is from either end of its stick, into `series.d`.
+def set_room(j: int, end: int, order: int, run: FastRun) -> None:
+    """Taylor coefficients of how far a slider is from an end of its stick, into `series.d`.
 
-    `beyond`: 1 of the end at which friction is that of a slip against its branch, else 0.
+    `end`: 0 of the lower, 1 of the upper.
     """
-    force, slip = run.series.contact_force[j], _slip_force(j, run)
-    sign = 1.0 if (slip > 0.0) == (beyond == 0) else -1.0
+    force, d = run.series.contact_force[j], run.series.d
+    low, high = ends_of_stick(_slip_force(j, run))
     for k in range(order - 1):
-        run.series.d[k] = sign * force[k]
-    run.series.d[0] += 2.0 * abs(slip) * beyond
+        d[k] = force[k] if end == 0 else -force[k]
+    d[0] += -low if end == 0 else high
 
 
 @compiled_apart
@@ -168,7 +167,6 @@ def settle_sliders(noise: float, run: FastRun, model: Model) -> int:
     state, seen = run.state, run.seen
     with by_python():
         at, piece = instant_of(run), piece_of(state.progress[0].piece, run.plan.ground)
-        _put_velocities(piece, run, model)
         ended = settle_beside_sliders(seen.contact_force, run.happened.kinked, at, model)
         run.happened.kinked[:] = False
         if ended != DONE:
@@ -183,15 +181,6 @@ def settle_sliders(noise: float, run: FastRun, model: Model) -> int:
             _unlock(run, model)
             state.progress[0].due = SETTLED
     return ended
-
-
-def _put_velocities(piece: CurrentPiece, run: FastRun, model: Model) -> None:
-    """Give supports, and what rests on them, their velocities, which tell whether a slip ends."""
-    state, of_body = run.state, run.series.of_body
-    for s in range(model.supports):
-        # The load of a support has its number, from 1.
-        _, v = support_motion(s + 1, piece, float(state.now[0].t))
-        state.v[of_body == of_body[s]] += v - state.v[s]
 
 
 def _unlock(run: FastRun, model: Model) -> None:
