@@ -106,7 +106,8 @@ def test_the_force_is_an_unknown_of_ida(name: str) -> None:
 
     def advance(tau: float, first: int, excess: float, bounds: Bounds, e: object) -> object:
         done = stepping(tau, first, excess, bounds._replace(most=1), e)
-        d, y = ida._own.descriptor, ida._memory.state.copy()
+        d, memory = ida._own.descriptor, ida._memory
+        y = memory._values(memory.vector, d.size).copy()
         if d.opening.size:
             own = slice(2 * d.mass.size + d.hysteretic, d.size)
             with by_python():

@@ -14,6 +14,7 @@ from eventpound.case.case import SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.pulses import Sine
+from eventpound.numerics.lending import on_loan
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -34,7 +35,7 @@ from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.loop import EventLoop, Segment
 from eventpound.solvers.events.roots import on_the_root, root_functions
 from eventpound.solvers.events.second_look import INTEGRATOR
-from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
+from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED, Examination
 from eventpound.solvers.sundials import library
 from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
 from tests.hard.outcome import Outcome, verdict
@@ -337,9 +338,10 @@ def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str) -> None:
 
     def with_a_leap(steps: Any, at_root: Any, *given: Any) -> Any:
         def at_root_there(
-            start: float, tau: float, bound: np.ndarray, *others: Any
+            start: float, tau: float, first: int, excess: float, e: Examination
         ) -> tuple[int, float]:
-            verdict, end = at_root(start, tau, bound if said else 0.0 * bound, *others)
+            there = e if said else on_loan(e._replace(z_bound=0.0 * e.z_bound))
+            verdict, end = at_root(start, tau, first, excess, there)
             said.append((tau, verdict, end))
             return verdict, end
 

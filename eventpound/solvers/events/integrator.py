@@ -45,12 +45,14 @@ class Bounds(NamedTuple):
 
 
 @scalar_kernel
-def last_time(start: float, at_samples: bool, bounds: Bounds, forcing: Forcing) -> float:
+def last_time(start: float, bounds: Bounds, forcing: Forcing) -> float:
     """Local time (s) beyond which a step from `start` (s) may not go."""
     origin = forcing.start
     longest = min(bounds.longest, time_to_look(forcing, origin + start))
     stop = min(bounds.stop, start + longest)
-    return next_corner(forcing, origin + start, origin + stop) - origin if at_samples else stop
+    return (
+        next_corner(forcing, origin + start, origin + stop) - origin if bounds.at_samples else stop
+    )
 
 
 class StepsTaken(NamedTuple):

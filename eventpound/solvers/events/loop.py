@@ -30,7 +30,6 @@ from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillE
 from eventpound.solvers.events.recorder import (
     energy_ledger,
     impact_terms,
-    is_due,
     kept,
     own_recording,
 )
@@ -138,8 +137,7 @@ class Segment:
         while self.end < self._length:
             try:
                 now.go_on(self.origin + self.end)
-                # An integrator in Python leaves the history of its steps to a second look.
-                if (self._advance() or self._is_due()) and self._look_again():
+                if self._advance() and self._look_again():
                     return True
             except ComputationError:
                 y = self._examined.y[self._reached_row]
@@ -149,10 +147,6 @@ class Segment:
         y = self._examined.y[1 - self._first]
         take_state(now, self.piece, y, self.piece.stop)
         return False
-
-    def _is_due(self) -> bool:
-        journal = self.now.record.journal
-        return bool(in_python(is_due)(self.origin + self.end, journal))
 
     def _look_again(self) -> bool:
         """Look for events in the last step; whether there is one."""

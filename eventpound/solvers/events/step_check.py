@@ -125,6 +125,20 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
 
 
 @kernel
+def audit(
+    y: Floats, rate: Floats, seen: Observed, z_allowed: float, e: Examination
+) -> tuple[int, float]:
+    """Whether a state and its rate are numbers, and its |z| within their bounds; as `examine`."""
+    excess = -1.0
+    for h in range(e.z_bound.size):
+        excess = max(excess, abs(seen.z[0, h]) - e.z_bound[h])
+    for i in range(y.size):
+        if not np.isfinite(y[i]) or not np.isfinite(rate[i]):
+            return NOT_FINITE, excess
+    return (BEYOND_BOUND if excess > z_allowed else CLEAR), excess
+
+
+@kernel
 def examine(
     tau_0: float, tau_1: float, first: int, z_allowed: float, e: Examination
 ) -> tuple[int, float]:
@@ -153,14 +167,9 @@ def examine(
     after = e.looks[last]
     y, rate = e.y[last], e.rate[last]
     observe_motion(tau_1, y, rate, mode.system, mode.bodies, e.forcing, after)
-    excess = -1.0
-    for h in range(e.z_bound.size):
-        excess = max(excess, abs(after.z[0, h]) - e.z_bound[h])
-    for i in range(mode.system.size):
-        if not np.isfinite(y[i]) or not np.isfinite(rate[i]):
-            return NOT_FINITE, excess
-    if excess > z_allowed:
-        return BEYOND_BOUND, excess
+    verdict, excess = audit(y, rate, after, z_allowed, e)
+    if verdict != CLEAR:
+        return verdict, excess
     if e.frame.shape[1] == 0:
         before = e.looks[first]
         marked = inspect_step(before, after, tau_1 - tau_0, mode.watched, e.record.running, e.found)

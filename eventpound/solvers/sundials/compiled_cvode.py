@@ -11,11 +11,10 @@ from eventpound.mechanics.observables import Bodies, Observed, observe
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
-from eventpound.numerics.compiled import in_python, kernel, loop_kernel
+from eventpound.numerics.compiled import kernel, loop_kernel
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds, last_time
-from eventpound.solvers.events.recorder import write_samples
 from eventpound.solvers.events.reversals import take_directions
 from eventpound.solvers.events.step_check import Examination, examine, rate_at
 from eventpound.solvers.sundials.callback_data import Roots, address_of
@@ -33,12 +32,13 @@ from eventpound.solvers.sundials.library import (
     set_stop_time,
 )
 from eventpound.solvers.sundials.loop import (
-    ROOT_RETURN,
     Numbers,
     carry_on,
+    polynomial,
+    put_state,
     reversal_in,
     root_at,
-    was_told,
+    step_to,
 )
 from eventpound.solvers.sundials.memory import CvodeMemory, MemoryLayout, layout
 from eventpound.solvers.sundials.root_values import cluster_roots
@@ -102,7 +102,7 @@ def advance(
 
     CVODE's last flag, then the numbers of `StepsTaken`.
     """
-    done = carry_on(_take, _check, _write, handles, tau, first, excess, bounds, e)
+    done = carry_on(_take, _check, _shown, handles, tau, first, excess, bounds, e)
     _count_jacobians(handles)
     return done
 
@@ -110,36 +110,37 @@ def advance(
 @kernel
 def _take(
     handles: CvodeHandles, start: float, first: int, bounds: Bounds, e: Examination
-) -> tuple[int, float, bool]:
+) -> tuple[int, float]:
     """A step from `start` (s) up to where a link reverses; see `carry_on`."""
     system, direction = e.dynamics.system, handles.given.system.direction
     if handles.reached[TURNED] == start:
         _begin_anew(handles, start, first, e)
     take_directions(e.y[first], system, handles.rtol, direction)
-    flag = 0
-    if handles.reached[REACHED] <= start or not _stands_at_end(handles, start):
-        stop = last_time(start, bounds.at_samples, bounds, e.forcing)
-        set_stop_time(handles.memory, stop)
-        flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
+    flag = step_to(_solve, _whole_end, handles, start, last_time(start, bounds, e.forcing))
     end = handles.reached[REACHED]
     if flag < 0 or end <= start:
-        return flag, end, False
-    copy_numbers(array_at(array_pointer(handles.vector), system.size, np.float64), e.y[1 - first])
-    to_frame(e.frame, e.forcing.start + end, -1.0, system.iq, system.iv, e.y[1 - first])
+        return flag, end
+    put_state(_put_reached, handles, end, e, e.y[1 - first])
     turned = reversal_in(_dense, handles, start, end, first, flag, handles.rtol, direction, e)
     if turned < np.inf:
-        _put(handles, turned, e.y[1 - first])
+        put_state(_put_inner, handles, turned, e, e.y[1 - first])
         handles.reached[TURNED] = turned
-        return 0, turned, True
-    return flag, end, flag != ROOT_RETURN
+        return 0, turned
+    return flag, end
 
 
 @kernel
-def _stands_at_end(handles: CvodeHandles, start: float) -> bool:
-    """`was_told` of a step from `start` (s) in which CVODE has stopped."""
+def _solve(handles: CvodeHandles, stop: float) -> int:
+    set_stop_time(handles.memory, stop)
+    return cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
+
+
+@kernel
+def _whole_end(handles: CvodeHandles) -> float:
+    """End of CVODE's whole step (s)."""
     whole = np.empty(1)
     current_time(handles.memory, whole.ctypes.data)
-    return was_told(start, handles.reached[REACHED], whole[0])
+    return whole[0]
 
 
 @kernel
@@ -151,19 +152,11 @@ def _check(
 
 
 @kernel
-def _write(handles: CvodeHandles, start: float, end: float, e: Examination) -> None:
-    """History at the output times of a step."""
-    write_samples(_shown, (handles, e), e.forcing.start, start, end, e.record.journal)
-
-
-@kernel
 def _shown(of: tuple[CvodeHandles, Examination], tau: float) -> Observed:
     """The motion at `tau` (s) of the last step, as it is observed."""
     handles, e = of
-    system = e.dynamics.system
-    y = array_at(array_pointer(handles.look), system.size, np.float64)
-    get_dky(handles.memory, tau, 0, handles.look)
-    to_frame(e.frame, e.forcing.start + tau, -1.0, system.iq, system.iv, y)
+    system, y = e.dynamics.system, np.empty(e.dynamics.system.size)
+    put_state(_put_inner, handles, tau, e, y)
     # Nothing in a line depends on rates: any will do.
     observe(tau, y, e.rate[0], system, e.dynamics.bodies, e.forcing, e.looks[4])
     return e.looks[4]
@@ -199,31 +192,22 @@ def _dense(handles: CvodeHandles, start: float, end: float) -> Dense:
 
 @kernel
 def derivatives(handles: CvodeHandles, t: float) -> Floats:
-    """Coefficients of CVODE's own polynomial of its last step about `t` (s).
-
-    Parameters
-    ----------
-    handles : CvodeHandles
-        The CVODE object; the state that it interpolates is overwritten.
-    t : float
-        Local time (s).
-
-    Returns
-    -------
-    ndarray, shape (order + 1, size)
-        ``y^(k) / k!``.
-    """
-    memory, look, size = handles.memory, handles.look, handles.given.system.size
+    """`polynomial` of CVODE; the state that it interpolates is overwritten."""
     order = np.zeros(1, np.int32)
-    last_order(memory, order.ctypes.data)
-    Y, factorial = np.empty((order[0] + 1, size)), 1.0
-    y = array_at(array_pointer(look), size, np.float64)
-    for k in range(order[0] + 1):
-        get_dky(memory, t, k, look)
-        factorial *= max(k, 1)
-        for i in range(size):
-            Y[k, i] = y[i] / factorial
-    return Y
+    last_order(handles.memory, order.ctypes.data)
+    return polynomial(_put_inner, handles, order[0], t, handles.given.system.size)
+
+
+@kernel
+def _put_inner(handles: CvodeHandles, tau: float, k: int, y: Floats) -> None:
+    get_dky(handles.memory, tau, k, handles.look)
+    copy_numbers(array_at(array_pointer(handles.look), y.size, np.float64), y)
+
+
+@kernel
+def _put_reached(handles: CvodeHandles, tau: float, k: int, y: Floats) -> None:
+    """The same where CVODE is."""
+    copy_numbers(array_at(array_pointer(handles.vector), y.size, np.float64), y)
 
 
 @kernel
@@ -251,34 +235,11 @@ def _values(handles: CvodeHandles, tau: float) -> Roots:
 
 
 @kernel
-def _whole_step(handles: CvodeHandles) -> tuple[float, Floats]:
-    """End of CVODE's whole step (s), and every z there; zero for those that do not move."""
-    whole, places = np.empty(1), handles.given.bodies.z_of
-    current_time(handles.memory, whole.ctypes.data)
-    get_dky(handles.memory, whole[0], 0, handles.look)
-    last = array_at(array_pointer(handles.look), handles.given.system.size, np.float64)
-    z = np.zeros(places.size)
-    for h in range(places.size):
-        if places[h] >= 0:
-            z[h] = last[places[h]]
-    return whole[0], z
-
-
-@kernel
-def _put(handles: CvodeHandles, tau: float, y: Floats) -> None:
-    """Fill in the state at `tau` (s) of the last step, relative to the ground."""
-    given, system = handles.given, handles.given.system
-    get_dky(handles.memory, tau, 0, handles.look)
-    copy_numbers(array_at(array_pointer(handles.look), system.size, np.float64), y)
-    to_frame(given.frame, given.forcing.start + tau, -1.0, system.iq, system.iv, y)
-
-
-@kernel
 def at_root(
-    handles: CvodeHandles, start: float, tau: float, bound: Floats, allowed: float, y: Floats
+    handles: CvodeHandles, start: float, tau: float, first: int, excess: float, e: Examination
 ) -> tuple[int, float]:
     """`root_at` for CVODE."""
-    return root_at(_values, _whole_step, _put, handles, start, tau, bound, allowed, y)
+    return root_at(_values, _whole_end, _put_inner, handles, start, tau, first, excess, e)
 
 
 class DirectCvode(Direct):
@@ -313,10 +274,8 @@ class DirectCvode(Direct):
         system.direction[:] = 0.0
         self._hand(CvodeData(self._calls, system, mode.bodies, forcing, frame, roots))
         memory, self._handles = self._memory_for(layout(system, frame, self.rtol, atol))
-        memory.state[:] = y
-        in_python(to_frame)(frame, forcing.start + tau, 1.0, system.iq, system.iv, memory.state)
-        memory.start(tau)
-        self._handles.reached[TURNED], self._handles.spent[0] = NEVER, 0
+        # The first step begins anew.
+        self._handles.reached[TURNED] = tau
         if self._roots is not None:
             callback = address_of(root_functions, self._given, 2)
             memory.find_roots(callback, self._roots.directions)

@@ -19,7 +19,6 @@ from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel, loop_kernel
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.integrator import Bounds, last_time
-from eventpound.solvers.events.recorder import write_samples
 from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import Roots, address_of
@@ -46,7 +45,7 @@ from eventpound.solvers.sundials.library import (
     ida_solve,
     matrix_data,
 )
-from eventpound.solvers.sundials.loop import ROOT_RETURN, Numbers, carry_on, root_at, was_told
+from eventpound.solvers.sundials.loop import Numbers, carry_on, polynomial, root_at, step_to
 from eventpound.solvers.sundials.memory import IdaMemory
 from eventpound.solvers.sundials.root_values import descriptor_roots
 
@@ -69,17 +68,14 @@ class IdaData(NamedTuple):
 class IdaHandles(NamedTuple):
     """Addresses of an IDA object and its vectors; where times and drifts are put; on loan.
 
-    look: a vector for interpolated unknowns. state, rate: values of the first two vectors.
-    given: what its callbacks are handed. mode: the loop's. reached (1,): where IDA is (s).
-    followed: whose steps. time: the scene's own T (s).
+    look: a vector for interpolated unknowns. given: what its callbacks are handed. mode: the
+    loop's. reached (1,): where IDA is (s). followed: whose steps. time: the scene's own T (s).
     """
 
     memory: int
     vector: int
     rate_vector: int
     look: int
-    state: int
-    rate: int
     given: IdaData
     mode: Dynamics
     reached: Floats
@@ -130,36 +126,31 @@ def advance(
 
     IDA's last flag, then the numbers of `StepsTaken`.
     """
-    return carry_on(_take, _check, _write, handles, tau, first, excess, bounds, e)
+    return carry_on(_take, _check, _shown, handles, tau, first, excess, bounds, e)
 
 
 @kernel
 def _take(
     handles: IdaHandles, start: float, first: int, bounds: Bounds, e: Examination
-) -> tuple[int, float, bool]:
-    """A step from `start` (s), not beyond a sample of a record; see `carry_on`."""
-    flag = 0
-    if handles.reached[0] <= start or not _stands_at_end(handles, start):
-        stop = last_time(start, True, bounds, e.forcing)
-        ida_set_stop_time(handles.memory, stop)
-        flag = ida_solve(
-            handles.memory,
-            stop,
-            handles.reached.ctypes.data,
-            handles.vector,
-            handles.rate_vector,
-            ONE_STEP,
-        )
-    end = handles.reached[0]
-    return flag, end, not (flag < 0 or end <= start or flag == ROOT_RETURN)
+) -> tuple[int, float]:
+    """A step from `start` (s); see `carry_on`."""
+    flag = step_to(_solve, _whole_end, handles, start, last_time(start, bounds, e.forcing))
+    return flag, handles.reached[0]
 
 
 @kernel
-def _stands_at_end(handles: IdaHandles, start: float) -> bool:
-    """`was_told` of a step from `start` (s) in which IDA has stopped."""
+def _solve(handles: IdaHandles, stop: float) -> int:
+    ida_set_stop_time(handles.memory, stop)
+    reached, y, rate = handles.reached.ctypes.data, handles.vector, handles.rate_vector
+    return ida_solve(handles.memory, stop, reached, y, rate, ONE_STEP)
+
+
+@kernel
+def _whole_end(handles: IdaHandles) -> float:
+    """End of IDA's whole step (s)."""
     whole = np.empty(1)
     ida_current_time(handles.memory, whole.ctypes.data)
-    return was_told(start, handles.reached[0], whole[0])
+    return whole[0]
 
 
 @kernel
@@ -168,15 +159,8 @@ def _check(
 ) -> tuple[int, float]:
     """`examine_descriptor`."""
     problem = handles.given.problem
-    state = array_at(handles.state, problem.d.size, np.float64)
-    y = relative_to_ground(end, state, problem)
+    y = relative_to_ground(end, _unknowns(handles.vector, handles), problem)
     return examine_descriptor(start, end, first, allowed, y, e, handles.followed)
-
-
-@kernel
-def _write(handles: IdaHandles, start: float, end: float, e: Examination) -> None:
-    """History at the output times of a step."""
-    write_samples(_shown, (handles, e), e.forcing.start, start, end, e.record.journal)
 
 
 @kernel
@@ -184,8 +168,8 @@ def _shown(of: tuple[IdaHandles, Examination], tau: float) -> Observed:
     """The motion at `tau` (s) of the last step, as it is observed."""
     handles, e = of
     problem = handles.given.problem
-    y = array_at(array_pointer(handles.look), problem.d.size, np.float64)
     ida_get_dky(handles.memory, tau, 0, handles.look)
+    y = _unknowns(handles.look, handles)
     to_moving_frame(problem, tau, -1.0, y)
     look_at_descriptor(tau, y, problem, e.looks[4])
     return e.looks[4]
@@ -195,47 +179,35 @@ def _shown(of: tuple[IdaHandles, Examination], tau: float) -> Observed:
 def begin(
     handles: IdaHandles, tau: float, clusters: Floats, tolerances: Tolerances, scratch: Observed
 ) -> float:
-    """`begin_descriptor` of the state and the rates of `handles`, from the loop's state.
+    """`begin_descriptor` of the unknowns and their rates, from the loop's state.
 
     `scratch` is overwritten.
     """
     problem, mode = handles.given.problem, handles.mode
-    size = problem.d.size
-    y = array_at(handles.state, size, np.float64)
-    rate = array_at(handles.rate, size, np.float64)
+    y, rate = _unknowns(handles.vector, handles), _unknowns(handles.rate_vector, handles)
     from_clusters(clusters, mode.system, mode.bodies, y)
     return begin_descriptor(tau, y, rate, problem, tolerances, handles.time, scratch)
 
 
 @kernel
 def derivatives(handles: IdaHandles, t: float) -> Floats:
-    """Coefficients of IDA's own polynomial of its last step about `t` (s), as the loop knows it.
-
-    Parameters
-    ----------
-    handles : IdaHandles
-        The IDA object; the state that it interpolates is overwritten.
-    t : float
-        Local time (s).
-
-    Returns
-    -------
-    ndarray, shape (order + 1, size)
-        ``y^(k) / k!`` of the clusters, in the moving frame.
-    """
-    memory, look, mode = handles.memory, handles.look, handles.mode
-    system = mode.system
+    """`polynomial` of IDA; the state that it interpolates is overwritten."""
     order = np.zeros(1, np.int32)
-    ida_last_order(memory, order.ctypes.data)
-    y = array_at(array_pointer(look), handles.given.problem.d.size, np.float64)
-    Y, factorial = np.empty((order[0] + 1, system.size)), 1.0
-    for k in range(order[0] + 1):
-        ida_get_dky(memory, t, k, look)
-        factorial *= max(k, 1)
-        to_clusters(y, 1.0 if k == 0 else 0.0, system, mode.bodies, Y[k])
-        for i in range(system.size):
-            Y[k, i] /= factorial
-    return Y
+    ida_last_order(handles.memory, order.ctypes.data)
+    return polynomial(_put_inner, handles, order[0], t, handles.mode.system.size)
+
+
+@kernel
+def _put_inner(handles: IdaHandles, tau: float, k: int, clusters: Floats) -> None:
+    ida_get_dky(handles.memory, tau, k, handles.look)
+    y, mode = _unknowns(handles.look, handles), handles.mode
+    to_clusters(y, 1.0 if k == 0 else 0.0, mode.system, mode.bodies, clusters)
+
+
+@kernel
+def _unknowns(vector: int, handles: IdaHandles) -> Floats:
+    """Values of a vector."""
+    return array_at(array_pointer(vector), handles.given.problem.d.size, np.float64)
 
 
 def root_functions(tau: float, y: int, rate: int, out: int, given: IdaData) -> int:
@@ -251,39 +223,17 @@ def root_functions(tau: float, y: int, rate: int, out: int, given: IdaData) -> i
 def _values(handles: IdaHandles, tau: float) -> Roots:
     """Root functions at `tau` (s), where IDA is."""
     given, roots = handles.given, handles.given.roots
-    state = array_at(handles.state, given.problem.d.size, np.float64)
-    y = relative_to_ground(tau, state, given.problem)
+    y = relative_to_ground(tau, _unknowns(handles.vector, handles), given.problem)
     descriptor_roots(tau, y, given.problem, roots, roots.pairs.reshape(2 * roots.noise.size))
     return roots
 
 
 @kernel
-def _whole_step(handles: IdaHandles) -> tuple[float, Floats]:
-    """End of IDA's whole step (s), and every z there."""
-    whole, d = np.empty(1), handles.given.problem.d
-    ida_current_time(handles.memory, whole.ctypes.data)
-    ida_get_dky(handles.memory, whole[0], 0, handles.look)
-    last = array_at(array_pointer(handles.look), d.size, np.float64)
-    first = 2 * d.mass.size
-    return whole[0], last[first : first + d.hysteretic].copy()
-
-
-@kernel
-def _put(handles: IdaHandles, tau: float, clusters: Floats) -> None:
-    """Fill in the loop's state at `tau` (s) of the last step, relative to the ground."""
-    problem, mode = handles.given.problem, handles.mode
-    ida_get_dky(handles.memory, tau, 0, handles.look)
-    look = array_at(array_pointer(handles.look), problem.d.size, np.float64)
-    y = relative_to_ground(tau, look, problem)
-    to_clusters(y, 1.0, mode.system, mode.bodies, clusters)
-
-
-@kernel
 def at_root(
-    handles: IdaHandles, start: float, tau: float, bound: Floats, allowed: float, clusters: Floats
+    handles: IdaHandles, start: float, tau: float, first: int, excess: float, e: Examination
 ) -> tuple[int, float]:
     """`root_at` for IDA."""
-    return root_at(_values, _whole_step, _put, handles, start, tau, bound, allowed, clusters)
+    return root_at(_values, _whole_end, _put_inner, handles, start, tau, first, excess, e)
 
 
 class DirectIda(InDescriptorForm, Direct):
@@ -319,8 +269,6 @@ class DirectIda(InDescriptorForm, Direct):
                 memory.vector,
                 memory.rate_vector,
                 memory.look,
-                memory.state_address,
-                memory.rate_address,
                 self._given,
                 self._mode.dynamics,
                 np.zeros(1),

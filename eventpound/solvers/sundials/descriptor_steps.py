@@ -34,13 +34,7 @@ from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.event_bounds import inspect_step
 from eventpound.solvers.events.run import Dynamics
-from eventpound.solvers.events.step_check import (
-    BEYOND_BOUND,
-    CLEAR,
-    MARKED,
-    NOT_FINITE,
-    Examination,
-)
+from eventpound.solvers.events.step_check import CLEAR, MARKED, Examination, audit
 from eventpound.tolerances import FIRST_STEP, FIRST_TRIAL, SLOW_TURN
 
 NEAR = 3.0
@@ -247,14 +241,9 @@ def examine_descriptor(
     rate = np.zeros(y.size)
     observe_descriptor(tau_1, y, problem, rate, after)
     to_clusters(y, 1.0, mode.system, mode.bodies, e.y[last])
-    excess = -1.0
-    for h in range(e.z_bound.size):
-        excess = max(excess, abs(after.z[0, h]) - e.z_bound[h])
-    for i in range(y.size):
-        if not np.isfinite(y[i]) or not np.isfinite(rate[i]):
-            return NOT_FINITE, excess
-    if excess > z_allowed:
-        return BEYOND_BOUND, excess
+    verdict, excess = audit(y, rate, after, z_allowed, e)
+    if verdict != CLEAR:
+        return verdict, excess
     gap, gap_rate = constraint_errors(problem.d, y)
     drift[0], drift[1] = max(drift[0], gap), max(drift[1], gap_rate)
     before, running = e.looks[first], e.record.running

@@ -22,7 +22,8 @@ from eventpound.numerics.lending import change_loan, on_loan
 from eventpound.solvers.events.dense import NO_GAPS, NODES, Dense, from_values
 from eventpound.solvers.events.integrator import Bounds, StandstillError, Start, StepsTaken
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.step_check import Examination
+from eventpound.solvers.events.recorder import is_due
+from eventpound.solvers.events.step_check import CLEAR, MARKED, Examination
 from eventpound.solvers.sundials.callback_data import NO_ROOTS, RootFunctions, Roots
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import Followed, look_at_start
@@ -171,18 +172,17 @@ class Wrapped(_Duties):
     ----------
     _values : callable
         Fills an array with the root functions of unknowns, which are overwritten.
-    _relative, _clusters, _in_frame : callable
+    _relative, _in_frame : callable
         Of a local time (s) and unknowns there: the same relative to the ground, in their place; the
-        state of the clusters, both relative to the ground; the same, both in the moving frame.
-    _z_of : callable
-        Every z, (H,), of unknowns; zero for those that they leave out.
+        state of the clusters in the moving frame.
+    _examine : callable
+        The examination of a step.
     """
 
     _values: Callable[[float, Floats, Floats], None]
     _relative: Callable[[float, Floats], Floats]
-    _clusters: Callable[[float, Floats], Floats]
     _in_frame: Callable[[float, Floats], Floats]
-    _z_of: Callable[[Floats], Floats]
+    _examine: Callable[[float, float, int, float, Examination], tuple[int, float]]
 
     def __init__(self) -> None:
         super().__init__()
@@ -194,7 +194,7 @@ class Wrapped(_Duties):
         self._spent = 0
         # Functions where the last step was left, and the end of SUNDIALS' whole step.
         self._left = np.empty(0)
-        self._whole: tuple[float, Floats] = 0.0, self._left
+        self._whole = 0.0
         self._failure = ""
 
     def _meaning(self, flag: int) -> str:
@@ -205,7 +205,7 @@ class Wrapped(_Duties):
         self._time = tau
         self._looked_back = False
         self._spent = 0
-        self._whole = -np.inf, self._left
+        self._whole = -np.inf
 
     def _root_options(self, functions: Any) -> dict[str, Any]:
         """What an object is made with to look for roots; `functions` are its own."""
@@ -227,8 +227,7 @@ class Wrapped(_Duties):
             out[:] = self._left
             return
         self._values(tau, y.copy(), out)
-        if tau > self._whole[0]:
-            self._whole = tau, y.copy()
+        self._whole = max(self._whole, tau)
 
     def _interpolated(self, tau: float) -> Floats:
         """The unknowns at the local time `tau` (s) of the last step."""
@@ -257,35 +256,30 @@ class Wrapped(_Duties):
     def _steps(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Numbers:
-        """One step: its history is left to a second look."""
+        """One step."""
         own = type(self)
         one = bounds._replace(most=1)
-        return in_python(carry_on)(
-            own._take, own._check, own._write, self, tau, first, excess, one, e
-        )
+        return in_python(carry_on)(own._take, own._check, None, self, tau, first, excess, one, e)
 
-    def _take(
-        self, start: float, first: int, bounds: Bounds, e: Examination
-    ) -> tuple[int, float, bool]:
+    def _take(self, start: float, first: int, bounds: Bounds, e: Examination) -> tuple[int, float]:
         """Of `carry_on`."""
         raise NotImplementedError
 
     def _check(
         self, start: float, end: float, first: int, allowed: float, e: Examination
     ) -> tuple[int, float]:
-        """Of `carry_on`."""
-        raise NotImplementedError
-
-    def _write(self, start: float, end: float, e: Examination) -> None:
-        """Of `carry_on`: nothing."""
+        """Of `carry_on`: a step with output times in it is left to a second look."""
+        verdict, excess = self._examine(start, end, first, allowed, e)
+        due = in_python(is_due)(e.forcing.start + end, e.record.journal)
+        return MARKED if verdict == CLEAR and due else verdict, excess
 
     def _at_root(
-        self, start: float, tau: float, bound: Floats, allowed: float, y: Floats
+        self, start: float, tau: float, first: int, excess: float, e: Examination
     ) -> tuple[int, float]:
         """`root_at`, where the last step was left."""
         own = type(self)
         return in_python(root_at)(
-            own._values_left, own._whole_step, own._put, self, start, tau, bound, allowed, y
+            own._values_left, own._whole_end, own._put_inner, self, start, tau, first, excess, e
         )
 
     def _values_left(self, tau: float) -> Roots:
@@ -295,14 +289,13 @@ class Wrapped(_Duties):
         roots.pairs[:] = self._left.reshape(-1, 2)
         return roots
 
-    def _whole_step(self) -> tuple[float, Floats]:
+    def _whole_end(self) -> float:
         """Of `root_at`."""
-        whole, last = self._whole
-        return whole, self._z_of(last)
+        return self._whole
 
-    def _put(self, tau: float, y: Floats) -> None:
+    def _put_inner(self, tau: float, k: int, y: Floats) -> None:
         """Of `root_at`."""
-        y[:] = self._clusters(tau, self._relative(tau, self._interpolated(tau)))
+        y[:] = self._in_frame(tau, self._interpolated(tau))
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on SUNDIALS' own polynomial, from its values."""
@@ -349,9 +342,9 @@ class InDescriptorForm(_Duties):
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> StepsTaken:
-        """Accepted steps, up to the first that is not clear or the bounds."""
+        """Accepted steps up to the first that is not clear or the bounds, none beyond a sample."""
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
             look_at_start(tau, e.y[first], self._mode.dynamics, self._problem, e.looks[first])
         self._begun = None
-        return super().advance(tau, first, excess, bounds, e)
+        return super().advance(tau, first, excess, bounds._replace(at_samples=True), e)

@@ -150,7 +150,6 @@ def _cvode_signatures(index: Any) -> dict[str, tuple[Any, ...]]:
     return {
         "CVodeCreate": (pointer, integer, pointer),
         "CVodeInit": (integer, pointer, pointer, real, pointer),
-        "CVodeReInit": (integer, pointer, real, pointer),
         "CVodeSetUserData": (integer, pointer, pointer),
         "CVodeSVtolerances": (integer, pointer, real, pointer),
         "CVodeSetLinearSolver": (integer, pointer, pointer, pointer),

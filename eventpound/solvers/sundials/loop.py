@@ -11,10 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.mechanics.ground_frame import to_frame
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds
+from eventpound.solvers.events.recorder import is_due, write_samples
 from eventpound.solvers.events.reversals import NEGLIGIBLE, first_reversal, may_reverse
 from eventpound.solvers.events.roots import any_fell, on_the_root
 from eventpound.solvers.events.step_check import (
@@ -40,15 +42,15 @@ Numbers = tuple[int, int, float, float, int, float, int]
 """A flag of SUNDIALS, then those of `StepsTaken`."""
 Steps = Callable[[float, int, float, Bounds, Examination], Numbers]
 """`carry_on` from its fifth argument on."""
-AtRoot = Callable[[float, float, Floats, float, Floats], tuple[int, float]]
+AtRoot = Callable[[float, float, int, float, Examination], tuple[int, float]]
 """`root_at` from its fifth argument on."""
 
 
 @kernel
 def carry_on(
-    take: Callable[[Any, float, int, Bounds, Examination], tuple[int, float, bool]],
+    take: Callable[[Any, float, int, Bounds, Examination], tuple[int, float]],
     check: Callable[[Any, float, float, int, float, Examination], tuple[int, float]],
-    write: Callable[[Any, float, float, Examination], None],
+    show: Any,
     handles: Any,
     tau: float,
     first: int,
@@ -61,12 +63,12 @@ def carry_on(
     Parameters
     ----------
     take : callable
-        A step from the state in a row to the other row: SUNDIALS' flag, where it ends (s), and
-        whether it is to be examined.
+        A step from the state in a row to the other row: SUNDIALS' flag, and where it ends (s).
     check : callable
         Its examination: `eventpound.solvers.events.step_check.examine`.
-    write : callable
-        Writes the history of a step in which nothing happened.
+    show : callable
+        The motion at a time of the step (s), as it is observed; asked for where nothing happened
+        in a step with an output time.
     handles
         What these are handed.
     tau, first, excess, bounds, e
@@ -74,33 +76,106 @@ def carry_on(
     """
     start, steps = tau, 0
     while True:
-        flag, end, going = take(handles, start, first, bounds, e)
-        if not going:
+        flag, end = take(handles, start, first, bounds, e)
+        if flag < 0 or end <= start or flag == ROOT_RETURN:
             return flag, first, start, end, CLEAR, excess, steps
         verdict, reached = check(handles, start, end, first, max(e.z_allowed, excess), e)
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
         excess, steps = reached, steps + 1
-        if verdict == CLEAR:
-            write(handles, start, end, e)
+        if verdict == CLEAR and is_due(e.forcing.start + end, e.record.journal):
+            write_samples(show, (handles, e), e.forcing.start, start, end, e.record.journal)
         if verdict != CLEAR or end >= bounds.stop or steps == bounds.most:
             return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
 
 
 @scalar_kernel
-def was_told(start: float, reached: float, whole: float) -> bool:
-    """Whether a root that SUNDIALS told of, at `reached`, is the end of its whole step (s).
+def bracket_of(tau: float, start: float, whole: float) -> float:
+    """Width (s) that SUNDIALS leaves of a root's bracket, in a step from `start` to `whole` (s)."""
+    return BRACKET * EPS * (abs(tau) + whole - start)
 
-    It has no more of that step to come back with, and would go on to another.
+
+@kernel
+def step_to(
+    solve: Callable[[Any, float], int],
+    whole_end: Callable[[Any], float],
+    handles: Any,
+    start: float,
+    stop: float,
+) -> int:
+    """SUNDIALS' flag of a step from `start`, not beyond `stop` (s).
+
+    A root that it has told of, where it stands, may be the end of its whole step: it has no more of
+    that to come back with, and would go on to another.
+
+    Parameters
+    ----------
+    solve : callable
+        Lets SUNDIALS take a step, not beyond a time (s); returns its flag.
+    whole_end : callable
+        End of its whole step (s).
+    handles
+        What these are handed; SUNDIALS stands at the first of their `reached` (s).
+    start, stop : float
+        As above.
     """
-    return abs(whole - reached) <= BRACKET * EPS * (abs(whole) + whole - start)
+    reached = handles.reached[0]
+    if reached > start:
+        whole = whole_end(handles)
+        if abs(whole - reached) <= bracket_of(whole, start, whole):
+            return 0
+    return solve(handles, stop)
 
 
-@scalar_kernel
-def before_root(start: float, tau: float) -> float:
-    """Start of the bracket of a root at `tau` (s) of a step from `start` (s)."""
-    return tau - BRACKET * EPS * (abs(tau) + tau - start)
+@kernel
+def polynomial(
+    put_inner: Callable[[Any, float, int, Floats], None],
+    handles: Any,
+    order: int,
+    t: float,
+    size: int,
+) -> Floats:
+    """Coefficients of SUNDIALS' own polynomial of its last step about `t` (s).
+
+    Parameters
+    ----------
+    put_inner : callable
+        Fills in a derivative at a time (s) of the loop's state (size,), in the moving frame.
+    handles
+        What that is handed.
+    order, t, size
+        Of the method; local time (s); of the loop's state.
+
+    Returns
+    -------
+    ndarray, shape (order + 1, size)
+        ``y^(k) / k!``.
+    """
+    Y, factorial = np.empty((order + 1, size)), 1.0
+    for k in range(order + 1):
+        factorial *= max(k, 1)
+        put_inner(handles, t, k, Y[k])
+        for i in range(size):
+            Y[k, i] /= factorial
+    return Y
+
+
+@kernel
+def put_state(
+    put_inner: Callable[[Any, float, int, Floats], None],
+    handles: Any,
+    tau: float,
+    e: Examination,
+    y: Floats,
+) -> None:
+    """Fill in the loop's state at `tau` (s) of the last step, relative to the ground.
+
+    put_inner, handles: as `polynomial` has them.
+    """
+    put_inner(handles, tau, 0, y)
+    system = e.dynamics.system
+    to_frame(e.frame, e.forcing.start + tau, -1.0, system.iq, system.iv, y)
 
 
 @kernel
@@ -140,30 +215,23 @@ def reversal_in(
     # Reversals after `last` are left alone.
     last, allowed = end, NEGLIGIBLE * rtol
     if flag == ROOT_RETURN:
-        last, allowed = before_root(start, end), 0.0
+        last, allowed = end - bracket_of(end, start, end), 0.0
     if not may_reverse(before, rate, after, end - start, system, direction, allowed):
         return np.inf
     return first_reversal(dense(handles, start, end), last, e.forcing.start, system, direction)
 
 
 @kernel
-def first_zero(roots: Roots, start: float, tau: float, whole: float) -> float:
-    """`on_the_root` for a root at `tau` (s) of a step from `start` to `whole` (s)."""
-    reach = BRACKET * EPS * (abs(whole) + whole - start)
-    return on_the_root(roots.pairs, roots.noise, start, tau, reach)
-
-
-@kernel
 def root_at(
     values: Callable[[Any, float], Roots],
-    whole_step: Callable[[Any], tuple[float, Floats]],
-    put: Callable[[Any, float, Floats], None],
+    whole_end: Callable[[Any], float],
+    put_inner: Callable[[Any, float, int, Floats], None],
     handles: Any,
     start: float,
     tau: float,
-    bound: Floats,
-    allowed: float,
-    y: Floats,
+    first: int,
+    excess: float,
+    e: Examination,
 ) -> tuple[int, float]:
     """What SUNDIALS' return with a root at `tau` (s) means, and where its step ends (s).
 
@@ -171,18 +239,17 @@ def root_at(
     ----------
     values : callable
         Fills and returns the functions at the root.
-    whole_step : callable
-        End of SUNDIALS' whole step (s), and every z there, (H,).
-    put : callable
-        Fills in the loop's state at a time of the step (s).
+    whole_end : callable
+        End of SUNDIALS' whole step (s).
+    put_inner : callable
+        As `polynomial` has it.
     handles
         What these are handed.
     start, tau : float
         Start of the step, and the root (s).
-    bound, allowed : ndarray, shape (H,), and float
-        Of every |z|, and by how much it may be exceeded at the end of the whole step.
-    y : ndarray, shape (size,)
-        State where the value was zero, relative to the ground; overwritten where one fell.
+    first, excess, e
+        Of `Integrator.advance`; the row of the end becomes the state where a value that fell was
+        zero.
 
     Returns
     -------
@@ -194,12 +261,14 @@ def root_at(
     roots = values(handles, tau)
     if not any_fell(roots.pairs):
         return CLEAR, tau
-    whole, z = whole_step(handles)
-    for h in range(bound.size):
-        if abs(z[h]) - bound[h] > allowed:
+    whole, y, places = whole_end(handles), e.y[1 - first], e.dynamics.bodies.z_of
+    put_inner(handles, whole, 0, y)
+    for h in range(places.size):
+        if places[h] >= 0 and abs(y[places[h]]) - e.z_bound[h] > max(e.z_allowed, excess):
             return BEYOND_BOUND, whole
-    end = first_zero(roots, start, tau, whole)
-    put(handles, end, y)
+    reach = bracket_of(whole, start, whole)
+    end = on_the_root(roots.pairs, roots.noise, start, tau, reach)
+    put_state(put_inner, handles, end, e, y)
     return HAPPENED, end
 
 
@@ -230,7 +299,7 @@ def steps_to_roots(
         taken += done
         if flag != ROOT_RETURN:
             return flag, row, start, end, verdict, excess, taken
-        verdict, end = at_root(start, end, e.z_bound, max(e.z_allowed, excess), e.y[1 - row])
+        verdict, end = at_root(start, end, row, excess, e)
         if verdict != CLEAR:
             return flag, row, start, end, verdict, excess, taken + int(verdict == HAPPENED)
         again = again + 1 if end == last else 0

@@ -180,8 +180,6 @@ class CvodeMemory(_Memory):
     ----------
     address, vector, look : int
         The object, the vector of its state, and another to interpolate into.
-    state : ndarray, shape (size,)
-        Values of the first vector.
     """
 
     prefix = "CVode"
@@ -196,8 +194,7 @@ class CvodeMemory(_Memory):
         size = layout.atol.size
         super().__init__(library, library, create, size, 3, layout.band)
         self.vector, self.look, tolerances = self._vectors
-        self.state = self._values(self.vector, size)
-        self.state[:] = 0.0
+        self._values(self.vector, size)[:] = 0.0
         self._values(tolerances, size)[:] = layout.atol
         self._set_up(
             (
@@ -208,10 +205,6 @@ class CvodeMemory(_Memory):
                 library.CVodeSetMaxNumSteps(self.address, MOST_STEPS),
             )
         )
-
-    def start(self, tau: float) -> None:
-        """Begin anew at the time `tau` (s) with the present values of `state`."""
-        self._own.CVodeReInit(self.address, tau, self.vector)
 
 
 class IdaMemory(_Memory):
@@ -235,10 +228,6 @@ class IdaMemory(_Memory):
     address, vector, rate_vector, look : int
         The object, the vectors of its unknowns and their rates, and another to
         interpolate into.
-    state, rate : ndarray, shape (size,)
-        Values of the first two.
-    state_address, rate_address : int
-        Where these are.
     """
 
     prefix = "IDA"
@@ -257,10 +246,7 @@ class IdaMemory(_Memory):
         size = atol.size
         super().__init__(common, ida, ida.IDACreate, size, 5)
         self.vector, self.rate_vector, self.look, tolerances, differential = self._vectors
-        self.state = self._values(self.vector, size)
-        self.rate = self._values(self.rate_vector, size)
-        self.state_address, self.rate_address = self.state.ctypes.data, self.rate.ctypes.data
-        self.state[:] = self.rate[:] = 0.0
+        self._values(self.vector, size)[:] = self._values(self.rate_vector, size)[:] = 0.0
         self._values(tolerances, size)[:] = atol
         self._values(differential, size)[:] = np.where(algebraic, 0.0, 1.0)
         self._set_up(
@@ -280,6 +266,6 @@ class IdaMemory(_Memory):
         )
 
     def start(self, tau: float, first_step: float) -> None:
-        """Begin anew at the time `tau` (s) with the present values of `state` and `rate`."""
+        """Begin anew at the time `tau` (s) with what its first vectors hold."""
         self._own.IDAReInit(self.address, tau, self.vector, self.rate_vector)
         self._own.IDASetInitStep(self.address, first_step)

@@ -17,7 +17,7 @@ from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.reversals import take_directions
 from eventpound.solvers.events.step_check import Examination, examine, rate_at
 from eventpound.solvers.sundials.integrators import Wrapped
-from eventpound.solvers.sundials.loop import ROOT_RETURN, reversal_in
+from eventpound.solvers.sundials.loop import put_state, reversal_in
 from eventpound.solvers.sundials.memory import MOST_STEPS, layout
 from eventpound.solvers.sundials.root_values import cluster_roots
 
@@ -75,7 +75,8 @@ class WrappedCvode(Wrapped):
         self._directions[:] = 0.0
         self._arguments = system, self._forcing, self._frame
         self._present = self._object(atol)
-        self._begin_anew(tau, y)
+        # The first step begins anew.
+        self._turned = True
 
     def _begin_anew(self, tau: float, y: Floats) -> None:
         """Begin at the local time `tau` (s) without a past."""
@@ -97,39 +98,29 @@ class WrappedCvode(Wrapped):
         self._relative(tau, y)
         cluster_roots(tau, y, system, bodies, self._forcing, self._roots.loan, out)
 
-    def _z_of(self, y: Floats) -> Floats:
-        places = self._mode.bodies.z_of
-        return np.where(places >= 0, y[places], 0.0)
-
-    def _clusters(self, tau: float, y: Floats) -> Floats:
-        return y
-
     def _in_frame(self, tau: float, y: Floats) -> Floats:
         return y
 
-    def _take(
-        self, start: float, first: int, bounds: Bounds, e: Examination
-    ) -> tuple[int, float, bool]:
+    def _take(self, start: float, first: int, bounds: Bounds, e: Examination) -> tuple[int, float]:
         """A step from `start` (s) up to where a link reverses."""
         before = e.y[first]
         if self._turned:
             self._begin_anew(start, before)
         take_directions(before, self._mode.system, self.rtol, self._directions)
-        stop = last_time(start, bounds.at_samples, bounds, self._forcing)
-        flag, end, after = self._step(stop)
+        flag, end, after = self._step(last_time(start, bounds, self._forcing))
         if flag < 0 or end <= start:
-            return flag, end, False
+            return flag, end
         e.y[1 - first] = after
         turned = in_python(reversal_in)(
             type(self).dense, self, start, end, first, flag, self.rtol, self._directions, e
         )
         if turned < np.inf:
             self._turned = True
-            self._put(turned, e.y[1 - first])
-            return 0, turned, True
-        return flag, end, flag != ROOT_RETURN
+            in_python(put_state)(type(self)._put_inner, self, turned, e, e.y[1 - first])
+            return 0, turned
+        return flag, end
 
-    def _check(
+    def _examine(
         self, start: float, end: float, first: int, allowed: float, e: Examination
     ) -> tuple[int, float]:
         return examine(start, end, first, allowed, e)

@@ -38,7 +38,6 @@ from eventpound.solvers.sundials.descriptor_steps import (
     to_clusters,
 )
 from eventpound.solvers.sundials.integrators import InDescriptorForm, Wrapped
-from eventpound.solvers.sundials.loop import ROOT_RETURN
 from eventpound.solvers.sundials.memory import MOST_FAILURES, MOST_STEPS
 from eventpound.solvers.sundials.root_values import descriptor_roots
 from eventpound.tolerances import LEFT_OUT
@@ -97,25 +96,12 @@ class WrappedIda(InDescriptorForm, Wrapped):
         onto_constraints(self._own.descriptor, y)
         descriptor_roots(tau, y, self._problem, self._roots.loan, out)
 
-    def _z_of(self, y: Floats) -> Floats:
-        first = 2 * self._own.descriptor.mass.size
-        return y[first : first + self.scales.z_bound.size]
+    def _take(self, start: float, first: int, bounds: Bounds, e: Examination) -> tuple[int, float]:
+        """A step from `start` (s)."""
+        flag, end, self._reached = self._step(last_time(start, bounds, self._forcing))
+        return flag, end
 
-    def _clusters(self, tau: float, y: Floats) -> Floats:
-        mode = self._mode
-        onto_constraints(self._own.descriptor, y)
-        clusters = np.empty(mode.system.size)
-        to_clusters(y, 1.0, mode.system, mode.bodies, clusters)
-        return clusters
-
-    def _take(
-        self, start: float, first: int, bounds: Bounds, e: Examination
-    ) -> tuple[int, float, bool]:
-        """A step from `start` (s), not beyond a sample of a record."""
-        flag, end, self._reached = self._step(last_time(start, True, bounds, self._forcing))
-        return flag, end, not (flag < 0 or end <= start or flag == ROOT_RETURN)
-
-    def _check(
+    def _examine(
         self, start: float, end: float, first: int, allowed: float, e: Examination
     ) -> tuple[int, float]:
         d, y = self._own.descriptor, self._reached
