@@ -13,7 +13,7 @@ import numpy as np
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME, moving_frame
 from eventpound.motion.base import Family, Piece
-from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece
+from eventpound.motion.forcing import CurrentPiece
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
@@ -54,13 +54,8 @@ STEPS_AT_ONCE = 256
 SINUSOID_STEP = 1.0
 """Longest step while contacts rest, in radians of a sinusoid: contact forces follow the
 ground and loads that may move no body, which no error of a step shows. Hermite's cubic through its
-ends is off by h^4/384 of a fourth derivative, by 3e-3 of the load at most."""
-
-
-def _longest_under(piece: CurrentPiece) -> float:
-    """Longest step (s) that shows what the ground and loads do to contact forces."""
-    gaussian, sinusoid, _ = in_python(shortest_times)(piece.family, piece.coefficients)
-    return min(GAUSSIAN_STEP * gaussian, SINUSOID_STEP * sinusoid)
+ends is off by h^4/384 of a fourth derivative, by 3e-3 of the load at most. Of a pulse
+`eventpound.motion.forcing.time_to_look` misses nothing."""
 
 
 class Segment:
@@ -93,7 +88,8 @@ class Segment:
         self._length = piece.stop - self.origin
         now.state.progress["finder"][0] = INTEGRATOR if integrator.finds_events else OURSELVES
         pressed = self.mode.bodies.resting.size > 0
-        self._longest = _longest_under(piece) if pressed else np.inf
+        _, sinusoid, _ = in_python(shortest_times)(piece.family, piece.coefficients)
+        self._longest = SINUSOID_STEP * sinusoid if pressed else np.inf
         # In a moving frame a step is inspected from sample to sample.
         close = (pressed and frame.shape[1] == 0) or now.task.rtol < STOP_AT_SAMPLES
         self._stops = piece.family >= Family.SAMPLES and close
