@@ -6,7 +6,8 @@ all event-driven solvers.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,11 @@ from eventpound.tolerances import FADED, LAST_INTERVAL, LISTED_SPEED
 
 DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
 """How settling an instant ends; FULL: the record needs more room, then it goes on."""
+MEANING = {
+    NO_IMPACT: "an impact problem has no solution",
+    NO_FORCES: "the forces of resting contacts could not be found",
+}
+"""What some of them are told as."""
 PROBLEM = 12
 """It does not yet: an impact is to be solved."""
 NONE, SEVERAL = -1, -2
@@ -227,18 +233,47 @@ def next_problem(shut: Bools, at: Instant) -> tuple[int, bool]:
 @deferred_kernel
 def _impacts_of_several(at: Instant) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
-    gap_rate, shut = at.gap_rate, at.gap == 0.0
+    return impacts_until_none(_law_of_pairs, at.left, at.gap == 0.0, at)
+
+
+@kernel
+def _law_of_pairs(
+    left: Ints, restitution: Floats, shut: Bools, at: Instant
+) -> tuple[Floats, Bools, float, bool]:
+    return impact_law(at.mass, left, at.right, restitution, shut, at.gap_rate, at.v)
+
+
+@kernel
+def impacts_until_none(
+    law: Callable[[Any, Floats, Bools, Instant], tuple[Floats, Bools, float, bool]],
+    given: Any,
+    shut: Bools,
+    at: Instant,
+) -> int:
+    """Impact problems of this instant, until no closed contact approaches.
+
+    Parameters
+    ----------
+    law : callable
+        `impact_law`, from what is given, every ε (K,), which contacts are closed and the instant.
+    given, shut, at
+        What it is handed.
+    """
+    gap_rate = at.gap_rate
     while True:
         ended, plastic = next_problem(shut, at)
         if ended != PROBLEM:
             return ended
         restitution = np.zeros(shut.size) if plastic else at.restitution
         before = gap_rate.copy()
-        impulse, involved, lost, solved = impact_law(
-            at.mass, at.left, at.right, restitution, shut, gap_rate, at.v
-        )
+        impulse, involved, lost, solved = law(given, restitution, shut, at)
         if not solved:
             return NO_IMPACT
+        for j in range(shut.size):
+            # Beside a last impact nothing opens more slowly than such impacts are: else two
+            # contacts of one body open each other until no number is small enough.
+            if plastic and shut[j] and 0.0 < gap_rate[j] <= at.last_speed:
+                gap_rate[j] = 0.0
         list_impacts(plastic, before, impulse, involved, lost, at)
 
 

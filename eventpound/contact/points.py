@@ -11,14 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.contact.impacts import (
-    DONE,
-    NO_IMPACT,
-    PROBLEM,
-    close_collapsed,
-    list_impacts,
-    next_problem,
-)
+from eventpound.contact.impacts import DONE, close_collapsed, impacts_until_none
 from eventpound.contact.instant import begin_instant, end_instant, take_rests, touching_of
 from eventpound.contact.rest import (
     LEFT_OVER,
@@ -30,6 +23,7 @@ from eventpound.contact.rest import (
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.descriptor import contact_rows
+from eventpound.mechanics.impact import rates_after
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.points import independent, on_clusters, projection_of
 from eventpound.mechanics.reduced import Forcing, Reduced
@@ -42,15 +36,6 @@ from eventpound.tolerances import (
     QUIET,
     ZERO_SINGULAR_VALUE,
 )
-
-
-class Impact(NamedTuple):
-    """What an impact does: Λ (N s) and who has part in it, (K,); what is lost (J); if solved."""
-
-    impulse: Floats
-    involved: Bools
-    lost: float
-    solved: bool
 
 
 def settle_at_points(at: Instant, model: Model) -> int:
@@ -83,7 +68,7 @@ def _settle_closed(rows: Floats, at: Instant) -> int:
     if not shut.any():
         return DONE
     _put_on(rows[shut], at.opening[shut], at.mass, at.u)
-    ended = _impacts(rows, shut, at)
+    ended = int(in_python(impacts_until_none)(impact_over, rows, shut, at))
     still = shut & (at.gap_rate == 0.0)
     if ended == DONE and still.any():
         _put_on(rows[still], np.zeros(int(still.sum())), at.mass, at.v)
@@ -97,56 +82,27 @@ def _put_on(rows: Floats, opening: Floats, mass: Floats, x: Floats) -> None:
     x -= np.linalg.lstsq(rows / root, away, ZERO_SINGULAR_VALUE)[0] / root
 
 
-def _impacts(rows: Floats, shut: Bools, at: Instant) -> int:
-    """Impact problems of this instant, until no closed contact approaches."""
-    gap_rate = at.gap_rate
-    while True:
-        ended, plastic = in_python(next_problem)(shut, at)
-        if ended != PROBLEM:
-            return int(ended)
-        restitution = np.zeros(shut.size) if plastic else at.restitution
-        before = gap_rate.copy()
-        done = impact_over(rows, at.mass, restitution, shut, gap_rate, at.v)
-        if not done.solved:
-            return NO_IMPACT
-        if plastic:
-            # Beside a last impact nothing opens more slowly than such impacts are: else two
-            # contacts of one body open each other until no number is small enough.
-            gap_rate[shut & (gap_rate > 0.0) & (gap_rate <= at.last_speed)] = 0.0
-        in_python(list_impacts)(plastic, before, done.impulse, done.involved, done.lost, at)
-
-
 def impact_over(
-    rows: Floats, mass: Floats, restitution: Floats, closed: Bools, gap_rate: Floats, v: Floats
-) -> Impact:
-    """Newton's law over the closed contacts, as `eventpound.mechanics.impact.impact_law`.
+    rows: Floats, restitution: Floats, closed: Bools, at: Instant
+) -> tuple[Floats, Bools, float, bool]:
+    """Newton's law over the closed contacts; as `eventpound.mechanics.impact.impact_law`.
 
-    Parameters
-    ----------
-    rows : ndarray, shape (K, N)
-        Directions of the gaps, Wᵀ.
-    mass, restitution, closed
-        Of the bodies (N,) (kg) and the contacts (K,).
-    gap_rate, v : ndarray, shape (K,), (N,)
-        Rates of the gaps and velocities (m/s); overwritten.
+    `rows` (K, N): directions of the gaps, Wᵀ.
     """
+    gap_rate, mass = at.gap_rate, at.mass
     impulse, involved = np.zeros(gap_rate.size), closed & (gap_rate <= 0.0)
-    W, before = rows[involved], gap_rate[involved]
-    eps = restitution[involved]
+    W, before, eps = rows[involved], gap_rate[involved], restitution[involved]
     noise = QUIET * float(np.max(-before))
     x, w, solved = solve_dense(W / mass @ W.T, (1.0 + eps) * before, noise)
     impulse[involved] = x
     change = W.T @ x / mass
-    v += change
+    at.v[:] += change
     rounding = CANCELLED * (np.abs(gap_rate) + np.abs(rows) @ np.abs(change))
     gap_rate += rows @ change
-    # A closed contact that neither opens nor approaches but for rounding stands still.
-    gap_rate[closed & (np.abs(gap_rate) <= rounding)] = 0.0
-    after = np.where(w > rounding[involved], w, 0.0) - eps * before
-    gap_rate[involved] = np.where((before == 0.0) & (after <= noise), 0.0, after)
-    # Λ (γ⁻ + γ⁺)/2 with Λ > 0 only where γ⁺ = -ε γ⁻: exactly none for ε = 1.
-    lost = -0.5 * float(np.sum(x * (1.0 - eps) * before))
-    return Impact(impulse, involved, lost, bool(solved))
+    members = np.flatnonzero(involved)
+    rates = in_python(rates_after)
+    lost = rates(members, before, eps, noise, x, w, rounding, closed, gap_rate)
+    return impulse, involved, lost, bool(solved)
 
 
 class _AtPoints(NamedTuple):

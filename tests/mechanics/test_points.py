@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -76,17 +78,18 @@ def test_between_bodies_it_is_the_impact_law(seed: int) -> None:
     if not (closed & (rate < 0.0)).any():
         closed[np.argmin(rate)] = True
     other_v, other_rate = v.copy(), rate.copy()
-    ours = impact_over(rows, mass, restitution, closed, rate, v)
+    at = SimpleNamespace(mass=mass, gap_rate=rate, v=v)
+    own_impulse, own_involved, own_lost, own_solved = impact_over(rows, restitution, closed, at)
     law = in_python(impact_law)
     impulse, involved, lost, solved = law(
         mass, left, right, restitution, closed, other_rate, other_v
     )
-    assert ours.solved
+    assert own_solved
     assert solved
-    np.testing.assert_array_equal(ours.involved, involved)
+    np.testing.assert_array_equal(own_involved, involved)
     # Condition of the matrix: the ratio of the masses, 1e4, times some units of rounding.
     near = 1e6 * EPS
-    np.testing.assert_allclose(ours.impulse, impulse, rtol=near, atol=near * impulse.max())
+    np.testing.assert_allclose(own_impulse, impulse, rtol=near, atol=near * impulse.max())
     np.testing.assert_allclose(v, other_v, rtol=near, atol=near)
     np.testing.assert_allclose(rate, other_rate, rtol=near, atol=near)
-    assert ours.lost == pytest.approx(lost, rel=1e-9, abs=1e-12)
+    assert own_lost == pytest.approx(lost, rel=1e-9, abs=1e-12)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import endless_message, long_message
-from eventpound.contact.impacts import DONE, ENDLESS, FULL, NO_FORCES, NO_IMPACT
+from eventpound.contact.impacts import DONE, ENDLESS, FULL, MEANING, NO_FORCES, NO_IMPACT
 from eventpound.contact.kinks import choose_branches, choose_clear_branches, lacks_branch
 from eventpound.contact.points import decide_at_points, settle_at_points
 from eventpound.contact.rest import ORDER
@@ -125,19 +125,14 @@ def _failure(ended: int, now: Underway) -> ComputationError:
         return ComputationError(endless_message(now.events(), now.task.scene.contacts), now.t)
     if ended == NO_FORCES:
         names = ", ".join(repr(now.names[j]) for j in np.flatnonzero(now.state.resting))
-        message = f"the forces of resting contacts could not be found: {names}"
+        message = f"{MEANING[NO_FORCES]}: {names}"
         if now.model.supports:
             message += "; something between ground and supports has to give way where these meet"
         return ComputationError(message, now.t)
     if ended == UNENDING:
         return ComputationError(long_message(now.events(), now.task.scene.contacts), now.t)
-    return ComputationError(
-        {
-            NO_IMPACT: "an impact problem has no solution",
-            NOT_FINITE: "the motion after an event is not a number any more",
-        }[ended],
-        now.t,
-    )
+    not_finite = "the motion after an event is not a number any more"
+    return ComputationError(not_finite if ended == NOT_FINITE else MEANING[ended], now.t)
 
 
 def _choose_branches(now: Underway, piece: CurrentPiece) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from eventpound.contact.impacts import ENDLESS, NO_FORCES, NO_IMPACT
+from eventpound.contact.impacts import ENDLESS, MEANING
 from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.monitored import Running
@@ -30,8 +30,7 @@ SETTLED = 2
 """In `FastProgress.due`: the duties of an instant are done, and it is to be written down."""
 MESSAGES = {
     FINISHED: "reached the end of the run",
-    NO_IMPACT: "an impact problem has no solution",
-    NO_FORCES: "the forces of resting contacts could not be found",
+    **MEANING,
     ENDLESS: "impacts in one instant do not end",
     NOT_FINITE: "the motion is no longer finite",
     PENETRATION: "a contact penetrates and no impact was found; try a smaller rtol",
