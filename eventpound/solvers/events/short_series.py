@@ -70,20 +70,23 @@ def gap_series(
     """
     order, gap, gap_rate = Y.shape[0] - 1, state.gap, state.gap_rate
     of_body = bodies.of_body
-    C = np.zeros((gap.size, order + 1))
+    C, level = np.zeros((gap.size, order + 1)), np.zeros((gap.size, order + 1))
     for j in range(gap.size):
         # One that rounding has put below zero, and that opens as if by rounding, may close at once.
         C[j, 0], C[j, 1] = max(gap[j], 0.0), gap_rate[j]
-        none = gap_rate[j] > 0.0 or (gap[j] == 0.0 and gap_rate[j] == 0.0)
         for k in range(2, order + 1):
-            level = 0.0
             for body, sign in ((bodies.right[j], 1.0), (bodies.left[j], -1.0)):
                 if body < 0 or of_body[body] < 0:
                     continue
                 own = Y[k, system.iq[of_body[body]]]
                 C[j, k] += sign * own
-                level = _with_rounding(level, k, own, ground, acceleration)
-            none = none and is_none(k, C[j, k], level, gap_rate[j], time)
+                level[j, k] = _with_rounding(level[j, k], k, own, ground, acceleration)
+    if bodies.points.size > 0:
+        add_point_series(Y, system, bodies, ground, acceleration, C, level)
+    for j in range(gap.size):
+        none = gap_rate[j] > 0.0 or (gap[j] == 0.0 and gap_rate[j] == 0.0)
+        for k in range(2, order + 1):
+            none = none and is_none(k, C[j, k], level[j, k], gap_rate[j], time)
             if none:
                 C[j, k] = 0.0
     return C
@@ -96,25 +99,20 @@ def add_point_series(
     bodies: Bodies,
     ground: float,
     acceleration: float,
-    time: float,
     C: Floats,
+    level: Floats,
 ) -> None:
-    """The coefficients of `gap_series` of contacts at points, from the second on."""
+    """Add the coefficients of `gap_series` of contacts at points, and their rounding."""
     for p in range(bodies.points.size):
         j = bodies.points[p]
-        none = C[j, 1] > 0.0 or (C[j, 0] == 0.0 and C[j, 1] == 0.0)
         for k in range(2, Y.shape[0]):
-            level = 0.0
             for b in range(bodies.mass.size):
                 weight, c = bodies.spread[p, b], bodies.of_body[b]
                 if weight == 0.0 or c < 0:
                     continue
                 own = Y[k, system.iq[c]]
                 C[j, k] += weight * own
-                level = _with_rounding(level, k, own, ground, acceleration)
-            none = none and is_none(k, C[j, k], level, C[j, 1], time)
-            if none:
-                C[j, k] = 0.0
+                level[j, k] = _with_rounding(level[j, k], k, own, ground, acceleration)
 
 
 @kernel
@@ -302,8 +300,6 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Sh
     ground = ground_acceleration(forcing, forcing.start)
     least = ACCELERATION * acceleration
     C = gap_series(Y, system, bodies, state, ground, least, rules.time)
-    if bodies.points.size > 0:
-        add_point_series(Y, system, bodies, ground, least, rules.time, C)
     first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
     closed = min(first, limit, radius)
     knot = _knot(Y, system, weight, closed)
