@@ -33,7 +33,6 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.event_bounds import inspect_step
-from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import CLEAR, MARKED, Examination, audit
 from eventpound.tolerances import FIRST_STEP, FIRST_TRIAL, SLOW_TURN
 
@@ -265,13 +264,3 @@ def look_at_descriptor(tau: float, y: Floats, problem: DescriptorProblem, out: O
     rate = np.zeros(y.size)
     solve_contact_forces(tau, y, problem)
     observe_descriptor(tau, y, problem, rate, out)
-
-
-@kernel
-def look_at_start(
-    tau: float, clusters: Floats, mode: Dynamics, problem: DescriptorProblem, out: Observed
-) -> None:
-    """Observe the loop's own state, as at the start of a segment."""
-    y = np.empty(problem.d.size)
-    from_clusters(clusters, mode.system, mode.bodies, y)
-    look_at_descriptor(tau, y, problem, out)

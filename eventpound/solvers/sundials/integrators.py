@@ -26,7 +26,7 @@ from eventpound.solvers.events.recorder import is_due
 from eventpound.solvers.events.step_check import CLEAR, MARKED, Examination
 from eventpound.solvers.sundials.callback_data import NO_ROOTS, RootFunctions, Roots
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
-from eventpound.solvers.sundials.descriptor_steps import Followed, look_at_start
+from eventpound.solvers.sundials.descriptor_steps import Followed
 from eventpound.solvers.sundials.loop import (
     ROOT_RETURN,
     AtRoot,
@@ -329,7 +329,6 @@ class InDescriptorForm(_Duties):
         self._own: DescriptorMode
         self._problem: DescriptorProblem
         self._followed: Followed
-        self._begun: float | None = None
 
     def start(self, start: Start) -> None:
         """Begin with the clusters in the state given; the tolerances are those of the run."""
@@ -337,14 +336,9 @@ class InDescriptorForm(_Duties):
         self._problem = on_loan(DescriptorProblem(self._own.descriptor, start.forcing, start.frame))
         self._followed = on_loan(Followed(self._problem, self.drift, self.scales.acceleration))
         super().start(start)
-        self._begun = start.tau
 
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> StepsTaken:
         """Accepted steps up to the first that is not clear or the bounds, none beyond a sample."""
-        if self._begun == tau:
-            # The loop has looked at the start of the segment by the equations of its clusters.
-            look_at_start(tau, e.y[first], self._mode.dynamics, self._problem, e.looks[first])
-        self._begun = None
         return super().advance(tau, first, excess, bounds._replace(at_samples=True), e)

@@ -268,7 +268,8 @@ def root_at(
             return BEYOND_BOUND, whole
     reach = bracket_of(whole, start, whole)
     end = on_the_root(roots.pairs, roots.noise, start, tau, reach)
-    put_state(put_inner, handles, end, e, y)
+    put_inner(handles, end, 0, y)
+    to_frame(e.frame, e.forcing.start + end, -1.0, e.dynamics.system.iq, e.dynamics.system.iv, y)
     return HAPPENED, end
 
 
