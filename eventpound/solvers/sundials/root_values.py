@@ -9,13 +9,9 @@ from eventpound.mechanics.descriptor_motion import DescriptorProblem, dot
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,
-    bodies_motion,
-    difference,
-    observe_gaps,
     observe_motion,
 )
 from eventpound.mechanics.reduced import Forcing, Reduced
-from eventpound.mechanics.reduced_loads import placed
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.sundials.callback_data import Roots, evaluate
@@ -33,24 +29,8 @@ def cluster_roots(
     out: Floats,
 ) -> None:
     """Fill `out` (2 n,) with the functions of a state of the clusters, relative to the ground."""
-    if roots.forces:
-        rate = np.empty(state.size)
-        observe_motion(tau, state, rate, system, bodies, forcing, roots.seen)
-    else:
-        state = placed(forcing.start + tau, state, system, forcing)
-        _observe_clusters(state, bodies, roots.seen)
+    observe_motion(tau, state, np.empty(state.size), system, bodies, forcing, roots.seen)
     evaluate(roots, out)
-
-
-@kernel
-def _observe_clusters(y: Floats, bodies: Bodies, out: Observed) -> None:
-    """Fill u, v and the values and first rates of gaps and elongations from the state."""
-    bodies_motion(y, bodies, out.u, out.v)
-    for link in range(bodies.stiffness.size):
-        first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
-        out.elongation[0, link] = difference(out.u, first, second)
-        out.elongation[1, link] = difference(out.v, first, second)
-    observe_gaps(bodies, out)
 
 
 @kernel
