@@ -27,6 +27,7 @@ from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.motion.loads import LOADED, is_sinusoidal, row_of_link
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.polynomial import first_root
 from eventpound.tolerances import ACCELERATION, DIRECT, UNDECIDED
 
 _GAUSSIAN = int(Family.GAUSSIAN)
@@ -401,6 +402,16 @@ def is_none(k: int, coefficient: float, level: float, rate: float, time: float) 
     if rate == 0.0:
         return coefficient <= level
     return k == 2 and -level <= coefficient < 0.0 and rate <= level * time
+
+
+@scalar_kernel
+def closing_time(c: Floats, size: int, limit: float, work: Floats) -> float:
+    """When a gap, a polynomial in time (s), closes up to a limit, or inf; as `first_root`.
+
+    One closed to rounding, which an impact elsewhere has set moving, or which is found closed at
+    the end of a stretch, closes at once.
+    """
+    return 0.0 if c[0] <= 0.0 and c[1] < 0.0 else first_root(c, size, limit, work)
 
 
 @scalar_kernel

@@ -16,7 +16,7 @@ from eventpound.mechanics.ground_frame import to_frame
 from eventpound.mechanics.observables import Observed, observe
 from eventpound.mechanics.reduced import Forcing, motion_rate
 from eventpound.mechanics.series import evaluate_series
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events.run import Dynamics
@@ -73,14 +73,6 @@ def state_at(tau: float, step: DenseStep) -> Floats:
 
 
 @kernel
-def gaps_at(tau: float, gaps: Floats, open_contacts: Bools, gap: Floats, rate: Floats) -> None:
-    """Gaps of open contacts and their rates from their series into (K,)."""
-    for j in range(gap.size):
-        if open_contacts[j]:
-            gap[j], rate[j] = value_and_slope(gaps[j], tau)
-
-
-@kernel
 def look(tau: float, step: DenseStep) -> None:
     """Everything observed at `tau` (s), into `step.seen`."""
     dense, mode, seen = step.dense, step.dynamics, step.seen
@@ -92,7 +84,9 @@ def look(tau: float, step: DenseStep) -> None:
         motion_rate(tau, y, rate, mode.system, step.forcing)
     observe(tau, y, rate, mode.system, mode.bodies, step.forcing, seen)
     if dense.own:
-        gaps_at(tau, dense.gaps, mode.watched.open_contacts, seen.gap[0], seen.gap[1])
+        for j in range(seen.gap.shape[1]):
+            if mode.watched.open_contacts[j]:
+                seen.gap[0, j], seen.gap[1, j] = value_and_slope(dense.gaps[j], tau)
 
 
 def from_values(values: Floats, start: float, end: float, frame: Floats) -> Dense:

@@ -93,8 +93,8 @@ def _may_peak(i: int, a: Observed, b: Observed, h: float, running: Running) -> b
 
 
 @kernel
-def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> bool:
-    any_found, at = False, watched.at
+def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> None:
+    at = watched.at
     for j in range(a.gap.shape[1]):
         found.closing[j] = False
         found.detaching[j] = False
@@ -110,13 +110,10 @@ def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, foun
                 low - doubt < watched.force_low[j] - watched.force_noise
                 or high + doubt > watched.force_high[j] + watched.force_noise
             )
-        any_found = any_found or found.closing[j] or found.detaching[j]
-    return any_found
 
 
 @kernel
-def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> bool:
-    any_found = False
+def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> None:
     for link in range(found.kink.size):
         found.kink[link] = False
         if watched.kink_low[link] == -np.inf and watched.kink_high[link] == np.inf:
@@ -130,8 +127,6 @@ def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: 
         doubt = DOUBT * (high - low)
         found.kink[link] = low - doubt < watched.kink_low[link]
         found.kink[link] = found.kink[link] or high + doubt > watched.kink_high[link]
-        any_found = any_found or found.kink[link]
-    return any_found
 
 
 @scalar_kernel
@@ -191,10 +186,11 @@ def inspect_step(
     bool
         Whether anything is marked.
     """
-    any_found = _inspect_contacts(a, b, h, watched, found)
-    any_found = _inspect_kinks(a, b, h, watched, found) or any_found
+    _inspect_contacts(a, b, h, watched, found)
+    _inspect_kinks(a, b, h, watched, found)
     at = running.at
     for i in range(at.displacement, at.end):
         j = contact_pressed(i, at)
         found.peak[i] = not (j >= 0 and watched.open_contacts[j]) and _may_peak(i, a, b, h, running)
-    return any_found or bool(found.peak.any()) or watched.follows
+    some = found.closing.any() or found.detaching.any() or found.kink.any() or found.peak.any()
+    return bool(some or watched.follows)

@@ -133,8 +133,10 @@ class Segment:
         while self.end < self._length:
             try:
                 now.go_on(self.origin + self.end)
-                if self._advance() and self._look_again():
-                    return True
+                if self._advance():
+                    step = self.integrator.dense(self.start, self.end)
+                    if look_again(now, self.piece, step):
+                        return True
             except ComputationError:
                 y = self._examined.y[self._reached_row]
                 take_state(now, self.piece, y, self.origin + self.reached)
@@ -143,10 +145,6 @@ class Segment:
         y = self._examined.y[1 - self._first]
         take_state(now, self.piece, y, self.piece.stop)
         return False
-
-    def _look_again(self) -> bool:
-        """Look for events in the last step; whether there is one."""
-        return look_again(self.now, self.piece, self.integrator.dense(self.start, self.end))
 
     def _advance(self) -> bool:
         """Steps that pass the audit; true where something may have happened in the last of them.

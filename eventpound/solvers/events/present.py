@@ -32,13 +32,6 @@ def forcing_now(piece: CurrentPiece, t: float) -> Forcing:
 
 
 @kernel
-def packed(state: State, system: Reduced, bodies: Bodies) -> Floats:
-    """`state_vector` of the present state."""
-    copy_numbers(state.z, bodies.frozen_z)
-    return state_vector(bodies, system, bodies.mass, state.u, state.v, state.z, state.ledger)
-
-
-@kernel
 def tolerances_of_state(rules: Rules, system: Reduced, bodies: Bodies) -> Floats:
     """Absolute tolerance of each entry of a state vector, shape (size,).
 
@@ -119,7 +112,8 @@ def make_ready(run: Run, mode: Dynamics, piece: CurrentPiece) -> None:
     system, bodies, state = mode.system, mode.bodies, run.state
     rate = run.rate[: system.size]
     forcing = lend(forcing_now(piece, state.now[0].t))
-    y = packed(state, system, bodies)
+    copy_numbers(state.z, bodies.frozen_z)
+    y = state_vector(bodies, system, bodies.mass, state.u, state.v, state.z, state.ledger)
     copy_numbers(y, run.y)
     copy_numbers(tolerances_of_state(run.rules, system, bodies), run.atol)
     seen = run.looks[0]

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.contact.kinks import still_rate
-from eventpound.contact.rest import acceleration_noise, is_none
+from eventpound.contact.rest import acceleration_noise, closing_time, is_none
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents, element_pull
 from eventpound.mechanics.elements import bends_at_zero, z_bend
@@ -121,11 +121,8 @@ def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float
     times = np.full(C.shape[0], np.inf)
     work = root_work(C.shape[1])
     for j in range(C.shape[0]):
-        if open_contacts[j] and C[j, 0] <= 0.0 and C[j, 1] < 0.0:
-            # Closed to rounding, and set moving by an impact elsewhere.
-            times[j] = 0.0
-        elif open_contacts[j]:
-            times[j] = first_root(C[j], C.shape[1], limit, work)
+        if open_contacts[j]:
+            times[j] = closing_time(C[j], C.shape[1], limit, work)
     first = np.inf
     for j in range(times.size):
         first = min(first, times[j])

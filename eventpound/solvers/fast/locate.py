@@ -11,6 +11,7 @@ import numpy as np
 
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.modes import force_vanishes
+from eventpound.contact.rest import closing_time
 from eventpound.mechanics.elements import (
     branch_ends,
     has_branches,
@@ -20,7 +21,7 @@ from eventpound.mechanics.elements import (
 )
 from eventpound.mechanics.link_law import YIELDING
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.polynomial import first_root, value_and_slope
+from eventpound.numerics.polynomial import value_and_slope
 from eventpound.numerics.power_series import sign_after
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.followed import follows
@@ -98,10 +99,7 @@ def _closings(order: int, h: float, run: FastRun) -> float:
         if state.gap[j] > 0.0 and stays_above(state.gap[j], slope, bend, rest, h):
             continue
         gap_polynomial(j, order, contacts, plan.limits, state, series)
-        tau = 0.0
-        # A gap that closes with the end of a stretch may be found closed and still closing.
-        if not (series.c[0] <= 0.0 and series.c[1] < 0.0):
-            tau = first_root(series.c, order + 1, min(h, first), series.work)
+        tau = closing_time(series.c, order + 1, min(h, first), series.work)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.closing[j] = True

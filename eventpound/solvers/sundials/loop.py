@@ -91,9 +91,9 @@ def carry_on(
 
 
 @scalar_kernel
-def bracket_of(tau: float, start: float, whole: float) -> float:
-    """Width (s) that SUNDIALS leaves of a root's bracket, in a step from `start` to `whole` (s)."""
-    return BRACKET * EPS * (abs(tau) + whole - start)
+def bracket_of(start: float, end: float) -> float:
+    """Width that SUNDIALS leaves of the bracket of a root in a step from `start` to `end` (s)."""
+    return BRACKET * EPS * (abs(end) + end - start)
 
 
 @kernel
@@ -123,7 +123,7 @@ def step_to(
     reached = handles.reached[0]
     if reached > start:
         whole = whole_end(handles)
-        if abs(whole - reached) <= bracket_of(whole, start, whole):
+        if abs(whole - reached) <= bracket_of(start, whole):
             return 0
     return solve(handles, stop)
 
@@ -215,7 +215,7 @@ def reversal_in(
     # Reversals after `last` are left alone.
     last, allowed = end, NEGLIGIBLE * rtol
     if flag == ROOT_RETURN:
-        last, allowed = end - bracket_of(end, start, end), 0.0
+        last, allowed = end - bracket_of(start, end), 0.0
     if not may_reverse(before, rate, after, end - start, system, direction, allowed):
         return np.inf
     return first_reversal(dense(handles, start, end), last, e.forcing.start, system, direction)
@@ -266,7 +266,7 @@ def root_at(
     for h in range(places.size):
         if places[h] >= 0 and abs(y[places[h]]) - e.z_bound[h] > max(e.z_allowed, excess):
             return BEYOND_BOUND, whole
-    reach = bracket_of(whole, start, whole)
+    reach = bracket_of(start, whole)
     end = on_the_root(roots.pairs, roots.noise, start, tau, reach)
     put_inner(handles, end, 0, y)
     to_frame(e.frame, e.forcing.start + end, -1.0, e.dynamics.system.iq, e.dynamics.system.iv, y)
