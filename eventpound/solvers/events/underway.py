@@ -21,7 +21,7 @@ from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.motion.loads import add_body_loads
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints, longer
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
 from eventpound.scene.contact_law import Element
@@ -190,9 +190,9 @@ class Underway:
         record, journal = self.record, self.record.journal
         written, taken = int(journal.cursor[WRITTEN]), int(self.state.now["events"][0])
         if 2 * (written + journal.times.size - journal.cursor[PASSED]) > journal.rows.shape[0]:
-            record = record._replace(journal=journal._replace(rows=_doubled(journal.rows, written)))
+            record = record._replace(journal=journal._replace(rows=longer(journal.rows, 2)))
         if 2 * taken > record.events.shape[0]:
-            record = record._replace(events=_doubled(record.events, taken))
+            record = record._replace(events=longer(record.events, 2))
         self.record = on_loan(record)
         instant = on_loan(self.run.instant._replace(events=record.events))
         self.run = on_loan(self.run._replace(record=self.record, instant=instant))
@@ -252,13 +252,6 @@ class Underway:
         seen, watched = self.run.looks[2], self.mode.watched
         j = in_python(broken_contact)(seen, watched, self.rules.length_noise)
         return contact_error(t, j, seen, watched, self.names)
-
-
-def _doubled(rows: Floats, taken: int) -> Floats:
-    """An array of twice as many rows, with the first that are taken."""
-    result = np.empty((2 * rows.shape[0], rows.shape[1]))
-    result[:taken] = rows[:taken]
-    return result
 
 
 def looks_of(model: Model, count: int) -> tuple[Observed, ...]:

@@ -25,7 +25,7 @@ from eventpound.mechanics.numbers import OF_CONTACTS, numbers_of, put_numbers, w
 from eventpound.mechanics.supported import lowered
 from eventpound.motion.parametric import Parametric
 from eventpound.motion.record import Record
-from eventpound.numerics.arrays import Bytes, Floats
+from eventpound.numerics.arrays import Bytes, Floats, longer
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
@@ -400,17 +400,10 @@ def _enlarged(record: FastRecord, plan: FastPlan, state: FastState) -> FastRecor
     rows, events = record.rows, record.events
     wanted = in_python(events_wanted)(plan.contacts.left.size, state.now[0])
     if wanted > events.shape[0]:
-        events = _longer(events)
+        events = longer(events, GROWTH)
     if in_python(rows_wanted)(plan.output_times.size, state.progress[0]) > rows.shape[0]:
-        rows = _longer(rows)
+        rows = longer(rows, GROWTH)
     return record._replace(events=events, rows=rows)
-
-
-def _longer(rows: Floats) -> Floats:
-    """The rows with room for more behind them."""
-    longer = np.empty((GROWTH * rows.shape[0], rows.shape[1]))
-    longer[: rows.shape[0]] = rows
-    return longer
 
 
 def kernels_kept(task: Task) -> bool:

@@ -25,7 +25,6 @@ from eventpound.solvers.sundials.callback_data import Roots, address_of
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import (
     Followed,
-    Tolerances,
     begin_descriptor,
     examine_descriptor,
     from_clusters,
@@ -46,7 +45,7 @@ from eventpound.solvers.sundials.library import (
     matrix_data,
 )
 from eventpound.solvers.sundials.loop import Numbers, carry_on, polynomial, root_at, step_to
-from eventpound.solvers.sundials.memory import IdaMemory
+from eventpound.solvers.sundials.memory import IdaMemory, Tolerances
 from eventpound.solvers.sundials.root_values import descriptor_roots
 
 if ida_library() is None:

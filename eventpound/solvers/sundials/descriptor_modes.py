@@ -12,8 +12,8 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
-from eventpound.solvers.sundials.descriptor_steps import Tolerances
-from eventpound.tolerances import FINEST_RTOL, LEDGER_WEIGHT, NO_RTOL
+from eventpound.solvers.sundials.memory import Tolerances, step_tolerances
+from eventpound.tolerances import FINEST_RTOL, LEDGER_WEIGHT
 
 LOCAL_SHARE = 0.01
 """Part of the tolerance given to one step. The errors of BDF's steps damp a motion: they add up
@@ -44,10 +44,7 @@ class DescriptorMode:
     def local_tolerances(self, frame: Floats) -> Tolerances:
         """Relative and absolute tolerances of a step."""
         share = max(LOCAL_SHARE, FINEST_RTOL / self.rtol)
-        if frame.shape[1] > 0:
-            # Positions in a moving frame are larger than what they stand for.
-            return Tolerances(NO_RTOL, 2.0 * share * self.atol)
-        return Tolerances(share * self.rtol, share * self.atol)
+        return step_tolerances(share, self.rtol, self.atol, frame)
 
 
 class DescriptorModes:

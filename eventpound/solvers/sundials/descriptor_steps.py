@@ -34,17 +34,11 @@ from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.event_bounds import inspect_step
 from eventpound.solvers.events.step_check import CLEAR, MARKED, Examination, audit
+from eventpound.solvers.sundials.memory import Tolerances
 from eventpound.tolerances import FIRST_STEP, FIRST_TRIAL, SLOW_TURN
 
 NEAR = 3.0
 """Times the reach of rounding about a peak within which the end of a step is the same peak."""
-
-
-class Tolerances(NamedTuple):
-    """Relative and absolute tolerances (size,) of the unknowns in one step."""
-
-    rtol: float
-    atol: Floats
 
 
 class Followed(NamedTuple):

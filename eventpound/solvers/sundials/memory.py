@@ -35,6 +35,21 @@ BANDED_FROM = 48
 """Length of the state vector from which a banded Jacobian is used where it is narrow."""
 
 
+class Tolerances(NamedTuple):
+    """Relative and absolute tolerances (size,) of the unknowns in one step."""
+
+    rtol: float
+    atol: Floats
+
+
+def step_tolerances(share: float, rtol: float, atol: Floats, frame: Floats) -> Tolerances:
+    """A share of the tolerances of a motion, in a moving frame if it has any."""
+    if frame.shape[1] > 0:
+        # Positions there are larger than what they stand for.
+        return Tolerances(NO_RTOL, 2.0 * share * atol)
+    return Tolerances(max(share * rtol, NO_RTOL), share * atol)
+
+
 class MemoryLayout(NamedTuple):
     """Tolerances of a step and half bandwidth of the Jacobian, 0 where it is dense.
 
@@ -66,14 +81,9 @@ def layout(system: Reduced, frame: Floats, rtol: float, atol: Floats) -> MemoryL
         Absolute tolerances of the motion.
     """
     band = bandwidth(system) if system.size > BANDED_FROM else system.size
-    # Positions in a moving frame are larger than what they stand for.
-    framed = frame.shape[1] > 0
     share = LOCAL_SHARE * (BENT_SHARE if (system.iz < SMOOTH_CODES).any() else 1.0)
-    return MemoryLayout(
-        NO_RTOL if framed else max(share * rtol, NO_RTOL),
-        (2.0 if framed else 1.0) * share * atol,
-        band if 3 * band < system.size else 0,
-    )
+    tolerances = step_tolerances(share, rtol, atol, frame)
+    return MemoryLayout(*tolerances, band if 3 * band < system.size else 0)
 
 
 class _Memory:
