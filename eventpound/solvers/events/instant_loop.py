@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import endless_message, long_message
-from eventpound.contact.impacts import DONE, ENDLESS, FULL, MEANING, NO_FORCES, NO_IMPACT
+from eventpound.contact.impacts import DONE, ENDLESS, FULL, MEANING, NO_FORCES
 from eventpound.contact.kinks import choose_branches, choose_clear_branches, lacks_branch
 from eventpound.contact.points import decide_at_points, settle_at_points
 from eventpound.contact.rest import ORDER
@@ -42,8 +42,6 @@ from eventpound.solvers.events.underway import Underway
 
 NOWHERE = Dense(np.zeros((1, 1)), 0.0, 0.0, 0.0, NO_FRAME, False, NO_GAPS)
 """No step."""
-FAILED = {NO_IMPACT, NO_FORCES, ENDLESS, NOT_FINITE, BROKEN, UNENDING}
-"""Ends of `proceed` that are errors."""
 STEPS_AT_ONCE = 256
 """Short steps after which whoever waits is told."""
 
@@ -81,7 +79,7 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
             now.make_room()
         elif ended == FIRST_BRANCHES:
             _choose_branches(now, piece)
-        if ended in FAILED:
+        elif ended not in (OVER, DONE, PAUSED, NEW_MODE):
             raise _failure(ended, now)
 
 

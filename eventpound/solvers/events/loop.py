@@ -94,22 +94,11 @@ class Segment:
         close = (pressed and frame.shape[1] == 0) or now.task.rtol < STOP_AT_SAMPLES
         self._stops = piece.family >= Family.SAMPLES and close
         size = self.mode.system.size
-        e = self._examined = self._examination(size)
-        # The instant was made ready where it was settled.
-        e.y[0], e.rate[0] = now.run.y[:size], now.run.rate[:size]
-        for seen, values in zip(*map(fields_of, (e.looks[0], now.run.looks[0])), strict=True):
-            seen[...] = values
-        self.atol = now.run.atol[:size].copy()
-        self._start = Start(self.mode, self.forcing, frame, e.y[0].copy(), self.atol)
-        integrator.start(self._start)
-
-    def _examination(self, size: int) -> Examination:
-        now, mode = self.now, self.mode
-        return on_loan(
+        e = self._examined = on_loan(
             Examination(
-                mode.unwatched if self.integrator.finds_events else mode.dynamics,
+                self.mode.unwatched if integrator.finds_events else self.mode.dynamics,
                 self.forcing,
-                self.frame,
+                frame,
                 now.step_looks,
                 np.zeros((2, size)),
                 np.zeros((2, size)),
@@ -119,6 +108,13 @@ class Segment:
                 Z_EXCESS * now.task.rtol,
             )
         )
+        # The instant was made ready where it was settled.
+        e.y[0], e.rate[0] = now.run.y[:size], now.run.rate[:size]
+        for seen, values in zip(*map(fields_of, (e.looks[0], now.run.looks[0])), strict=True):
+            seen[...] = values
+        self.atol = now.run.atol[:size].copy()
+        self._start = Start(self.mode, self.forcing, frame, e.y[0].copy(), self.atol)
+        integrator.start(self._start)
 
     def run(self) -> bool:
         """Integrate until something happens or the piece ends; whether something did.

@@ -17,7 +17,7 @@ from numba import types
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_of
 from eventpound.mechanics.observables import Observed, blank
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import callback, in_python, kernel
 from eventpound.numerics.lending import change_loan, on_loan, type_of_loan
 from eventpound.solvers.events.event_bounds import Watched
@@ -31,20 +31,17 @@ from eventpound.solvers.events.roots import (
 )
 
 _FALLING, _RISING = -1, 1
-CALLS, FRESH = 0, 1
-"""Places of `Roots.counts`: how often the functions were asked for; whether they are still to be
-asked for the first time."""
 
 
 class Roots(NamedTuple):
     """Root functions of a mode, n of them; on loan.
 
-    counts (2,): above. forces: whether contact forces or rates of x' are among them. watched: of
-    the `Mode`. noise, lifted (n,), pairs (n, 2): as `eventpound.solvers.events.roots` has them.
-    seen: scratch, on loan.
+    fresh (1,): whether they are still to be asked for the first time. forces: whether contact
+    forces or rates of x' are among them. watched: of the `Mode`. noise, lifted (n,), pairs (n, 2):
+    as `eventpound.solvers.events.roots` has them. seen: scratch, on loan.
     """
 
-    counts: Ints
+    fresh: Bools
     forces: bool
     watched: Watched
     noise: Floats
@@ -85,7 +82,7 @@ def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int
     turns, at = np.zeros(links, np.bool_), in_python(places_of)(0, 0, 0)
     return on_loan(
         Roots(
-            np.zeros(2, np.int64),
+            np.zeros(1, np.bool_),
             False,
             Watched(gaps, forces, False, least, most, low, high, turns, 0.0, at),
             np.zeros(0),
@@ -124,11 +121,6 @@ class RootFunctions:
         self.loan = no_roots(*model.counts)
 
     @property
-    def calls(self) -> int:
-        """How often the functions were asked for."""
-        return int(self.loan.counts[CALLS])
-
-    @property
     def count(self) -> int:
         """Values, each with its rate."""
         return int(self.loan.noise.size)
@@ -141,11 +133,11 @@ class RootFunctions:
     def point_to(self, mode: Mode) -> None:
         """Be the functions of a mode, from a start on."""
         watched, noise = mode.watched, noise_of(mode.watched, self._length, self._time)
-        self._mode, counts, seen = mode, self.loan.counts, self.loan.seen
-        counts[FRESH] = 1
+        self._mode, fresh, seen = mode, self.loan.fresh, self.loan.seen
+        fresh[0] = True
         forces = bool(watched.unlocked.any() or watched.turns.any())
         lifted, pairs = np.zeros(noise.size), np.zeros((noise.size, 2))
-        roots = Roots(counts, forces, watched, noise, lifted, pairs, seen)
+        roots = Roots(fresh, forces, watched, noise, lifted, pairs, seen)
         change_loan(self.loan, roots)
 
     def marks(self) -> tuple[Bools, Bools, Bools]:
@@ -158,8 +150,7 @@ def evaluate(roots: Roots, out: Floats) -> None:
     """The functions (2 n,) of what has been observed into `roots.seen`."""
     pairs = out.reshape(roots.noise.size, 2)
     values_and_rates(roots.seen, roots.watched, pairs)
-    if roots.counts[FRESH] == 1:
+    if roots.fresh[0]:
         lift(pairs, roots.noise, roots.lifted)
-        roots.counts[FRESH] = 0
+        roots.fresh[0] = False
     root_functions(pairs, roots.lifted)
-    roots.counts[CALLS] += 1

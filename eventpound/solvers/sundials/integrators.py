@@ -172,16 +172,14 @@ class Wrapped(_Duties):
     ----------
     _values : callable
         Fills an array with the root functions of unknowns, which are overwritten.
-    _relative, _in_frame : callable
-        Of a local time (s) and unknowns there: the same relative to the ground, in their place; the
-        state of the clusters in the moving frame.
+    _relative : callable
+        Unknowns at a local time (s), relative to the ground, in their place.
     _examine : callable
         The examination of a step.
     """
 
     _values: Callable[[float, Floats, Floats], None]
     _relative: Callable[[float, Floats], Floats]
-    _in_frame: Callable[[float, Floats], Floats]
     _examine: Callable[[float, float, int, float, Examination], tuple[int, float]]
 
     def __init__(self) -> None:
@@ -295,12 +293,13 @@ class Wrapped(_Duties):
 
     def _put_inner(self, tau: float, k: int, y: Floats) -> None:
         """Of `root_at`."""
-        y[:] = self._in_frame(tau, self._interpolated(tau))
+        raise NotImplementedError
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on SUNDIALS' own polynomial, from its values."""
-        times = end - (end - start) * NODES
-        values = np.array([self._in_frame(tau, self._interpolated(tau)) for tau in times])
+        values = np.empty((NODES.size, self._mode.system.size))
+        for node, y in zip(NODES, values, strict=True):
+            self._put_inner(end - (end - start) * node, 0, y)
         return from_values(values, start, end, self._frame)
 
 

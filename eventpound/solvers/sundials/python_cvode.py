@@ -98,8 +98,8 @@ class WrappedCvode(Wrapped):
         self._relative(tau, y)
         cluster_roots(tau, y, system, bodies, self._forcing, self._roots.loan, out)
 
-    def _in_frame(self, tau: float, y: Floats) -> Floats:
-        return y
+    def _put_inner(self, tau: float, k: int, y: Floats) -> None:
+        y[:] = self._interpolated(tau)
 
     def _take(self, start: float, first: int, bounds: Bounds, e: Examination) -> tuple[int, float]:
         """A step from `start` (s) up to where a link reverses."""

@@ -114,10 +114,8 @@ class WrappedIda(InDescriptorForm, Wrapped):
         to_moving_frame(self._problem, tau, -1.0, y)
         return y
 
-    def _in_frame(self, tau: float, y: Floats) -> Floats:
-        mode = self._mode
-        clusters = np.empty(mode.system.size)
-        onto_constraints(self._own.descriptor, self._relative(tau, y))
+    def _put_inner(self, tau: float, k: int, clusters: Floats) -> None:
+        mode, y = self._mode, self._relative(tau, self._interpolated(tau))
+        onto_constraints(self._own.descriptor, y)
         to_moving_frame(self._problem, tau, 1.0, y)
         to_clusters(y, 1.0, mode.system, mode.bodies, clusters)
-        return clusters
