@@ -12,7 +12,7 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME, moving_frame
-from eventpound.motion.base import Family, Piece
+from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
@@ -248,7 +248,8 @@ class EventLoop:
             stop = min(given.end, end)
             if stop <= now.t:
                 continue
-            piece, frame = now.piece(given, stop), self._frame(given)
+            piece, moving = now.piece(given, stop), self.moving and given.family is Family.SAMPLES
+            frame = moving_frame(given) if moving else NO_FRAME
             now.mark_happened(*(np.zeros(1, np.bool_) for _ in range(3)))
             settle_instant(now, piece)
             while now.t < stop:
@@ -265,12 +266,6 @@ class EventLoop:
             return Segment(now, self.integrator, piece, frame).run()
         finally:
             self._integrated += now.t - begun
-
-    def _frame(self, piece: Piece) -> Floats:
-        """The moving frame of a piece; none where none is wanted."""
-        if self.moving and piece.family is Family.SAMPLES:
-            return moving_frame(piece)
-        return NO_FRAME
 
     def _energy(self) -> Energy | None:
         """The ledger of the present state, where it is kept."""

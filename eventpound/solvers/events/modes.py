@@ -108,13 +108,6 @@ class ModeTable:
             known = self._modes[key] = self._build(model, resting, branch, pressed)
         return known
 
-    def _on_branches(self, model: Model, branch: Ints) -> Model:
-        """The model with the laws of links on these branches."""
-        memory = in_python(memory_on_branches)(model.law.memory, branch)
-        if memory is model.law.memory:
-            return model
-        return replace(model, law=model.law._replace(memory=memory))
-
     def place_ends(self, mode: Mode, u: Floats, z: Floats) -> None:
         """Say where branches of memories end, from displacements (N,) and z (H,) on them."""
         model, watched = self.model, mode.watched
@@ -129,7 +122,9 @@ class ModeTable:
                 )
 
     def _build(self, model: Model, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
-        model = self._on_branches(model, branch)
+        memory = in_python(memory_on_branches)(model.law.memory, branch)
+        if memory is not model.law.memory:
+            model = replace(model, law=model.law._replace(memory=memory))
         at_points = np.zeros(model.contacts, np.bool_)
         at_points[model.points] = True
         ordinary, projection = resting & ~at_points, None
@@ -161,10 +156,9 @@ class ModeTable:
         opened[model.laws] = opened[model.own_contacts :] = False
         kink, turns = model.elastic.offset, branch == YIELDING
         turns[model.sliders] = True
-        never = np.full(model.sliders.size, np.inf)
         kink_low = np.where(branch > 0, kink, -np.inf)
         kink_high = np.where(branch < 0, kink, np.inf)
-        kink_low[model.sliders], kink_high[model.sliders] = -never, never
+        kink_low[model.sliders], kink_high[model.sliders] = -np.inf, np.inf
         watched = Watched(
             opened,
             unlocked,

@@ -132,15 +132,22 @@ def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float
     return first, closing
 
 
+@scalar_kernel
+def _radius(c: Floats, allowed: float) -> float:
+    """Time over which the last two terms of a series stay below what is allowed."""
+    radius = np.inf
+    for k in (c.size - 2, c.size - 1):
+        if c[k] != 0.0:
+            radius = min(radius, (allowed / abs(c[k])) ** (1.0 / k))
+    return radius
+
+
 @kernel
 def _series_radius(Y: Floats, weight: Floats) -> float:
     """Time over which the last two terms stay below a share of the tolerance."""
-    order = Y.shape[0] - 1
     radius = np.inf
     for s in range(Y.shape[1]):
-        for k in (order - 1, order):
-            if Y[k, s] != 0.0:
-                radius = min(radius, (SERIES_SHARE * weight[s] / abs(Y[k, s])) ** (1.0 / k))
+        radius = min(radius, _radius(Y[:, s], SERIES_SHARE * weight[s]))
     return radius
 
 
@@ -179,19 +186,14 @@ def _ground_radius(forcing: Forcing, bodies_mass: Floats, acceleration: float) -
     """Time over which the series of ground and loads hold to `acceleration` (m/s²)."""
     out = np.zeros(ORDER + 1)
     ground_taylor(forcing, forcing.start, ORDER + 1, out)
-    radius = np.inf
-    for k in (ORDER - 1, ORDER):
-        if out[k] != 0.0:
-            radius = min(radius, (acceleration / abs(out[k])) ** (1.0 / k))
+    radius = _radius(out, acceleration)
     if forcing.family != LOADED:
         return radius
     for row in range(1, rows_of(forcing.coefficients) + 1):
         load_taylor(row, forcing, forcing.start, ORDER + 1, out)
         driven = is_driven(row, forcing.coefficients)
         mass = 1.0 if driven else bodies_mass[body_of(row, forcing.coefficients)]
-        for k in (ORDER - 1, ORDER):
-            if out[k] != 0.0:
-                radius = min(radius, (acceleration * mass / abs(out[k])) ** (1.0 / k))
+        radius = min(radius, _radius(out, acceleration * mass))
     return radius
 
 

@@ -66,7 +66,7 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
     elastic[model.plain :] = total[model.plain :] = -force[model.laws]
     line = np.concatenate(
         (
-            (task.start, _ground(task)),
+            (task.start, ground_acceleration(_first_piece(task), task.start)),
             model.u0,
             model.v0,
             model.pulled(total) / model.mass + _loads(task, model),
@@ -77,11 +77,6 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
         )
     )
     return line.reshape(1, -1)
-
-
-def _ground(task: Task) -> float:
-    """Acceleration of the ground as the run begins (m/s²)."""
-    return float(ground_acceleration(_first_piece(task), task.start))
 
 
 def _loads(task: Task, model: Model) -> Floats:

@@ -174,13 +174,15 @@ class Wrapped(_Duties):
         Fills an array with the root functions of unknowns, which are overwritten.
     _relative : callable
         Unknowns at a local time (s), relative to the ground, in their place.
-    _examine : callable
-        The examination of a step.
+    _examine, _take, _put_inner : callable
+        The examination of a step; of `carry_on` and of `root_at`.
     """
 
     _values: Callable[[float, Floats, Floats], None]
     _relative: Callable[[float, Floats], Floats]
     _examine: Callable[[float, float, int, float, Examination], tuple[int, float]]
+    _take: Callable[..., tuple[int, float]]
+    _put_inner: Callable[..., None]
 
     def __init__(self) -> None:
         super().__init__()
@@ -259,10 +261,6 @@ class Wrapped(_Duties):
         one = bounds._replace(most=1)
         return in_python(carry_on)(own._take, own._check, None, self, tau, first, excess, one, e)
 
-    def _take(self, start: float, first: int, bounds: Bounds, e: Examination) -> tuple[int, float]:
-        """Of `carry_on`."""
-        raise NotImplementedError
-
     def _check(
         self, start: float, end: float, first: int, allowed: float, e: Examination
     ) -> tuple[int, float]:
@@ -290,10 +288,6 @@ class Wrapped(_Duties):
     def _whole_end(self) -> float:
         """Of `root_at`."""
         return self._whole
-
-    def _put_inner(self, tau: float, k: int, y: Floats) -> None:
-        """Of `root_at`."""
-        raise NotImplementedError
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on SUNDIALS' own polynomial, from its values."""
