@@ -76,10 +76,9 @@ def pi_terms(scene: Scene, oscillator: str | None = None) -> dict[str, float]:
     for contact in scene.contacts:
         terms |= _contact_terms(scene, contact)
     scales = scene.motion.scales()
-    for support in delayed_supports(scene) if scales is not None else ():
-        assert scales is not None
-        assert support.delay is not None
-        terms[support_key(scene, support)] = support.delay * scales.omega_g
+    if scales is not None:
+        delays = {support_key(scene, s): s.delay for s in scene.supports if s.delay is not None}
+        terms |= {key: delay * scales.omega_g for key, delay in delays.items()}
     return terms
 
 
