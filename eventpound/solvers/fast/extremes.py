@@ -341,9 +341,10 @@ def _base_shear(order: int, plan: FastPlan, series: FastSeries) -> float:
 def _at_rest(tau: float, order: int, run: FastRun) -> None:
     """Forces of resting contacts, and bodies that stand still and move with the ground."""
     state, series, at = run.state, run.series, run.running.at
-    for j in range(state.resting.size):
-        if state.resting[j]:
-            _polynomial_turns(at.contact_force + j, series.contact_force[j], tau, order, run)
+    # Contacts that others keep closed have no force.
+    for i in range(state.progress[0].edges):
+        j = series.elimination[i, 1]
+        _polynomial_turns(at.contact_force + j, series.contact_force[j], tau, order, run)
     for b in range(state.u.size):
         if series.of_body[b] < 0:
             _polynomial_turns(at.acceleration + b, series.ground, tau, order, run)
