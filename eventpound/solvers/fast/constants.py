@@ -24,7 +24,6 @@ from eventpound.numerics.latest import Keep, made_anew
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
-from eventpound.solvers.fast.apart.windows import LINE_PLACES
 from eventpound.solvers.fast.compiled import compiled_apart
 from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.run import (
@@ -267,7 +266,6 @@ def _each_of(n: int, contacts: int) -> Each:
         turned=np.zeros(n, np.bool_),
         box=np.zeros((4, n)),
         since=np.zeros(contacts),
-        lines=np.zeros((LINE_PLACES, n)),
         outside=np.zeros(4),
         closing=np.zeros(contacts),
     )

@@ -17,7 +17,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, only_root, value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import look_apart
-from eventpound.solvers.fast.links import CORE
+from eventpound.solvers.fast.links import CORE, elongations
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries
 from eventpound.solvers.fast.search import relative, stays_above
 from eventpound.solvers.fast.sliding import add_held_shear, any_slider
@@ -27,17 +27,23 @@ from eventpound.tolerances import FLAT_WITHIN
 @compiled
 def take_instant(t: float, run: FastRun) -> None:
     """Take everything known at one time (s) into the extremes."""
-    plan, seen, running = run.plan, run.seen, run.running
-    at, ends = running.at, plan.links.ends
-    update_all(at.displacement, seen.u, t, 1.0, running)
-    update_all(at.acceleration, seen.a, t, 1.0, running)
-    for a in range(plan.links.springs):
-        x = seen.u[ends[a, 1]] if ends[a, 1] >= 0 else 0.0
-        x -= seen.u[ends[a, 0]] if ends[a, 0] >= 0 else 0.0
-        update_extreme(at.elongation + a, x, t, running)
-    update_all(at.gap, seen.gap, t, 1.0, running)
-    update_all(at.contact_force, seen.contact_force, t, 1.0, running)
-    update_extreme(at.base_shear, seen.base[1], t, running)
+    series, seen, running = run.series, run.seen, run.running
+    elongations(run.plan.links.ends, seen.u, seen.v, series.x, series.x_rate)
+    take_all(seen.u, seen.a, series.x, seen.gap, seen.base[1], t, running)
+    update_all(running.at.contact_force, seen.contact_force, t, 1.0, running)
+
+
+@compiled
+def take_all(
+    u: Floats, a: Floats, x: Floats, gap: Floats, shear: float, t: float, running: Running
+) -> None:
+    """Take displacements, accelerations, elongations, gaps and the base shear into the extremes."""
+    at = running.at
+    update_all(at.displacement, u, t, 1.0, running)
+    update_all(at.acceleration, a, t, 1.0, running)
+    update_all(at.elongation, x[: at.gap - at.elongation], t, 1.0, running)
+    update_all(at.gap, gap, t, 1.0, running)
+    update_extreme(at.base_shear, shear, t, running)
 
 
 @compiled

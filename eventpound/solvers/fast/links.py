@@ -85,12 +85,17 @@ def has_curve(h: int, hysteresis: Hysteresis) -> bool:
 @compiled
 def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
     """Z of a hysteretic link at the elongation x (m), reached without reversal."""
-    if state.part[h] == SATURATED:
-        return state.sigma[h] * hysteresis.bound[h]
     xi = place(h, x, hysteresis, state)
-    if state.part[h] <= UNLOADING:
-        return state.sigma[h] * hysteresis.bound[h] * xi
-    return state.sigma[h] * hysteresis.bound[h] * backbone(hysteresis.tables, hysteresis.at[h], xi)
+    y = on_part(state.part[h], xi, hysteresis.tables, hysteresis.at[h])
+    return state.sigma[h] * hysteresis.bound[h] * y
+
+
+@compiled
+def on_part(part: int, xi: float, tables: Floats, at: int) -> float:
+    """Φ(ξ) on a part of the backbone whose table begins at a place."""
+    if part == SATURATED:
+        return 1.0
+    return xi if part <= UNLOADING else backbone(tables, at, xi)
 
 
 @compiled
@@ -137,16 +142,26 @@ def saturate(x: Floats, hysteresis: Hysteresis, state: FastState) -> tuple[bool,
 
 
 @compiled
-def part_of(h: int, xi: float, hysteresis: Hysteresis) -> int:
-    """Part of the backbone that ξ lies on."""
-    core = hysteresis.core[h]
-    if xi >= hysteresis.saturated[h]:
+def part_at(xi: float, core: float, down: float, saturated: float) -> int:
+    """Part of a backbone with such borders that ξ lies on."""
+    if xi >= saturated:
         return SATURATED
     if xi > core:
         return UP
     if xi >= -core:
         return CORE
-    return UNLOADING if xi >= hysteresis.down[h] else DOWN
+    return UNLOADING if xi >= down else DOWN
+
+
+@compiled
+def ends_of_line(part: int, sigma: float, middle: float, width: float) -> tuple[float, float]:
+    """Elongations between which a link stays on its part, a line; `width` that of the core (m).
+
+    ξ = 0 is at `middle`. Below it the part UNLOADING ends where the link turns.
+    """
+    low = middle - width if part == CORE or sigma < 0.0 else -np.inf
+    high = middle + width if part == CORE or sigma > 0.0 else np.inf
+    return (low, high) if part <= UNLOADING else (-np.inf, np.inf)
 
 
 @compiled_apart
@@ -158,7 +173,7 @@ def set_curve(
     state.sigma[h] = sigma
     state.x_r[h] = x
     state.xi_r[h] = xi
-    state.part[h] = part_of(h, xi, hysteresis)
+    state.part[h] = part_at(xi, hysteresis.core[h], hysteresis.down[h], hysteresis.saturated[h])
 
 
 @compiled

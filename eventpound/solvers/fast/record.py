@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import is_fleeting
-from eventpound.contact.event_rows import events_wanted
+from eventpound.contact.cascade import is_fleeting, is_over
+from eventpound.contact.event_rows import end_cascade, events_wanted
 from eventpound.contact.state import Now
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import pull_per_z
@@ -63,6 +63,29 @@ def has_room(run: FastRun) -> bool:
     return has_room_for(state.gap.size, outputs, now, progress, record.events, record.rows)
 
 
+@compiled
+def is_due(t: float, times: Floats, progress: FastProgress) -> bool:
+    """Whether a row of the history at one of the output times is due before t (s)."""
+    return bool(progress.output < times.size and times[progress.output] < t)
+
+
+@compiled
+def pass_time(tau: float, t: float, steps: int, now: Now, progress: FastProgress) -> None:
+    """Let the time be t (s), tau (s) later, after some steps."""
+    now.t = t
+    now.since_impact += tau
+    progress.steps += steps
+    progress.stalled = progress.stalled + steps if tau == 0.0 else 0
+
+
+@compiled
+def end_if_over(run: FastRun) -> None:
+    """List the impacts that were held back of a cascade that is over."""
+    state, now = run.state, run.state.now[0]
+    if is_over(now, run.plan.limits.time):
+        end_cascade(state.resting, now, run.record.events)
+
+
 @compiled_apart
 def write_row(t: float, run: FastRun) -> None:
     """Add a line to the history, where one is kept."""
@@ -90,7 +113,7 @@ def sample_step(t: float, t_end: float, order: int, piece: CurrentPiece, run: Fa
     """History at the output times of a step; `seen` is overwritten."""
     plan, state = run.plan, run.state
     times, progress = plan.output_times, state.progress[0]
-    while progress.output < times.size and times[progress.output] < t_end:
+    while is_due(t_end, times, progress):
         at = times[progress.output]
         if at >= t:
             g = ground_acceleration(piece, at)

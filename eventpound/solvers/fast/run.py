@@ -207,7 +207,6 @@ class Each(NamedTuple):
     closing: Floats  # (K,): when it closes (s)
 
     # Under a record some go by exact steps, and have no end of one.
-    lines: Floats  # (places, N): of what `eventpound.solvers.fast.apart.windows` says
     outside: Floats  # (4,): what they are together
 
 

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import LONGEST_CASCADE, is_fleeting, is_over
-from eventpound.contact.event_rows import end_cascade
+from eventpound.contact.cascade import LONGEST_CASCADE, is_fleeting
 from eventpound.contact.impacts import DONE
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
@@ -27,11 +26,14 @@ from eventpound.solvers.fast.expansion import (
 )
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step, take_instant
 from eventpound.solvers.fast.followed import follows, keep_followed
-from eventpound.solvers.fast.links import cross_border, elongations, reverse
+from eventpound.solvers.fast.links import cross_border, elongations, gap_of, reverse
 from eventpound.solvers.fast.locate import first_happening
 from eventpound.solvers.fast.record import (
     add_work,
+    end_if_over,
     forget,
+    is_due,
+    pass_time,
     sample_step,
     write_row,
 )
@@ -61,7 +63,7 @@ SOONER = 0.2
 @compiled
 def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     """One step, to `stop` (s) at most; DONE, or why not."""
-    plan, state, series, record, seen = run.plan, run.state, run.series, run.record, run.seen
+    plan, state, series, seen = run.plan, run.state, run.series, run.seen
     now, progress = state.now[0], state.progress[0]
     t = now.t
     order, h = _expansion(stop - t, piece, run)
@@ -92,21 +94,19 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     if _record_inside(tau, t_end, order, piece, run):
         look_apart(tau, order, g_end, run)
     take_instant(t_end, run)
-    _move(t_end, tau, state, seen)
+    _move(state, seen)
+    pass_time(tau, t_end, 1, now, progress)
     if follows(run):
         keep_followed(first <= tau, run)
-    progress.steps += 1
     if first <= tau:
         # What happens soon after the last event may be followed as soon by the next.
         progress.guess = min(progress.guess, max(tau, SOONER * progress.guess))
-        _apply(tau, run)
+        _apply(run)
         if fleeting and progress.due == 1:
             forget(run)
     else:
         progress.guess = tau
-        progress.stalled = 0
-        if is_over(now, plan.limits.time):
-            end_cascade(state.resting, now, record.events)
+        end_if_over(run)
     endless = t_end == t and now.in_a_row > LONGEST_CASCADE
     return STUCK if endless or progress.stalled > MOST_STALLS else DONE
 
@@ -140,9 +140,8 @@ def _record_inside(tau: float, t_end: float, order: int, piece: CurrentPiece, ru
     if plan.limits.ledger:
         add_work(tau, order, piece, run)
         again = True
-    times, t, progress = plan.output_times, state.now[0].t, state.progress[0]
-    if progress.output < times.size and times[progress.output] < t_end:
-        sample_step(t, t_end, order, piece, run)
+    if is_due(t_end, plan.output_times, state.progress[0]):
+        sample_step(state.now[0].t, t_end, order, piece, run)
         again = True
     return again
 
@@ -177,11 +176,7 @@ def audit(error: float, run: FastRun) -> int:
             return NOT_FINITE
         largest = max(largest, abs(seen.u[b]))
     for j in range(seen.gap.size):
-        gap, left, right = contacts.gap[j], contacts.left[j], contacts.right[j]
-        if right >= 0:
-            gap += seen.u[right]
-        if left >= 0:
-            gap -= seen.u[left]
+        gap, _ = gap_of(j, contacts, seen.u, seen.v)
         if not seen.gap[j] >= -PENETRATED * length:
             return PENETRATION
         # One of a slider that slips is inf.
@@ -234,19 +229,16 @@ def _pulls(ends: bool, run: FastRun) -> bool:
 
 
 @compiled
-def _move(t_end: float, tau: float, state: FastState, seen: Seen) -> None:
+def _move(state: FastState, seen: Seen) -> None:
     """Make the end of the step the present state."""
     copy_numbers(seen.u, state.u)
     copy_numbers(seen.v, state.v)
     for j in range(seen.gap.size):
         state.gap[j], state.gap_rate[j] = seen.gap[j], seen.gap_rate[j]
-    now = state.now[0]
-    now.t = t_end
-    now.since_impact += tau
 
 
 @compiled
-def _apply(tau: float, run: FastRun) -> None:
+def _apply(run: FastRun) -> None:
     """Do what happened at the end of a step; an event of contacts or kinks is settled next."""
     plan, state, series, happened = run.plan, run.state, run.series, run.happened
     hysteresis = plan.hysteresis
@@ -257,8 +249,6 @@ def _apply(tau: float, run: FastRun) -> None:
             reverse(h, x, hysteresis, state)
         elif happened.crossed[h]:
             cross_border(h, x, hysteresis, state)
-    progress = state.progress[0]
-    progress.stalled = progress.stalled + 1 if tau == 0.0 else 0
     due = False
     for j in range(state.gap.size):
         if happened.closing[j]:
@@ -268,4 +258,4 @@ def _apply(tau: float, run: FastRun) -> None:
         due = due or happened.kinked[a]
     if due:
         write_row(state.now[0].t, run)
-        progress.due = 1
+        state.progress[0].due = 1

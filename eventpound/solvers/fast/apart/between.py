@@ -23,7 +23,7 @@ from eventpound.solvers.fast.extremes import (
     turning_times,
 )
 from eventpound.solvers.fast.links import gap_of
-from eventpound.solvers.fast.record import write_row
+from eventpound.solvers.fast.record import is_due, write_row
 from eventpound.solvers.fast.run import FastRun
 from eventpound.solvers.fast.search import stays_above
 from eventpound.solvers.fast.single.record import acceleration_coefficient
@@ -266,17 +266,10 @@ def _look(t: float, ground: float, run: FastRun) -> None:
 
 
 @compiled
-def is_row_due(then: float, run: FastRun) -> bool:
-    """Whether a row of the history is due before a time (s)."""
-    times, progress = run.plan.output_times, run.state.progress[0]
-    return progress.output < times.size and times[progress.output] < then
-
-
-@compiled
 def write_rows(now: float, then: float, piece: CurrentPiece, run: FastRun) -> None:
     """History at the output times between two times (s)."""
     times, progress = run.plan.output_times, run.state.progress[0]
-    while is_row_due(then, run):
+    while is_due(then, times, progress):
         if times[progress.output] >= now:
             write_row_at(times[progress.output], piece, run)
         progress.output += 1

@@ -25,16 +25,15 @@ from eventpound.solvers.fast.single.body import (
     look,
     set_constants,
     spring_state,
-    tangent,
     turn_round,
 )
-from eventpound.solvers.fast.single.exact import ROW_ORDER
+from eventpound.solvers.fast.single.exact import show_line
 from eventpound.solvers.fast.single.record import (
     acceleration_coefficient,
     damped_acceleration,
     take_if_new,
 )
-from eventpound.solvers.fast.single.series import know_piece, linear_series, motion, pair_at
+from eventpound.solvers.fast.single.series import know_piece, motion, pair_at
 from eventpound.solvers.fast.single.step import FREE, arrive, look_at_ground, propose
 
 _GAUSSIAN = int(Family.GAUSSIAN)
@@ -143,15 +142,12 @@ def _take_up(b: int, what: int, now: float, window: Window, one: SingleRun, run:
 
 @compiled_apart
 def _show(b: int, window: Window, one: SingleRun, each: Each) -> None:
-    """Series of a body in an exact step, not needed to a tolerance; it ends with the window."""
+    """Series of a body in an exact step, which ends with the window."""
     body, dt, reach = one.body, window.end - window.start, 0.0
-    body.x[1], body.x[2] = body.v, 0.5 * (body.a - body.even)
-    body.step, body.of_u, body.of_v = dt, 0.0, 0.0
-    order = int(linear_series(tangent(body), ROW_ORDER, body)[0])
+    order = show_line(body.v, body.a - body.even, dt, body)
     each.order[b], each.length[b], each.event[b], each.turned[b] = order, dt, FREE, False
-    body.change, body.rate, body.bend = motion(dt, order, body)
     look_at_ground(window.end, window.piece, body)
-    look(one)
+    body.next_z = spring_state(body.u + body.change, one)
     for k in range(order, 0, -1):
         reach = (reach + abs(body.x[k])) * dt
     each.box[U_LOW, b], each.box[U_HIGH, b] = body.u - reach, body.u + reach

@@ -18,7 +18,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.apart.own import START, Window, go, take_own
-from eventpound.solvers.fast.apart.together import ACCELERATION, go_together
+from eventpound.solvers.fast.apart.together import go_together
 from eventpound.solvers.fast.apart.windows import go_by_windows, windows_fit
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred
 from eventpound.solvers.fast.links import CORE
@@ -66,7 +66,7 @@ def go_apart(budget: int, stop: float, piece: CurrentPiece, run: FastRun) -> Non
     window = lend(Window(now, stop, -1, piece))
     for b in range(each.body.size):
         go(b, START, now, window, run)
-        each.lines[ACCELERATION, b], each.until[b] = each.body[b].a, now
+        each.until[b] = now
     if piece.family == _SAMPLES:
         go_by_windows(budget, stop, piece, run)
     else:

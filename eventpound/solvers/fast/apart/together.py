@@ -14,8 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import TIRED, is_over
-from eventpound.contact.event_rows import end_cascade
+from eventpound.contact.cascade import TIRED
 from eventpound.contact.impacts import DONE
 from eventpound.contact.instant import settle_impacts
 from eventpound.contact.kinks import still_rate
@@ -30,7 +29,6 @@ from eventpound.solvers.fast.apart.between import (
     COUNT,
     STRAY,
     gap_at,
-    is_row_due,
     set_gap,
     shear_stays,
     take_gaps_of,
@@ -45,13 +43,9 @@ from eventpound.solvers.fast.apart.own import GO_ON, REBOUND, SHOW, STAY, TAKE_U
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.instant import instant_of
 from eventpound.solvers.fast.links import gap_of
-from eventpound.solvers.fast.record import has_room, takes_rows
+from eventpound.solvers.fast.record import end_if_over, has_room, is_due, pass_time, takes_rows
 from eventpound.solvers.fast.run import FastRun
 from eventpound.tolerances import LISTED_SPEED, OWN_GAP, TOGETHER
-
-(ACCELERATION, NEXT_U, NEXT_V, NEXT_ACCELERATION, OWN_STRAY) = range(5)
-"""First places in `Each.lines`: absolute acceleration at the start of a window (m/s²); and where an
-exact step ends, with how far the acceleration strays from a line between both ends (m/s²)."""
 
 
 @compiled_apart
@@ -77,7 +71,7 @@ def go_together(budget: int, window: Window, run: FastRun) -> int:
             if _show_all(window, run):
                 continue
             take_shear(now, then, window.piece, run)
-        if is_row_due(then, run):
+        if is_due(then, run.plan.output_times, run.state.progress[0]):
             if _show_all(window, run):
                 continue
             write_rows(now, then, window.piece, run)
@@ -139,8 +133,8 @@ def _show(b: int, window: Window, run: FastRun) -> None:
     """Show the motion of a body in an exact step by a series."""
     go(b, SHOW, window.start, window, run)
     each, mass = run.series.each, run.plan.mass[b]
-    lines, outside, box = each.lines, each.outside, each.box
-    now, then, stray = lines[ACCELERATION, b], lines[NEXT_ACCELERATION, b], lines[OWN_STRAY, b]
+    body, outside, box = each.body[b], each.outside, each.box
+    now, then, stray = body.a, body.next_a, body.stray
     outside[COUNT] -= 1.0
     outside[BEFORE], outside[AFTER] = outside[BEFORE] + mass * now, outside[AFTER] + mass * then
     outside[STRAY] = max(0.0, outside[STRAY] - mass * stray)
@@ -268,13 +262,9 @@ def _time_of_opening(j: int, tau: float, rate: float, run: FastRun) -> float:
 @compiled
 def _pass_time(t: float, run: FastRun) -> None:
     """Let the time be t (s)."""
-    state, now = run.state, run.state.now[0]
-    if t > now.t:
-        state.progress[0].stalled = 0
-    now.since_impact += t - now.t
-    now.t = t
-    if is_over(now, run.plan.limits.time):
-        end_cascade(state.resting, now, run.record.events)
+    now = run.state.now[0]
+    pass_time(t - now.t, t, 0, now, run.state.progress[0])
+    end_if_over(run)
 
 
 @compiled
@@ -286,16 +276,15 @@ def _meet(closed: int, now: float, window: Window, run: FastRun) -> None:
             _join(b, now, window, run)
     take_gaps_of(-1, now, run)
     for b in range(each.until.size):
+        body = each.body[b]
         if each.until[b] == np.inf:
-            state.u[b], state.v[b] = each.lines[NEXT_U, b], each.lines[NEXT_V, b]
-            each.lines[ACCELERATION, b] = each.lines[NEXT_ACCELERATION, b]
-            continue
-        shortest = min(shortest, max(each.length[b], each.until[b] - now))
-        if each.now[b].t < now:
-            go(b, STAY, now, window, run)
+            body.u, body.v, body.a = body.u + body.change, body.rate, body.next_a
+        else:
+            shortest = min(shortest, max(each.length[b], each.until[b] - now))
+            if each.now[b].t < now:
+                go(b, STAY, now, window, run)
         if closed < 0 or not _is_of(b, closed, run):
-            state.u[b], state.v[b] = each.body[b].u, each.body[b].v
-        each.lines[ACCELERATION, b] = each.body[b].a
+            state.u[b], state.v[b] = body.u, body.v
     if 0.0 < shortest < np.inf:
         state.progress[0].guess = shortest
     _pass_time(now, run)

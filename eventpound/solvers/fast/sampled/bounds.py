@@ -22,7 +22,7 @@ from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import stays_within
-from eventpound.solvers.fast.links import CORE, DOWN, UP, place
+from eventpound.solvers.fast.links import CORE, DOWN, UP, gap_of, place
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.solvers.fast.search import bound_of_pair
@@ -74,13 +74,8 @@ def stays_open(
     least = OWN_GAP * plan.limits.length
     for j in range(contacts.gap.size):
         left, right = contacts.left[j], contacts.right[j]
-        now, then, rate, next_rate = contacts.gap[j], contacts.gap[j], 0.0, 0.0
-        if right >= 0:
-            now, then = now + state.u[right], then + bodies.next_u[right]
-            rate, next_rate = state.v[right], bodies.next_v[right]
-        if left >= 0:
-            now, then = now - state.u[left], then - bodies.next_u[left]
-            rate, next_rate = rate - state.v[left], next_rate - bodies.next_v[left]
+        now, rate = gap_of(j, contacts, state.u, state.v)
+        then, next_rate = gap_of(j, contacts, bodies.next_u, bodies.next_v)
         if min(now, then) - bound_of_pair(left, right, tables.bodies.sag) >= least:
             continue
         still = still_rate(plan.limits.length, plan.limits.time)
@@ -204,12 +199,10 @@ def places_unseen(h: float, tables: SampleTables, run: FastRun) -> bool:
         if left < 0 or right < 0:
             continue
         sag = bound_of_pair(left, right, tables.bodies.sag)
-        gap = contacts.gap[j] + state.u[right] - state.u[left]
-        gap_1 = contacts.gap[j] + bodies.next_u[right] - bodies.next_u[left]
+        gap, rate = gap_of(j, contacts, state.u, state.v)
+        gap_1, rate_1 = gap_of(j, contacts, bodies.next_u, bodies.next_v)
         if _covered(at.gap + j, gap, gap_1, sag, running):
             continue
-        rate = state.v[right] - state.v[left]
-        rate_1 = bodies.next_v[right] - bodies.next_v[left]
         if not pair_goes_one_way(h, left, right, rate, rate_1, plan, tables):
             return False
     return True

@@ -23,7 +23,7 @@ from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.expansion import defect_error
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
-from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, place, reverse
+from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, gap_of, place, reverse
 from eventpound.solvers.fast.record import has_room, put_row
 from eventpound.solvers.fast.run import Contacts, FastRun
 from eventpound.solvers.fast.sampled.bounds import (
@@ -81,12 +81,7 @@ def first_simple_event(order: int, h: float, run: FastRun) -> tuple[int, int, fl
 @compiled
 def _overlaps(j: int, contacts: Contacts, tables: SampleTables) -> bool:
     """Whether a gap is below zero at the end of the step proposed."""
-    left, right, gap = contacts.left[j], contacts.right[j], contacts.gap[j]
-    if right >= 0:
-        gap += tables.bodies.next_u[right]
-    if left >= 0:
-        gap -= tables.bodies.next_u[left]
-    return bool(gap < 0.0)
+    return gap_of(j, contacts, tables.bodies.next_u, tables.bodies.next_v)[0] < 0.0
 
 
 @compiled

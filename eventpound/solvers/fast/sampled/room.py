@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.links import CORE, SATURATED
+from eventpound.solvers.fast.links import CORE, ends_of_line
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.tolerances import OWN_GAP
@@ -57,15 +57,9 @@ def _room_of_link(a: int, plan: FastPlan, state: FastState) -> tuple[float, floa
     part, sigma, hysteresis = state.part[h], state.sigma[h], plan.hysteresis
     if part != CORE:
         way = sigma
-    if part != SATURATED:
-        # ξ = ξ_r + σ (x - x_r) / (u_y b) is below `core`, in the core also above -`core`.
-        middle = state.x_r[h] - sigma * state.xi_r[h] * hysteresis.scale[h]
-        width = hysteresis.core[h] * hysteresis.scale[h]
-        if part == CORE or sigma < 0.0:
-            low = max(low, middle - width)
-        if part == CORE or sigma > 0.0:
-            high = min(high, middle + width)
-    return low, high, way
+    middle = state.x_r[h] - sigma * state.xi_r[h] * hysteresis.scale[h]
+    start, end = ends_of_line(part, sigma, middle, hysteresis.core[h] * hysteresis.scale[h])
+    return max(low, start), min(high, end), way
 
 
 @compiled

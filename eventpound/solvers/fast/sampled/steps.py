@@ -10,15 +10,11 @@ events (`eventpound.solvers.fast.sampled.choice`); any other is left to
 
 from __future__ import annotations
 
-import math
-
-from eventpound.contact.cascade import is_over
-from eventpound.contact.event_rows import end_cascade
-from eventpound.mechanics.monitored import update_all, update_extreme
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.extremes import take_all
 from eventpound.solvers.fast.links import elongations, gap_of, saturate
-from eventpound.solvers.fast.record import sample_step
+from eventpound.solvers.fast.record import end_if_over, is_due, pass_time, sample_step
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.bounds import CLOSING, NOTHING, forces_covered
 from eventpound.solvers.fast.sampled.choice import (
@@ -53,8 +49,7 @@ def stretch(
     plan, state, series, running = run.plan, run.state, run.series, run.running
     tables, bodies, u, v = series.tables, series.tables.bodies, state.u, state.v
     set_room(tables, run)
-    dt, t, since = tables.step[i], state.now[0].t, state.now[0].since_impact
-    taken, output = 0, _next_output(plan, state)
+    dt, t, taken, counted = tables.step[i], state.now[0].t, 0, 0
     while taken < budget:
         line = line_at(segment + taken, piece, t)
         if not line.end < until:
@@ -67,35 +62,25 @@ def stretch(
         linear_accelerations(n, i, bodies.next_u, bodies.next_v, tables, bodies.next_acceleration)
         if not forces_covered(n, plan.mass, tables, running):
             break
-        if output < line.end:
-            _arrive(t, since, dt, run)
+        if is_due(line.end, plan.output_times, state.progress[0]):
+            _arrive(t, taken - counted, dt, run)
+            counted = taken
             write_line(i, line.slope, line.end, piece, run)
-            output = _next_output(plan, state)
         for b in range(n):
             u[b], v[b] = bodies.next_u[b], bodies.next_v[b]
             bodies.acceleration[b] = bodies.next_acceleration[b]
-        t, since = line.end, since + dt
-        taken += 1
+        t, taken = line.end, taken + 1
     if taken > 0:
-        _arrive(t, since, dt, run)
-        state.progress[0].steps += taken
-        state.progress[0].stalled = 0
+        _arrive(t, taken - counted, dt, run)
     return taken
 
 
 @compiled
-def _next_output(plan: FastPlan, state: FastState) -> float:
-    """Time of the next row of the history (s), inf where there is none."""
-    i = state.progress[0].output
-    return float(plan.output_times[i]) if i < plan.output_times.size else math.inf
-
-
-@compiled
-def _arrive(t: float, since: float, dt: float, run: FastRun) -> None:
-    """What goes with the displacements and velocities at t (s)."""
-    plan, state, series = run.plan, run.state, run.series
-    along, now, progress = series.tables.along, state.now[0], state.progress[0]
-    now.t, now.since_impact, progress.guess = t, since, dt
+def _arrive(t: float, steps: int, dt: float, run: FastRun) -> None:
+    """What goes with the displacements and velocities at t (s), after some steps."""
+    plan, state, along = run.plan, run.state, run.series.tables.along
+    state.progress[0].guess = dt
+    pass_time(steps * dt, t, steps, state.now[0], state.progress[0])
     elongations(plan.links.ends, state.u, state.v, along.x, along.x_rate)
     set_gaps(plan, state)
 
@@ -188,7 +173,7 @@ def _take(
     step: ProposedStep, line: GroundLine, t_end: float, piece: CurrentPiece, run: FastRun
 ) -> None:
     """Take a step, which ends at t_end (s), and do what happens there."""
-    if _next_output(run.plan, run.state) < t_end:
+    if is_due(t_end, run.plan.output_times, run.state.progress[0]):
         sample_step(run.state.now[0].t, t_end, step.order, piece, run)
     _accept(step, t_end, run)
     if step.what != NOTHING:
@@ -199,31 +184,17 @@ def _take(
 @compiled
 def _accept(step: ProposedStep, t: float, run: FastRun) -> None:
     """Make the end of the step, at t (s), the present state, and take it into the extremes."""
-    plan, state, series, record = run.plan, run.state, run.series, run.record
-    bodies, now, progress = series.tables.bodies, state.now[0], state.progress[0]
-    end_is_now(series.tables)
-    now.t, progress.guess = t, step.h
-    now.since_impact += step.h
-    progress.steps += 1
-    progress.stalled = 0
+    plan, state, tables = run.plan, run.state, run.series.tables
+    bodies, progress = tables.bodies, state.progress[0]
+    end_is_now(tables)
+    progress.guess = step.h
+    pass_time(step.h, t, 1, state.now[0], progress)
     for b in range(state.u.size):
         state.u[b], state.v[b] = bodies.next_u[b], bodies.next_v[b]
     set_gaps(plan, state)
     if step.what == CLOSING:
         state.gap[step.which] = 0.0
-    elif step.what == NOTHING and is_over(now, plan.limits.time):
-        end_cascade(state.resting, now, record.events)
-    _take_extremes(t, run)
-
-
-@compiled
-def _take_extremes(t: float, run: FastRun) -> None:
-    """Take the present state, at t (s), into the extremes."""
-    plan, state, series, running = run.plan, run.state, run.series, run.running
-    tables, at, acceleration = series.tables, running.at, series.tables.bodies.acceleration
-    update_all(at.displacement, state.u, t, 1.0, running)
-    update_all(at.acceleration, acceleration[: state.u.size], t, 1.0, running)
-    update_all(at.elongation, tables.along.x[: plan.links.springs], t, 1.0, running)
-    update_all(at.gap, state.gap, t, 1.0, running)
-    shear = base_shear(plan.mass, acceleration)
-    update_extreme(at.base_shear, shear, t, running)
+    elif step.what == NOTHING:
+        end_if_over(run)
+    shear = base_shear(plan.mass, bodies.acceleration)
+    take_all(state.u, bodies.acceleration, tables.along.x, state.gap, shear, t, run.running)

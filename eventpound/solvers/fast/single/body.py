@@ -19,7 +19,7 @@ import numpy as np
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import acceleration_noise
 from eventpound.contact.state import Now
-from eventpound.mechanics.backbone import backbone, backbone_inverse, shape_of
+from eventpound.mechanics.backbone import backbone_inverse, shape_of
 from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.link_law import has_backbone
 from eventpound.mechanics.model import Model
@@ -27,7 +27,15 @@ from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.records import NamedNumbers
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP, open_gaps
+from eventpound.solvers.fast.links import (
+    CORE,
+    DOWN,
+    UNLOADING,
+    UP,
+    on_part,
+    open_gaps,
+    part_at,
+)
 from eventpound.solvers.fast.run import (
     LOCAL_SHARE,
     Contacts,
@@ -141,6 +149,12 @@ class SingleBody(NamedNumbers, room=ROOM):
     # Steps from sample to sample; see `eventpound.solvers.fast.single.exact`.
     on_line: Floats  # where the link is on a line, or there is none
     saturated: Floats  # where it is saturated
+    line_pull: float  # absolute acceleration at u = v = 0, of the line that the body is on (m/s²)
+    low: float  # displacement at which a step along it ends (m)
+    high: float  # the same above (m); below `low` where it is on none
+    steepest: float  # largest tangent stiffness (1/s²)
+    inverse: float  # of what divides the bound of the acceleration
+    stray: float  # of the absolute acceleration from a line between both ends, at most (m/s²)
 
 
 class SingleRun(NamedTuple):
@@ -179,12 +193,7 @@ def spring_state(u: float, run: SingleRun) -> float:
     body = run.body
     if not body.hysteretic:
         return 0.0
-    if body.part == SATURATED:
-        return body.sigma
-    xi = place_of(u, body)
-    if body.part <= UNLOADING:
-        return body.sigma * xi
-    return body.sigma * backbone(run.table, 0, xi)
+    return body.sigma * on_part(body.part, place_of(u, body), run.table, 0)
 
 
 @compiled
@@ -227,18 +236,6 @@ def absolute_acceleration(u: float, v: float, z: float, body: SingleBody) -> flo
     return body.pull - body.stiffness * u - body.damping * v - body.strength * z
 
 
-@compiled
-def part_at(xi: float, body: SingleBody) -> int:
-    """Part of the backbone that ξ lies on."""
-    if xi >= body.saturation:
-        return SATURATED
-    if xi > body.core_end:
-        return UP
-    if xi >= -body.core_end:
-        return CORE
-    return UNLOADING if xi >= body.down_end else DOWN
-
-
 @compiled_apart
 def turn_round(u: float, run: SingleRun) -> None:
     """Put the link on the curve for the other direction at u (m); ``σ y`` stays."""
@@ -247,7 +244,7 @@ def turn_round(u: float, run: SingleRun) -> None:
     y = min(max(sigma * body.z, -1.0), 1.0)
     body.sigma, body.u_r = sigma, u
     body.xi_r = backbone_inverse(run.table, 0, y)
-    body.part = part_at(body.xi_r, body)
+    body.part = part_at(body.xi_r, body.core_end, body.down_end, body.saturation)
 
 
 @compiled_apart

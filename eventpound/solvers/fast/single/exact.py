@@ -23,53 +23,66 @@ Jennings, Bull. Seism. Soc. Am. 59 (1969) 909-922):
     u += α_v v + α_a a + α_s slope,    v = β_v v + β_a a + β_s slope.
 
 The six numbers are the matrices of `eventpound.solvers.fast.sampled.exact` for one body, made
-once for each stiffness.
-A step is taken this way only where bounds exclude every event.
+once for each stiffness. With its largest tangent stiffness K,
+
+    |a(τ)| <= (|a| + dt (K |v| + |slope|)) / (1 - C dt - K dt²/2).
+
+A step is taken this way only where bounds exclude every event (`exact_step`).
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.monitored import update_extreme, update_turning_point
+from eventpound.mechanics.monitored import Running, update_extreme, update_turning_point
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import (
     CurrentPiece,
     ground_acceleration,
     ground_taylor,
     next_sample,
-    sample_time,
 )
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
 from eventpound.solvers.fast.extremes import stays_within, turning_times
-from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
+from eventpound.solvers.fast.links import (
+    CORE,
+    DOWN,
+    SATURATED,
+    UNLOADING,
+    UP,
+    ends_of_line,
+)
+from eventpound.solvers.fast.record import is_due, pass_time
 from eventpound.solvers.fast.run import REST_TERMS
 from eventpound.solvers.fast.sampled.exact import MOST_TURN, put_column
+from eventpound.solvers.fast.sampled.forces import GroundLine, line_at
 from eventpound.solvers.fast.search import release_time
 from eventpound.solvers.fast.single.body import (
     SingleBody,
     SingleRun,
+    absolute_acceleration,
     gap_to,
     look,
     place_of,
     set_force,
     set_tolerance,
     spring_state,
+    steepest,
     tangent,
 )
 from eventpound.solvers.fast.single.record import (
     force_exceeds,
-    is_due,
     sample_single,
     take_contact_forces,
 )
 from eventpound.solvers.fast.single.series import linear_series, swing
-from eventpound.solvers.fast.single.step import FREE, TURNED, arrive, closed_at, fits, pass_time
+from eventpound.solvers.fast.single.step import FREE, TURNED, arrive, closed_at, fits
 from eventpound.tolerances import SAME_SAMPLE
 
 LONGEST = 1.0
@@ -107,7 +120,7 @@ def rest_step(stop: float, piece: CurrentPiece, run: SingleRun) -> bool:
     update_extreme(run.running.at.acceleration, g, t_end, run.running)
     take_contact_forces(t_end, run)
     body.released = release <= tau
-    pass_time(tau, t_end, run)
+    pass_time(tau, t_end, 1, run.now, run.progress)
     return True
 
 
@@ -225,7 +238,7 @@ def swing_freely(stop: float, piece: CurrentPiece, run: SingleRun) -> int:
     if not (tau > 0.0 and fits(tau, 1, body)):
         return NOT_FREE
     t_end = stop if tau == left else t + tau
-    if is_due(t_end, run):  # the record has room, which was looked for before
+    if is_due(t_end, run.times, run.progress):  # the record has room, which was looked for before
         sample_single(t, t_end, 0, piece, run)
     return arrive(tau, t_end, rate == 0.0, event, run)
 
@@ -235,15 +248,103 @@ ROW_ORDER = 16
 
 
 @compiled_apart
-def fill_table(stiffness: float, damping: float, dt: float, step: Floats) -> None:
-    """Numbers of a step of length dt (s): dt, α, β, and 1 / (1 - C dt - K_t dt²), 0 if unfit."""
+def _fill_table(stiffness: float, dt: float, body: SingleBody, step: Floats) -> None:
+    """Numbers of a step of length dt (s): dt, α, β."""
     step[0] = dt
-    turn = damping * dt + stiffness * dt * dt
-    step[7] = 1.0 / (1.0 - turn) if turn <= MOST_TURN else 0.0
     K, C, work = step[8:9].reshape(1, 1), step[9:10].reshape(1, 1), step[10:13].reshape(3, 1)
-    K[0, 0], C[0, 0] = stiffness, damping
+    K[0, 0], C[0, 0] = stiffness, body.damping
     for kind in range(3):
         put_column(kind, 0, dt, K, C, work, step[1 + kind : 2 + kind], step[4 + kind : 5 + kind])
+
+
+@compiled
+def turn_in(dt: float, body: SingleBody) -> float:
+    """What the divisor of the bound of the acceleration lacks to one, for a time dt (s)."""
+    return body.damping * dt + 0.5 * steepest(body) * dt * dt
+
+
+@compiled
+def set_line(dt: float, body: SingleBody) -> None:
+    """What an exact step of a length (s) needs to know of the line that a body is on, if it is.
+
+    None is taken where it would be too long.
+    """
+    part, sigma, k, saturated = body.part, body.sigma, tangent(body), body.part == SATURATED
+    turn = turn_in(dt, body)
+    body.steepest, body.inverse, body.low, body.high = steepest(body), 1.0 / (1.0 - turn), 1.0, -1.0
+    if UNLOADING < part < SATURATED or max(turn, (body.damping + k * dt) * dt) > MOST_TURN:
+        return
+    table = body.saturated if saturated else body.on_line
+    if table[0] != dt:
+        _fill_table(k, dt, body, table)
+    z = sigma if saturated else sigma * place_of(0.0, body)
+    body.line_pull = absolute_acceleration(0.0, 0.0, z, body)
+    low, high = -np.inf, np.inf
+    if body.hysteretic:
+        middle = body.u_r - sigma * body.xi_r * body.scale
+        low, high = ends_of_line(part, sigma, middle, body.core_end * body.scale)
+    body.low = max(low, body.own_gap - body.left_gap)
+    body.high = min(high, body.right_gap - body.own_gap)
+
+
+@compiled
+def fastest_ahead(a: float, v: float, slope: float, dt: float, body: SingleBody) -> float:
+    """Bound of the relative acceleration for a time dt (s), in which the ground has one slope."""
+    return (abs(a) + dt * (body.steepest * abs(v) + abs(slope))) * body.inverse
+
+
+class ExactStep(NamedTuple):
+    """Whether an exact step holds, and where it ends.
+
+    change: of displacement (m). v: velocity (m/s). a: absolute acceleration (m/s²). fastest: bound
+    of the relative acceleration (m/s²).
+    """
+
+    holds: bool
+    change: float
+    v: float
+    a: float
+    fastest: float
+
+
+@compiled
+def exact_step(
+    u: float, v: float, a: float, ground: GroundLine, dt: float, body: SingleBody, running: Running
+) -> ExactStep:
+    """The exact step of a body at u (m) with the velocity v and the absolute acceleration a.
+
+    It holds where bounds say that the body stays on its line and exceeds no extreme inside.
+    """
+    table = body.saturated if body.part == SATURATED else body.on_line
+    pulled, slope, k, damping = a - ground.g, ground.slope, tangent(body), body.damping
+    change = table[1] * v + table[2] * pulled + table[3] * slope
+    next_v = table[4] * v + table[5] * pulled + table[6] * slope
+    next_a = body.line_pull - k * (u + change) - damping * next_v
+    fastest = fastest_ahead(pulled, v, slope, dt, body)
+    one_way, reach = abs(v) > dt * fastest, dt * (abs(v) + dt * fastest)
+    low, high = min(u, u + change), max(u, u + change)
+    if not one_way:
+        low, high = u - reach, u + reach
+    holds = body.low <= low and high <= body.high
+    if body.part != CORE:
+        holds = holds and one_way and body.sigma * v > 0.0
+    if holds and not one_way:
+        holds = stays_within(running.at.displacement, low, high, running)
+    if holds and (damping > 0.0 or not one_way):
+        spread = k * reach + damping * dt * fastest
+        holds = not force_exceeds(a - spread, a + spread, body.mass, running)
+    return ExactStep(holds, change, next_v, next_a, fastest)
+
+
+@compiled
+def show_line(v: float, a: float, dt: float, body: SingleBody) -> int:
+    """Order of the series of an exact step from the velocity v and the relative acceleration a.
+
+    Its terms are not needed to a tolerance. The slope of the ground is `odd`.
+    """
+    body.x[1], body.x[2] = v, 0.5 * a
+    body.step, body.of_u, body.of_v = dt, 0.0, 0.0
+    return linear_series(tangent(body), ROW_ORDER, body)[0]
 
 
 @compiled_deferred_loop
@@ -255,85 +356,37 @@ def sample_steps(
     Rows of the history that fall between samples are written on the way, so that
     the motion does not depend on them. The sample where the body is then is returned.
     """
-    body, running = run.body, run.running
-    part, sigma = body.part, body.sigma
-    if UNLOADING < part < SATURATED:
-        return segment
-    linear = part <= UNLOADING and body.hysteretic
-    stiffness = tangent(body)
-    samples, origin, dt = piece.samples, piece.coefficients[0], piece.coefficients[1]
-    step = body.saturated if part == SATURATED else body.on_line
-    if step[0] != dt:
-        fill_table(stiffness, body.damping, dt, step)
-    if step[7] == 0.0:
-        return segment
-    of_v, of_a, of_slope = step[1], step[2], step[3]
-    v_of_v, v_of_a, v_of_slope = step[4], step[5], step[6]
-    inverse, over = step[7], 1.0 / dt
-    k_0, damping, pull, strength = body.stiffness, body.damping, body.pull, body.strength
-    highest, lowest = body.right_gap - body.own_gap, body.own_gap - body.left_gap
-    until = piece_end - SAME_SAMPLE * dt
-    core = body.core_end if linear else 0.0
-    u, v, t, z, acceleration = body.u, body.v, run.now.t, body.z, body.a
-    xi = place_of(u, body) if linear else 0.0
-    pace, per_scale = sigma * body.per_scale, body.per_scale
+    body, dt = run.body, piece.coefficients[1]
+    set_line(dt, body)
+    u, v, a, t, until = body.u, body.v, body.a, run.now.t, piece_end - SAME_SAMPLE * dt
     first, started = segment, segment
-    while segment - first < budget and segment + 2 < samples.size:
-        following = sample_time(origin, dt, segment + 1)
-        if not following < until:
+    while segment - first < budget:
+        ground = line_at(segment, piece, t)
+        if not ground.end < until:
             break
-        slope = (samples[segment + 1] - samples[segment]) * over
-        a = acceleration - samples[segment]
-        fastest = (abs(a) + dt * (stiffness * abs(v) + abs(slope))) * inverse
-        reach = dt * (abs(v) + dt * fastest)
-        one_way = abs(v) > dt * fastest
-        u_1 = u + of_v * v + of_a * a + of_slope * slope
-        low, high = u_1, u_1
-        if not one_way:
-            low, high = u - reach, u + reach
-            if part != CORE or not stays_within(running.at.displacement, low, high, running):
-                break
-        if not (lowest < low and high < highest):
+        step = exact_step(u, v, a, ground, dt, body, run.running)
+        if not step.holds:
             break
-        if damping > 0.0 or not one_way:
-            spread = stiffness * reach + damping * dt * fastest
-            if force_exceeds(acceleration - spread, acceleration + spread, run):
-                break
-        v_1 = v_of_v * v + v_of_a * a + v_of_slope * slope
-        if linear:
-            ahead = xi + pace * (u_1 - u)
-            if one_way:
-                if ahead > core or (part == CORE and ahead < -core):
-                    break
-            elif abs(xi) + reach * per_scale > core:
-                break
-            xi = ahead
-            z = sigma * ahead
-        if is_due(following, run):
+        if is_due(ground.end, run.times, run.progress):
             if segment > started:
                 _arrive(u, v, t, segment - started, dt, run)
                 started = segment
-            # Its terms are not needed to a tolerance, and leave the body's own ground unknown.
-            body.x[1], body.x[2], body.odd, body.segment = v, 0.5 * a, slope, -1
-            body.step, body.of_u, body.of_v = dt, 0.0, 0.0
-            order, _ = linear_series(stiffness, ROW_ORDER, body)
-            if not sample_single(t, following, order, piece, run):
+            # The body's own ground is not known any more.
+            body.odd, body.segment = ground.slope, -1
+            order = show_line(v, a - ground.g, dt, body)
+            if not sample_single(t, ground.end, order, piece, run):
                 break
-        u, v, t = u_1, v_1, following
-        acceleration = pull - k_0 * u - damping * v - strength * z
+        u, v, a, t = u + step.change, step.v, step.a, ground.end
         segment += 1
     if segment > started:
         _arrive(u, v, t, segment - started, dt, run)
     if segment > first:
-        body.z, body.a = spring_state(u, run), acceleration
+        body.z, body.a = spring_state(u, run), a
     return segment
 
 
 @compiled
 def _arrive(u: float, v: float, t: float, steps: int, dt: float, run: SingleRun) -> None:
-    body, now, progress = run.body, run.now, run.progress
-    body.u, body.v, now.t = u, v, t
-    body.right, body.left = body.right_gap - u, body.left_gap + u
-    now.since_impact += steps * dt
-    progress.steps += steps
-    progress.stalled = 0
+    body = run.body
+    body.u, body.v, body.right, body.left = u, v, body.right_gap - u, body.left_gap + u
+    pass_time(steps * dt, t, steps, run.now, run.progress)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.monitored import (
+    Running,
     update_beyond,
     update_extreme,
     update_turning_point,
@@ -18,7 +19,7 @@ from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import stays_within, turning_times
-from eventpound.solvers.fast.record import takes_rows
+from eventpound.solvers.fast.record import is_due, takes_rows
 from eventpound.solvers.fast.single.body import (
     SingleBody,
     SingleRun,
@@ -76,13 +77,6 @@ def write_present(t: float, g: float, run: SingleRun) -> None:
         write_single_row(t, g, 0.0, body.v, g if body.rests_on != 0.0 else body.a, body.z, run)
 
 
-@compiled
-def is_due(t_end: float, run: SingleRun) -> bool:
-    """Whether a row of the history is due before t_end (s)."""
-    i = run.progress.output
-    return i < run.times.size and run.times[i] < t_end
-
-
 @compiled_apart
 def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: SingleRun) -> bool:
     """History at the output times of a step; False where the record has no room.
@@ -90,7 +84,7 @@ def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: 
     `order` is that of the step's series, 0 for a free swing and a rest.
     """
     body, progress = run.body, run.progress
-    while is_due(t_end, run):
+    while is_due(t_end, run.times, progress):
         now = run.times[progress.output]
         if now >= t:
             if progress.rows + 4 > run.rows.shape[0]:
@@ -110,14 +104,14 @@ def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: 
 
 
 @compiled
-def force_exceeds(low: float, high: float, run: SingleRun) -> bool:
+def force_exceeds(low: float, high: float, mass: float, running: Running) -> bool:
     """Whether the absolute acceleration (m/s²), or the base shear it makes, may leave its extremes.
 
     The two are apart once the body has rested on a barrier.
     """
-    at, mass = run.running.at, run.body.mass
-    inside = stays_within(at.acceleration, low, high, run.running)
-    return not (inside and stays_within(at.base_shear, -mass * high, -mass * low, run.running))
+    at = running.at
+    inside = stays_within(at.acceleration, low, high, running)
+    return not (inside and stays_within(at.base_shear, -mass * high, -mass * low, running))
 
 
 @compiled
@@ -166,7 +160,7 @@ def take_if_new(t: float, u: float, a: float, run: SingleRun) -> None:
     i = running.at.displacement
     same = 2.0 * running.rounding[i]
     new = u > running.maximum[i] - same or u < running.minimum[i] + same
-    if new or force_exceeds(a, a, run):
+    if new or force_exceeds(a, a, run.body.mass, running):
         _take_turn(t, u, a, run)
 
 
@@ -207,7 +201,7 @@ def damped_acceleration(t: float, tau: float, order: int, run: SingleRun) -> Non
         term = acceleration_coefficient(k, body)
         d[k - 1] = k * term
         spread = (spread + abs(term)) * tau
-    if force_exceeds(body.a - spread, body.a + spread, run):
+    if force_exceeds(body.a - spread, body.a + spread, body.mass, run.running):
         _take_acceleration(t, tau, order, run)
 
 

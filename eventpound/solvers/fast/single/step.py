@@ -17,6 +17,7 @@ from eventpound.motion.forcing import CurrentPiece
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
+from eventpound.solvers.fast.record import is_due, pass_time
 from eventpound.solvers.fast.run import (
     GOING_ON,
     MORE_TERMS,
@@ -43,7 +44,6 @@ from eventpound.solvers.fast.single.body import (
 from eventpound.solvers.fast.single.record import (
     damped_acceleration,
     force_exceeds,
-    is_due,
     sample_single,
     take_if_new,
     write_present,
@@ -218,7 +218,7 @@ def _of_standing(
     spread = reach * (body.stiffness + body.strength * body.per_scale)
     place = run.running.at.displacement
     new = not stays_within(place, body.u - reach, body.u + reach, run.running)
-    if new or force_exceeds(body.a - spread, body.a + spread, run):
+    if new or force_exceeds(body.a - spread, body.a + spread, body.mass, run.running):
         turn = first_turn(order, first, tau, body, run.scratch.work)
         if turn < tau:
             tau, event = turn, FREE
@@ -295,7 +295,7 @@ def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SingleRun) -
         return NO_STEP
     if body.damping > 0.0:
         damped_acceleration(t, tau, order, run)
-    if is_due(t_end, run) and not sample_single(t, t_end, order, piece, run):
+    if is_due(t_end, run.times, run.progress) and not sample_single(t, t_end, order, piece, run):
         return FULL
     return arrive(tau, t_end, turned, event, run)
 
@@ -307,7 +307,7 @@ def arrive(tau: float, t_end: float, turned: bool, event: int, run: SingleRun) -
     if turned:
         body.rate = 0.0
         take_if_new(t_end, body.u + body.change, body.next_a, run)
-    pass_time(tau, t_end, run)
+    pass_time(tau, t_end, 1, run.now, run.progress)
     _move(body)
     code = audit(run.progress.stalled, body)
     if code == GOING_ON and event != FREE:
@@ -315,16 +315,6 @@ def arrive(tau: float, t_end: float, turned: bool, event: int, run: SingleRun) -
     elif is_over(run.now, run.limits.time):
         list_all(run.now, run.events)
     return code
-
-
-@compiled
-def pass_time(tau: float, t_end: float, run: SingleRun) -> None:
-    """Let a step of length tau (s) be over."""
-    now, progress = run.now, run.progress
-    now.t = t_end
-    now.since_impact += tau
-    progress.steps += 1
-    progress.stalled = progress.stalled + 1 if tau == 0.0 else 0
 
 
 @compiled
