@@ -299,7 +299,6 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         **dict.fromkeys(("z", "power", "speed", "weighted"), np.zeros((hysteretic, size))),
         "curve": np.zeros((hysteretic, CURVE_PLACES)),
         "contact_force": np.zeros((contacts, size)),
-        "rests": np.zeros(contacts, np.int64),
         "elimination": np.zeros((contacts, 4), np.int64),
         **dict.fromkeys(("c", "d"), np.zeros(most)),
         "work": in_python(root_work)(most),

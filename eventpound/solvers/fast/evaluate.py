@@ -8,16 +8,12 @@ from eventpound.mechanics.clusters import is_support
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.lending import lend
+from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.expansion import change_at
 from eventpound.solvers.fast.followed import follows, see_followed
-from eventpound.solvers.fast.links import (
-    elongation,
-    gap_of,
-    link_force,
-)
+from eventpound.solvers.fast.links import add_pull, elongation, gap_of, link_force
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries, FastState, Seen, piece_of
-from eventpound.solvers.fast.search import gap_polynomial
+from eventpound.solvers.fast.search import gap_polynomial, motion
 from eventpound.solvers.fast.sliding import any_slider, see_friction
 from eventpound.tolerances import OWN_GAP
 
@@ -26,18 +22,8 @@ def blank_seen(plan: FastPlan) -> Seen:
     """Empty arrays to fill."""
     bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
     hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
-    return Seen(
-        np.zeros(bodies),
-        np.zeros(bodies),
-        np.zeros(bodies),
-        np.zeros(hysteretic),
-        np.zeros(links),
-        np.zeros(bodies),
-        np.zeros(contacts),
-        np.zeros(contacts),
-        np.zeros(contacts),
-        np.zeros(2),
-    )
+    sizes = (*(bodies,) * 3, hysteretic, links, bodies, *(contacts,) * 3, 2)
+    return Seen(*(np.zeros(size) for size in sizes))
 
 
 @compiled
@@ -50,11 +36,13 @@ def look(tau: float, order: int, ground: float, run: FastRun) -> None:
         if c < 0:
             seen.v[b] = 0.0
         elif tau > 0.0:
-            change, seen.v[b], series.expected[c] = change_at(c, tau, order, series.X)
+            change, seen.v[b], series.expected[c] = motion(tau, order, series.X[c])
             seen.u[b] += change
     see_forces(ground, run)
-    if state.progress[0].further:
-        _add_further(tau, order, run)
+    if tau > 0.0 and follows(run):
+        see_followed(tau, order, run)
+    if series.load.shape[0] > 0:
+        _add_loads(tau, run)
     _accelerations(run)
     _gaps(tau, order, run)
     if state.progress[0].resting > 0:
@@ -72,37 +60,21 @@ def see_forces(ground: float, run: FastRun) -> None:
     seen.base[0] = ground
     links, law = plan.links, plan.links.law
     seen.body_force[:] = 0.0
-    shear = 0.0
+    seen.base[1] = 0.0
     for a in range(links.ends.shape[0]):
-        first, second = links.ends[a, 0], links.ends[a, 1]
-        x, x_rate = elongation(first, second, seen.u, seen.v)
+        x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], seen.u, seen.v)
         force, z = link_force(a, x, run)
         if links.z_of_link[a] >= 0:
             seen.z[links.z_of_link[a]] = z
         seen.force[a] = force
-        force += law.damping[a] * x_rate
-        if first >= 0:
-            seen.body_force[first] += force
-        else:
-            shear += force
-        if second >= 0:
-            seen.body_force[second] -= force
-        else:
-            shear -= force
-    seen.base[1] = shear
+        add_pull(a, force + law.damping[a] * x_rate, links.ends, seen)
 
 
 @compiled_deferred
-def _add_further(tau: float, order: int, run: FastRun) -> None:
-    """Add what z have changed by, and the loads of the present piece, to `body_force`.
-
-    The accelerations of supports are put into `a`.
-    """
-    if tau > 0.0 and follows(run):
-        see_followed(tau, order, run)
-    if run.series.load.shape[0] > 0:
-        piece = lend(piece_of(run.state.progress[0].piece, run.plan.ground))
-        add_body_loads(piece, run.state.now[0].t + tau, run.seen.body_force, run.seen.a)
+def _add_loads(tau: float, run: FastRun) -> None:
+    """Add the loads of the present piece to `body_force`; those of supports are their `a`."""
+    piece = lend(piece_of(run.state.progress[0].piece, run.plan.ground))
+    add_body_loads(piece, run.state.now[0].t + tau, run.seen.body_force, run.seen.a)
 
 
 @compiled
@@ -143,11 +115,7 @@ def _gaps(tau: float, order: int, run: FastRun) -> None:
         gap, rate = gap_of(j, contacts, seen.u, seen.v)
         if gap < OWN_GAP * plan.limits.length:
             gap_polynomial(j, order, contacts, plan.limits, state, series)
-            c = series.c
-            gap, rate = c[order], 0.0
-            for k in range(order - 1, -1, -1):
-                rate = rate * tau + gap
-                gap = gap * tau + c[k]
+            gap, rate = value_and_slope(series.c[: order + 1], tau)
         seen.gap[j], seen.gap_rate[j] = gap, rate
 
 

@@ -77,12 +77,9 @@ def curve_coefficient(h: int, k: int, x: float, s: FastSeries) -> float:
 
 
 @compiled_deferred
-def _add_further(k: int, run: FastRun) -> None:
-    """Add coefficient k of the loads on bodies to the forces on clusters, and of followed z."""
-    series, mass = run.series, run.plan.mass
-    if follows(run):
-        follow(k, run)
-    for b in range(mass.size if series.load.shape[0] > 0 else 0):
+def _add_loads(k: int, mass: Floats, series: FastSeries) -> None:
+    """Add coefficient k of the loads on bodies to the forces on clusters."""
+    for b in range(mass.size):
         if series.of_body[b] >= 0 and not is_support(b, mass):
             series.force[series.of_body[b]] += series.load[k, b]
 
@@ -106,7 +103,7 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
     """
     plan, state, series = run.plan, run.state, run.series
     links, law, progress = plan.links, plan.links.law, state.progress[0]
-    further, others = progress.further, progress.further or progress.resting > 0
+    loaded, following = series.load.shape[0] > 0, follows(run)
     X, F, acceleration = series.X, series.F, series.force
     clusters, active = progress.clusters, progress.active
     for i in range(active):
@@ -132,19 +129,21 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
                 acceleration[first] += F[a, k]
             if second >= 0:
                 acceleration[second] -= F[a, k]
-        if further:
-            _add_further(k, run)
+        if following:
+            follow(k, run)
+        if loaded:
+            _add_loads(k, plan.mass, series)
         scale = INVERSE[k + 1] * INVERSE[k + 2]
         for c in range(clusters):
             X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
-        if further:
+        if loaded:
             drive_clusters(k, plan.mass, series)
         power *= h
         if k + 2 < FEWEST:
             continue
         order = k + 2
         error = last_terms(order, power, over, clusters, series)
-        if others and (error <= CONVERGED or order == most):
+        if (following or progress.resting > 0) and (error <= CONVERGED or order == most):
             error = max(error, _last_of_others(order, power * over, over, run))
         if error <= CONVERGED:
             break
@@ -214,19 +213,6 @@ def set_weights(run: FastRun) -> None:
             weights[1, c] = max(weights[1, c], 1.0 / of_v)
 
 
-@compiled
-def change_at(c: int, tau: float, order: int, X: Floats) -> tuple[float, float, float]:
-    """Change of displacement (m), velocity and relative acceleration of a cluster after tau (s)."""
-    change, rate, bend = X[c, order], 0.0, 0.0
-    for k in range(order - 1, 0, -1):
-        bend = bend * tau + rate
-        rate = rate * tau + change
-        change = change * tau + X[c, k]
-    bend = bend * tau + rate
-    rate = rate * tau + change
-    return change * tau, rate, 2.0 * bend
-
-
 @compiled_deferred
 def expand_loads(piece: CurrentPiece, t: float, order: int, series: FastSeries) -> None:
     """Taylor coefficients of the loads on bodies at t (s) into `series.load`."""
@@ -294,6 +280,12 @@ def defect_error(tau: float, order: int, ground: float, a: Floats, series: FastS
         defect = abs(a[b] - ground - series.expected[c]) * tau / order
         worst = max(worst, defect * of_v[c], defect * tau / order * of_u[c])
     return worst
+
+
+@compiled
+def shortened(error: float, order: int) -> float:
+    """Factor by which a step is to be shortened that has too large an error at its end."""
+    return max(0.1, 0.9 * error ** (-1.0 / order)) if error < np.inf else 0.1
 
 
 @compiled

@@ -30,9 +30,9 @@ from eventpound.solvers.fast.compiled import (
     compiled_deferred,
     compiled_with_arrays,
 )
-from eventpound.solvers.fast.links import elongation
+from eventpound.solvers.fast.links import add_pull, elongation
 from eventpound.solvers.fast.run import LOCAL_SHARE, FastRun
-from eventpound.solvers.fast.search import distance_coefficient
+from eventpound.solvers.fast.search import distance_coefficient, motion
 from eventpound.tolerances import LENGTH
 
 
@@ -140,32 +140,14 @@ def see_followed(tau: float, order: int, run: FastRun) -> None:
         a = plan.hysteresis.link[h]
         if series.ends[a, 0] == series.ends[a, 1]:
             continue
-        change, _ = _change(tau, order, series.z[h])
+        change, _, _ = motion(tau, order - 1, series.z[h])
         seen.z[h] += change
         force = pull_per_z(a, series.memory) * change
         seen.force[a] += force
-        first, second = links.ends[a, 0], links.ends[a, 1]
-        if first >= 0:
-            seen.body_force[first] += force
-        else:
-            seen.base[1] += force
-        if second >= 0:
-            seen.body_force[second] -= force
-        else:
-            seen.base[1] -= force
+        add_pull(a, force, links.ends, seen)
     of.defect[0] = 0.0
     for i in range(of.sigma.size):
         of.defect[0] = max(of.defect[0], _defect(i, tau, order, run))
-
-
-@compiled
-def _change(tau: float, order: int, z: Floats) -> tuple[float, float]:
-    """What z changes by in tau (s), and its rate then."""
-    change, rate = 0.0, 0.0
-    for k in range(order - 1, 0, -1):
-        rate = rate * tau + change
-        change = change * tau + z[k]
-    return change * tau, rate * tau + change
 
 
 @compiled_apart
@@ -178,7 +160,7 @@ def _defect(i: int, tau: float, order: int, run: FastRun) -> float:
         return 0.0
     _, x_rate = elongation(plan.links.ends[a, 0], plan.links.ends[a, 1], seen.u, seen.v)
     beside = seen.z[plan.links.z_of_link[number_beside(a, series.memory)]]
-    _, slope = _change(tau, order, series.z[h])
+    _, slope, _ = motion(tau, order - 1, series.z[h])
     rate = z_rate(a, series.memory, x_rate, of.sigma[i], seen.z[h], beside)
     return abs(rate - slope) * tau / order * of.weight[i]
 

@@ -6,8 +6,6 @@ impact law and acceleration problem are the same compiled functions.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from eventpound.contact.cascade import last_speed
@@ -17,7 +15,7 @@ from eventpound.contact.kinks import still_rate
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.fast.compiled import (
     compiled,
@@ -29,13 +27,12 @@ from eventpound.solvers.fast.followed import find_branches, follows, put_on_bran
 from eventpound.solvers.fast.links import (
     all_variables,
     elongations,
-    has_curve,
     open_gaps,
     reverse,
     set_curve,
     turns_back,
 )
-from eventpound.solvers.fast.run import Contacts, FastRun
+from eventpound.solvers.fast.run import FastRun
 
 
 @compiled
@@ -67,17 +64,8 @@ def enter_mode(run: FastRun) -> None:
 @compiled_deferred
 def _enter_rest(run: FastRun) -> None:
     """The clusters of bodies that rest on each other, their masses and velocities."""
-    plan, state, series, progress = run.plan, run.state, run.series, run.state.progress[0]
-    forces = Resting(
-        state.resting,
-        state.pressed,
-        state.unlocked,
-        series.of_body,
-        series.rests,
-        series.elimination,
-        run.record.unique,
-    )
-    progress.clusters, progress.edges = _form(plan.contacts, plan.mass, state.v, forces)
+    plan, series, progress = run.plan, run.series, run.state.progress[0]
+    progress.clusters, progress.edges = _form(run)
     total = series.inverse_mass
     total[:] = 0.0
     for b in range(plan.mass.size):
@@ -87,39 +75,26 @@ def _enter_rest(run: FastRun) -> None:
         total[c] = 1.0 / total[c] if total[c] > 0.0 else 0.0
 
 
-class Resting(NamedTuple):
-    """What the mode of resting contacts is made of, and where it goes; see `FastState`."""
-
-    resting: Bools
-    pressed: Bools
-    unlocked: Bools
-    of_body: Ints
-    rests: Ints
-    elimination: Ints
-    unique: Bools
-
-
 @compiled_with_arrays
-def _form(contacts: Contacts, mass: Floats, v: Floats, forces: Resting) -> tuple[int, int]:
+def _form(run: FastRun) -> tuple[int, int]:
     """Clusters, how the forces of the resting contacts follow from the motion, which are unique.
 
     The bodies of a cluster get one velocity. Returned are the numbers of clusters and of rows of
     the elimination.
     """
+    contacts, mass, state, series = run.plan.contacts, run.plan.mass, run.state, run.series
     left, right, bodies = contacts.left, contacts.right, mass.size
-    clusters = form_clusters(left, right, contacts.gap, forces.resting, forces.pressed, mass)
-    for b in range(bodies):
-        forces.of_body[b] = clusters.of_body[b]
-    copy_numbers(clusters.resting, forces.rests)
+    clusters = form_clusters(left, right, contacts.gap, state.resting, state.pressed, mass)
+    copy_numbers(clusters.of_body, series.of_body)
     edges = clusters.elimination.shape[0]
     for row in range(edges):
-        copy_numbers(clusters.elimination[row], forces.elimination[row])
+        copy_numbers(clusters.elimination[row], series.elimination[row])
     unique = unique_forces(clusters, left, right)
     for i in range(clusters.resting.size):
         j = clusters.resting[i]
-        forces.unlocked[j] = not (clusters.locked[i] or clusters.redundant[i])
-        forces.unique[j] &= unique[i]
-    put_as_one(clusters.of_body, np.zeros(bodies), mass, v)
+        state.unlocked[j] = not (clusters.locked[i] or clusters.redundant[i])
+        run.record.unique[j] &= unique[i]
+    put_as_one(clusters.of_body, np.zeros(bodies), mass, state.v)
     return clusters.count, edges
 
 
@@ -196,7 +171,6 @@ def start(run: FastRun) -> None:
     open_gaps(plan, state)
     for a in range(plan.links.offset.size):
         copy_numbers(plan.links.law.memory[a], series.memory[a])
-    state.progress[0].further = series.load.shape[0] > 0 or follows(run)
     enter_mode(run)
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     hysteresis = plan.hysteresis
@@ -204,7 +178,8 @@ def start(run: FastRun) -> None:
         a = hysteresis.link[h]
         y = state.xi_r[h]
         sigma = -1.0 if series.x_rate[a] < 0.0 else 1.0
-        if has_curve(h, hysteresis):
+        # One whose z is followed has no backbone.
+        if hysteresis.scale[h] < np.inf:
             set_curve(h, series.x[a], sigma, sigma * y, hysteresis, state)
     if follows(run):
         find_branches(run)

@@ -27,7 +27,7 @@ from eventpound.solvers.fast.compiled import (
     compiled_apart,
     compiled_whole,
 )
-from eventpound.solvers.fast.run import Contacts, FastPlan, FastRun, FastState, Links
+from eventpound.solvers.fast.run import Contacts, FastPlan, FastRun, FastState, Links, Seen
 
 
 @compiled
@@ -77,12 +77,6 @@ def place(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
 
 
 @compiled
-def has_curve(h: int, hysteresis: Hysteresis) -> bool:
-    """Whether a hysteretic link has a backbone, and no z that is followed."""
-    return bool(hysteresis.scale[h] < np.inf)
-
-
-@compiled
 def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
     """Z of a hysteretic link at the elongation x (m), reached without reversal."""
     xi = place(h, x, hysteresis, state)
@@ -109,6 +103,20 @@ def link_force(a: int, x: float, run: FastRun) -> tuple[float, float]:
         z = hysteretic_variable(h, x, run.plan.hysteresis, run.state)
         force += pull_per_z(a, run.series.memory) * z
     return force, z
+
+
+@compiled
+def add_pull(a: int, force: float, ends: Ints, seen: Seen) -> None:
+    """Add what a force (N) of link a puts on its bodies, and on the ground, to what is `seen`."""
+    first, second = ends[a, 0], ends[a, 1]
+    if first >= 0:
+        seen.body_force[first] += force
+    else:
+        seen.base[1] += force
+    if second >= 0:
+        seen.body_force[second] -= force
+    else:
+        seen.base[1] -= force
 
 
 @compiled

@@ -20,7 +20,7 @@ from eventpound.mechanics.elements import (
     slides,
 )
 from eventpound.mechanics.link_law import YIELDING
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.numerics.power_series import sign_after
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
@@ -49,13 +49,15 @@ from eventpound.tolerances import (
 
 
 @compiled
-def _take(tau: float, first: float, happened: FastMarks) -> tuple[bool, float]:
-    """Whether an event at tau belongs to the first ones, and their time."""
+def _mark(tau: float, first: float, which: int, marks: Bools, happened: FastMarks) -> float:
+    """Mark an event at tau (s) that belongs to the first ones, unless `which` is -1; their time."""
     if not tau <= first * (1.0 + SAME_INSTANT):
-        return False, first
+        return first
     if tau < first * (1.0 - SAME_INSTANT):
         clear(happened)
-    return True, min(tau, first)
+    if which >= 0 and tau < np.inf:
+        marks[which] = True
+    return min(tau, first)
 
 
 @compiled
@@ -100,9 +102,7 @@ def _closings(order: int, h: float, run: FastRun) -> float:
             continue
         gap_polynomial(j, order, contacts, plan.limits, state, series)
         tau = closing_time(series.c, order + 1, min(h, first), series.work)
-        taken, first = _take(tau, first, happened)
-        if taken and tau < np.inf:
-            happened.closing[j] = True
+        first = _mark(tau, first, j, happened.closing, happened)
     return first
 
 
@@ -119,14 +119,10 @@ def _hysteretic(order: int, h: float, first: float, run: FastRun) -> float:
         # A link that all but stands still reverses at the level of rounding.
         if state.part[i] != CORE and travel > plan.limits.hysteresis * hysteresis.scale[i]:
             tau = _reversal(order, h, a, state.sigma[i], run)
-            taken, first = _take(tau, first, happened)
-            if taken and tau < np.inf:
-                happened.turned[i] = True
+            first = _mark(tau, first, i, happened.turned, happened)
         if state.part[i] < UP:
             tau = _border(order, h, first, i, run)
-            taken, first = _take(tau, first, happened)
-            if taken and tau < np.inf:
-                happened.crossed[i] = True
+            first = _mark(tau, first, i, happened.crossed, happened)
     return first
 
 
@@ -193,9 +189,7 @@ def _kinks(order: int, h: float, first: float, run: FastRun) -> float:
         side = float(state.branch[a])
         away = side * (series.x[a] - links.offset[a])
         tau = _leaves_branch(order, h, min(h, first), a, side, away, run)
-        taken, first = _take(tau, first, happened)
-        if taken and tau < np.inf:
-            happened.kinked[a] = True
+        first = _mark(tau, first, a, happened.kinked, happened)
     return first
 
 
@@ -258,15 +252,13 @@ def _of_followed(order: int, h: float, first: float, run: FastRun) -> float:
             continue
         if has_branches(a, plan.links.law.memory) and state.branch[a] != 0:
             tau = _end_of_branch(order, h, min(h, first), a, z, run)
-            taken, first = _take(tau, first, happened)
-            happened.kinked[a] = taken and tau < np.inf
+            first = _mark(tau, first, a, happened.kinked, happened)
         if _bends(h, a, z, order, run):
             # Nothing is to be done there but to begin another series.
             tau = _reversal(order, min(h, first), a, series.followed.sigma[i], run)
-            _, first = _take(tau, first, happened)
+            first = _mark(tau, first, -1, happened.turned, happened)
             tau = _zero_of_z(order, min(h, first), z, run)
-            taken, first = _take(tau, first, happened)
-            happened.crossed[z] = taken and tau < np.inf
+            first = _mark(tau, first, z, happened.crossed, happened)
     return first
 
 
@@ -334,10 +326,8 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
         if kept:
             _drop_rounding(force, order, level, plan, series)
         tau = release_time(force, order - 1, h, min(h, first), level, kept, series.work)
-        taken, first = _take(tau, first, happened)
-        if taken and tau < np.inf:
-            happened.released[j] = True
-            any_released = True
+        first = _mark(tau, first, j, happened.released, happened)
+        any_released = any_released or happened.released[j]
     if any_released:
         for end in range(2 * state.resting.size):
             j = end // 2

@@ -150,7 +150,6 @@ class FastProgress(NamedNumbers):
     clusters: int  # bodies, of which those that touch are one
     resting: int  # contacts at rest
     edges: int  # rows of the elimination
-    further: bool  # whether loads or followed z add to what links make
     started: bool  # whether the run has begun
 
 
@@ -260,7 +259,6 @@ class FastSeries(NamedTuple):
 
     # Contacts at rest, the first rows; see `eventpound.mechanics.clusters`.
     contact_force: Floats  # (K, p + 3): forces of all contacts (N/s^k)
-    rests: Ints  # (K,): which
     elimination: Ints  # (K, 4)
 
     # Whatever is looked for.

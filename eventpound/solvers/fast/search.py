@@ -61,6 +61,22 @@ def set_travel(order: int, h: float, count: int, series: FastSeries) -> None:
 
 
 @compiled
+def motion(tau: float, order: int, x: Floats) -> tuple[float, float, float]:
+    """What a series changes by after tau (s), its rate and the second one.
+
+    Its first coefficient is not looked at.
+    """
+    change, rate, bend = x[order], 0.0, 0.0
+    for k in range(order - 1, 0, -1):
+        bend = bend * tau + rate
+        rate = rate * tau + change
+        change = change * tau + x[k]
+    bend = bend * tau + rate
+    rate = rate * tau + change
+    return change * tau, rate, 2.0 * bend
+
+
+@compiled
 def relative(first: int, second: int, order: int, series: FastSeries, out: Floats) -> None:
     """Coefficients 1 ... order of the displacement of one cluster to another, into `out`."""
     X = series.X

@@ -22,6 +22,7 @@ from eventpound.solvers.fast.expansion import (
     defect_error,
     expand,
     longest_try,
+    shortened,
     wrong_way,
 )
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step, take_instant
@@ -82,7 +83,7 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
         if error <= 1.0:
             break
         first = np.inf
-        tau *= max(0.1, 0.9 * error ** (-1.0 / order)) if error < np.inf else 0.1
+        tau *= shortened(error, order)
     ended = PULL if pulls else audit(error, run)
     if ended != DONE:
         return ended

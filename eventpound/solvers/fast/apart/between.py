@@ -25,9 +25,8 @@ from eventpound.solvers.fast.extremes import (
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import is_due, write_row
 from eventpound.solvers.fast.run import FastRun
-from eventpound.solvers.fast.search import stays_above
+from eventpound.solvers.fast.search import motion, stays_above
 from eventpound.solvers.fast.single.record import acceleration_coefficient
-from eventpound.solvers.fast.single.series import motion
 
 (U_LOW, U_HIGH, A_LOW, A_HIGH) = range(4)
 """Rows of `Each.box`."""
@@ -63,7 +62,7 @@ def gap_at(j: int, t: float, run: FastRun) -> tuple[float, float]:
     gap, rate = contacts.gap[j], 0.0
     for b, side in ((contacts.right[j], 1.0), (contacts.left[j], -1.0)):
         if b >= 0:
-            change, v, _ = motion(t - each.now[b].t, each.order[b], each.body[b])
+            change, v, _ = motion(t - each.now[b].t, each.order[b], each.body[b].x[:])
             gap, rate = gap + side * (each.body[b].u + change), rate + side * v
     return gap, rate
 
@@ -214,13 +213,13 @@ def _shear_between(
     before, after = ground_acceleration(piece, now), ground_acceleration(piece, then)
     for b in range(plan.mass.size):
         body, begun, m = each.body[b], each.now[b].t, plan.mass[b]
-        a = motion(now - begun, each.order[b], body)[2] + before
+        a = motion(now - begun, each.order[b], body.x[:])[2] + before
         start -= m * a
         if body.damping > 0.0:
             down += m * min(a - each.box[A_HIGH, b], 0.0)
             up += m * max(a - each.box[A_LOW, b], 0.0)
             continue
-        change = m * (a - after - motion(then - begun, each.order[b], body)[2])
+        change = m * (a - after - motion(then - begun, each.order[b], body.x[:])[2])
         down, up = down + min(change, 0.0), up + max(change, 0.0)
     return start, down, up
 
@@ -258,7 +257,7 @@ def _look(t: float, ground: float, run: FastRun) -> None:
     plan, seen, each = run.plan, run.seen, run.series.each
     for b in range(plan.mass.size):
         body = each.body[b]
-        change, seen.v[b], _ = motion(t - each.now[b].t, each.order[b], body)
+        change, seen.v[b], _ = motion(t - each.now[b].t, each.order[b], body.x[:])
         seen.u[b] = body.u + change
     see_forces(ground, run)
     for b in range(plan.mass.size):

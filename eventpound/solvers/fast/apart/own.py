@@ -17,6 +17,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.extremes import flat_time, followers
 from eventpound.solvers.fast.links import turns_back
 from eventpound.solvers.fast.run import GOING_ON, Each, FastRun, Oscillator
+from eventpound.solvers.fast.search import motion
 from eventpound.solvers.fast.single.body import (
     SingleBody,
     SingleRun,
@@ -33,7 +34,7 @@ from eventpound.solvers.fast.single.record import (
     damped_acceleration,
     take_if_new,
 )
-from eventpound.solvers.fast.single.series import know_piece, motion, pair_at
+from eventpound.solvers.fast.single.series import know_piece, pair_at
 from eventpound.solvers.fast.single.step import FREE, arrive, look_at_ground, propose
 
 _GAUSSIAN = int(Family.GAUSSIAN)
@@ -75,10 +76,7 @@ def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
             0,
             times[times.size :],
             tables[plan.hysteresis.at[h] if h >= 0 else 0 :],
-            plan.links,
-            plan.contacts,
-            plan.ground,
-            plan.limits,
+            plan,
             Oscillator(True, -1, -1),
             run.series.single,
         )
@@ -160,7 +158,7 @@ def _arrive(b: int, now: float, piece: CurrentPiece, one: SingleRun, each: Each)
     if now < each.until[b]:
         each.length[b], each.until[b] = now - begun, now
         each.event[b], each.turned[b] = FREE, False
-        body.change, body.rate, body.bend = motion(now - begun, order, body)
+        body.change, body.rate, body.bend = motion(now - begun, order, body.x[:])
         look_at_ground(now, piece, body)
         look(one)
     if body.damping > 0.0:

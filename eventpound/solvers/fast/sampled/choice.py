@@ -23,7 +23,16 @@ from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.expansion import defect_error
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
-from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, gap_of, place, reverse
+from eventpound.solvers.fast.links import (
+    CORE,
+    DOWN,
+    UP,
+    cross_border,
+    elongations,
+    gap_of,
+    place,
+    reverse,
+)
 from eventpound.solvers.fast.record import has_room, put_row
 from eventpound.solvers.fast.run import Contacts, FastRun
 from eventpound.solvers.fast.sampled.bounds import (
@@ -38,7 +47,7 @@ from eventpound.solvers.fast.sampled.bounds import (
     stays_open,
 )
 from eventpound.solvers.fast.sampled.exact import SampleTables
-from eventpound.solvers.fast.sampled.forces import GroundLine, accelerations, stretch_links
+from eventpound.solvers.fast.sampled.forces import GroundLine, accelerations
 from eventpound.solvers.fast.sampled.series import (
     end_of_series,
     propose_by_series,
@@ -232,7 +241,8 @@ def _is_clear(step: ProposedStep, line: GroundLine, run: FastRun) -> bool:
     if order == 0:
         return False
     # What happens first within a step that is not clear is told by this, too.
-    stretch_links(plan.links.ends, tables)
+    along = tables.along
+    elongations(plan.links.ends, bodies.next_u, bodies.next_v, along.next_x, along.next_x_rate)
     if not (
         stays_open(h, what, which, plan, state, tables)
         and keeps_parts(h, what, which, plan, state, tables)
@@ -242,7 +252,7 @@ def _is_clear(step: ProposedStep, line: GroundLine, run: FastRun) -> bool:
     accelerations(n, step.table, tables.along.next_x, u, v, a, run)
     if not defect_error(h, order, line.g + line.slope * h, a, series) <= 1.0:
         return False
-    unseen, covered = places_unseen(h, tables, run), forces_covered(n, plan.mass, tables, running)
+    unseen, covered = places_unseen(h, run), forces_covered(n, plan.mass, tables, running)
     if not (unseen and covered):
         series.ground[:order] = 0.0
         series.ground[0], series.ground[1] = line.g, line.slope

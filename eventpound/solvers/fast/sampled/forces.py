@@ -164,13 +164,6 @@ def linear_accelerations(
 
 
 @compiled
-def stretch_links(ends: Ints, tables: SampleTables) -> None:
-    """Elongations and their rates at the end of the step proposed."""
-    bodies, along = tables.bodies, tables.along
-    elongations(ends, bodies.next_u, bodies.next_v, along.next_x, along.next_x_rate)
-
-
-@compiled
 def end_is_now(tables: SampleTables) -> None:
     """Make accelerations, elongations and their rates at the end of a step those of the present."""
     bodies, along = tables.bodies, tables.along

@@ -69,8 +69,27 @@ def propose_by_series(
 @compiled
 def end_of_series(order: int, h: float, state: FastState, series: FastSeries) -> None:
     """The motion h (s) after the start of a series, and its bounds until then."""
+    X, bodies = series.X, series.tables.bodies
     for b in range(state.u.size):
-        _end_of_body(b, order, h, state, series)
+        change, rate, acceleration, fastest, bend = 0.0, 0.0, 0.0, 0.0, 0.0
+        for k in range(order, 3, -1):
+            x, weight = X[b, k], float(k * (k - 1))
+            size = weight * abs(x)
+            change = change * h + x
+            rate = rate * h + k * x
+            acceleration = acceleration * h + weight * x
+            fastest = fastest * h + size
+            bend = bend * h + float((k - 2) * (k - 3)) * size
+        for k in range(3, 1, -1):
+            x, weight = X[b, k], float(k * (k - 1))
+            change = change * h + x
+            rate = rate * h + k * x
+            acceleration = acceleration * h + weight * x
+            fastest = fastest * h + weight * abs(x)
+        bodies.next_u[b] = state.u[b] + h * (state.v[b] + h * change)
+        bodies.next_v[b] = state.v[b] + h * rate
+        series.expected[b], bodies.fastest[b] = acceleration, fastest
+        bodies.sag[b], bodies.bend[b] = 0.125 * h * h * fastest, 0.125 * h * h * bend
 
 
 @compiled
@@ -138,28 +157,3 @@ def _add_term(n: int, k: int, series: FastSeries) -> None:
     scale = INVERSE[k + 1] * INVERSE[k + 2]
     for b in range(n):
         series.X[b, k + 2] = series.tables.work[0, b] * scale
-
-
-@compiled
-def _end_of_body(b: int, order: int, h: float, state: FastState, series: FastSeries) -> None:
-    """Where a body is after h (s), and its bounds until then."""
-    X, bodies = series.X, series.tables.bodies
-    change, rate, acceleration, fastest, bend = 0.0, 0.0, 0.0, 0.0, 0.0
-    for k in range(order, 3, -1):
-        x, weight = X[b, k], float(k * (k - 1))
-        size = weight * abs(x)
-        change = change * h + x
-        rate = rate * h + k * x
-        acceleration = acceleration * h + weight * x
-        fastest = fastest * h + size
-        bend = bend * h + float((k - 2) * (k - 3)) * size
-    for k in range(3, 1, -1):
-        x, weight = X[b, k], float(k * (k - 1))
-        change = change * h + x
-        rate = rate * h + k * x
-        acceleration = acceleration * h + weight * x
-        fastest = fastest * h + weight * abs(x)
-    bodies.next_u[b] = state.u[b] + h * (state.v[b] + h * change)
-    bodies.next_v[b] = state.v[b] + h * rate
-    series.expected[b], bodies.fastest[b] = acceleration, fastest
-    bodies.sag[b], bodies.bend[b] = 0.125 * h * h * fastest, 0.125 * h * h * bend

@@ -38,11 +38,9 @@ from eventpound.solvers.fast.links import (
 )
 from eventpound.solvers.fast.run import (
     LOCAL_SHARE,
-    Contacts,
     FastPlan,
     FastProgress,
     FastState,
-    Ground,
     Limits,
     Links,
     Oscillator,
@@ -161,7 +159,7 @@ class SingleRun(NamedTuple):
     """A run of a single body, lent (`eventpound.numerics.lending`): parts of a `FastRun`.
 
     now, progress: those of `FastState`. springs: elongations among the extremes. times: of output.
-    table: of its backbone. links, contacts, ground, limits, oscillator: those of `FastPlan`.
+    table: of its backbone. oscillator: that of `FastPlan`, or one without barriers.
     """
 
     body: SingleBody
@@ -173,10 +171,7 @@ class SingleRun(NamedTuple):
     springs: int
     times: Floats
     table: Floats
-    links: Links
-    contacts: Contacts
-    ground: Ground
-    limits: Limits
+    plan: FastPlan
     oscillator: Oscillator
     scratch: Single
 

@@ -142,7 +142,7 @@ def _release(h: float, kept: bool, f: Floats, run: SingleRun) -> float:
     k, rounding = 0, level
     while kept and k < REST_TERMS and abs(c[k]) <= rounding:
         c[k] = 0.0
-        rounding /= run.limits.time
+        rounding /= run.plan.limits.time
         k += 1
     return release_time(c, REST_TERMS, h, h, level, kept, run.scratch.work)
 

@@ -82,7 +82,7 @@ from eventpound.tolerances import SAME_SAMPLE
 @compiled_apart
 def impact_at_barrier(side: float, j: int, run: SingleRun) -> None:
     """Newton's law at the barrier on one side, contact j, which the body has met."""
-    body, limits, restitution = run.body, run.limits, run.contacts.restitution[j]
+    body, limits, restitution = run.body, run.plan.limits, run.plan.contacts.restitution[j]
     last = last_speed(limits.length / limits.time, False)
     meeting = Meeting(j, -side * body.v, restitution, 1.0 / body.mass, last, limits.time)
     after, _ = rebound(meeting, run.now, run.events)
@@ -105,7 +105,7 @@ def stays_closed(side: float, piece: CurrentPiece, run: SingleRun) -> bool:
     """
     ground, level, t = run.body.work[:], run.body.no_acceleration, run.now.t
     ground_taylor(piece, t, MOST_DECIDING, ground)
-    time = min(run.limits.time, decay_time(piece, t))
+    time = min(run.plan.limits.time, decay_time(piece, t))
     for k in range(1, MOST_DECIDING):
         level /= time * k
         if abs(ground[k]) > level:
@@ -187,10 +187,7 @@ def oscillate(
             plan.links.springs,
             plan.output_times,
             plan.hysteresis.tables[start:],
-            plan.links,
-            plan.contacts,
-            plan.ground,
-            plan.limits,
+            plan,
             plan.oscillator,
             single,
         )
@@ -206,9 +203,9 @@ def oscillate(
         if not has_room_for(1, run.times.size, now, progress, run.events, run.rows):
             code = FULL
             break
-        if progress.due == 1 or now.t >= run.limits.end:
+        if progress.due == 1 or now.t >= run.plan.limits.end:
             _settle(run)
-            if now.t >= run.limits.end:
+            if now.t >= run.plan.limits.end:
                 code = DONE
                 break
         if progress.steps >= last_step:
@@ -221,7 +218,7 @@ def oscillate(
 @compiled
 def _settle(run: SingleRun) -> None:
     """Do the duties of the present instant and write down what follows it."""
-    body, ground, t, progress = run.body, run.ground, run.now.t, run.progress
+    body, ground, t, progress = run.body, run.plan.ground, run.now.t, run.progress
     while progress.due == 1 and ground.ends[progress.piece] <= t:
         progress.piece += 1
     piece = lend(piece_of(progress.piece, ground))
@@ -238,10 +235,10 @@ def _settle(run: SingleRun) -> None:
 @compiled_deferred_loop
 def _rest(last_step: int, run: SingleRun) -> int:
     """Steps of a body at rest, until something is to be settled."""
-    ground, body, now, progress = run.ground, run.body, run.now, run.progress
+    ground, body, now, progress = run.plan.ground, run.body, run.now, run.progress
     i = progress.piece
     piece = lend(piece_of(i, ground))
-    piece_end = min(ground.ends[i], run.limits.end)
+    piece_end = min(ground.ends[i], run.plan.limits.end)
     while progress.steps < last_step and progress.due == 0 and now.t < piece_end:
         if not rest_step(piece_end, piece, run):
             return FULL
@@ -260,10 +257,10 @@ def _rest(last_step: int, run: SingleRun) -> int:
 @compiled
 def _swing(last_step: int, run: SingleRun) -> int:
     """Steps of a body that moves, until something is to be settled."""
-    body, ground, now, progress = run.body, run.ground, run.now, run.progress
+    body, ground, now, progress = run.body, run.plan.ground, run.now, run.progress
     i = progress.piece
     piece = lend(piece_of(i, ground))
-    piece_end = min(ground.ends[i], run.limits.end)
+    piece_end = min(ground.ends[i], run.plan.limits.end)
     family, coefficients = piece.family, piece.coefficients
     if body.piece_known != i + 1:
         know_piece(i, piece, body)

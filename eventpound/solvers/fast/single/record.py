@@ -20,6 +20,7 @@ from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import stays_within, turning_times
 from eventpound.solvers.fast.record import is_due, takes_rows
+from eventpound.solvers.fast.search import motion
 from eventpound.solvers.fast.single.body import (
     SingleBody,
     SingleRun,
@@ -27,7 +28,7 @@ from eventpound.solvers.fast.single.body import (
     set_force,
     spring_state,
 )
-from eventpound.solvers.fast.single.series import motion, swing
+from eventpound.solvers.fast.single.series import swing
 from eventpound.tolerances import SETTLED
 
 
@@ -49,16 +50,16 @@ def write_single_row(
         The run, with the present gaps and contact forces.
     """
     body, springs = run.body, run.springs
-    at = line_of(1, 1 if body.hysteretic else 0, springs, run.contacts.gap.size)
+    at = line_of(1, 1 if body.hysteretic else 0, springs, run.plan.contacts.gap.size)
     row, u = run.rows[run.progress.rows], body.u + change
     row[at.t], row[at.ground], row[at.u], row[at.v], row[at.a] = t, g, u, v, a
     if body.hysteretic:
         row[at.z] = body.whole * z
     for s in range(springs):
-        x = u if run.links.ends[s, 1] >= 0 else -u
-        row[at.force + s] = run.links.extension[s] * (x - run.links.offset[s])
-        if run.links.z_of_link[s] >= 0:
-            row[at.force + s] += pull_per_z(s, run.links.law.memory) * row[at.z]
+        x = u if run.plan.links.ends[s, 1] >= 0 else -u
+        row[at.force + s] = run.plan.links.extension[s] * (x - run.plan.links.offset[s])
+        if run.plan.links.z_of_link[s] >= 0:
+            row[at.force + s] += pull_per_z(s, run.plan.links.law.memory) * row[at.z]
     right, left = run.oscillator.right, run.oscillator.left
     if right >= 0:
         row[at.gap + right] = body.right - change
@@ -83,7 +84,7 @@ def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: 
 
     `order` is that of the step's series, 0 for a free swing and a rest.
     """
-    body, progress = run.body, run.progress
+    body, progress, x = run.body, run.progress, run.body.x[:]
     while is_due(t_end, run.times, progress):
         now = run.times[progress.output]
         if now >= t:
@@ -94,7 +95,7 @@ def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: 
                 set_force(g, body)
                 write_single_row(now, g, 0.0, 0.0, g, body.z, run)
             else:
-                change, v = motion(now - t, order, body)[:2] if order > 0 else swing(now - t, body)
+                change, v = motion(now - t, order, x)[:2] if order > 0 else swing(now - t, body)
                 u = body.u + change
                 z = spring_state(u, run)
                 a = absolute_acceleration(u, v, z, body)
@@ -127,7 +128,7 @@ def _take(i: int, value: float, t: float, settled: bool, run: SingleRun) -> None
 @compiled
 def _take_places(t: float, u: float, settled: bool, run: SingleRun) -> None:
     """Take displacement, elongations and gaps at u (m) into the extremes."""
-    body, at, ends, o = run.body, run.running.at, run.links.ends, run.oscillator
+    body, at, ends, o = run.body, run.running.at, run.plan.links.ends, run.oscillator
     _take(at.displacement, u, t, settled, run)
     for s in range(run.springs):
         _take(at.elongation + s, u if ends[s, 1] >= 0 else -u, t, settled, run)
@@ -211,7 +212,7 @@ def _take_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None
     found = turning_times(run.scratch.rate, order - 2, tau, run.scratch.turns, run.scratch.work)
     for m in range(found + 1):
         after = run.scratch.turns[m] if m < found else tau
-        change, v, _ = motion(after, order, body)
+        change, v, _ = motion(after, order, body.x[:])
         u = body.u + change
         a = absolute_acceleration(u, v, spring_state(u, run), body)
         update_turning_point(at.acceleration, a, t + after, body.flat_time, running)

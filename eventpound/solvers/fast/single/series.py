@@ -157,19 +157,6 @@ def shorter(order: int, body: SingleBody) -> float:
 
 
 @compiled
-def motion(tau: float, order: int, body: SingleBody) -> tuple[float, float, float]:
-    """Change of displacement (m), velocity (m/s) and relative acceleration (m/s²) after tau (s)."""
-    change, rate, bend = body.x[order], 0.0, 0.0
-    for k in range(order - 1, 0, -1):
-        bend = bend * tau + rate
-        rate = rate * tau + change
-        change = change * tau + body.x[k]
-    bend = bend * tau + rate
-    rate = rate * tau + change
-    return change * tau, rate, 2.0 * bend
-
-
-@compiled
 def swing(tau: float, body: SingleBody) -> tuple[float, float]:
     """Change of displacement (m) and velocity (m/s) after tau (s) of a body that swings freely."""
     k = tangent(body)

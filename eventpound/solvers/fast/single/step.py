@@ -15,6 +15,7 @@ from eventpound.contact.event_rows import list_all
 from eventpound.contact.impacts import FULL
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.expansion import shortened
 from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.record import is_due, pass_time
@@ -28,6 +29,7 @@ from eventpound.solvers.fast.run import (
     PENETRATION,
     STUCK,
 )
+from eventpound.solvers.fast.search import motion
 from eventpound.solvers.fast.single.body import (
     SingleBody,
     SingleRun,
@@ -55,7 +57,6 @@ from eventpound.solvers.fast.single.series import (
     first_reached,
     first_turn,
     linear_series,
-    motion,
     other_acceleration,
     pair_at,
     shorter,
@@ -95,7 +96,7 @@ def expand_step(a_g: float, run: SingleRun) -> tuple[int, int, float]:
     order, first, h
         Highest power, lowest that differs from zero, and length (s).
     """
-    body, most = run.body, run.limits.order
+    body, most = run.body, run.plan.limits.order
     order, first, good = 0, 1, False
     for _ in range(MOST_REVERSALS):
         if body.part == UP and place_of(body.u, body) >= body.saturation:
@@ -109,7 +110,7 @@ def expand_step(a_g: float, run: SingleRun) -> tuple[int, int, float]:
             order, good = linear_series(tangent(body), most + MORE_TERMS, body)
         first = 1
         if abs(body.v) <= body.still:
-            first = _leading(order, body.still / run.limits.time, body)
+            first = _leading(order, body.still / run.plan.limits.time, body)
         if part == CORE or body.sigma * body.x[first] >= 0.0:
             break
         turn_round(body.u, run)
@@ -170,7 +171,7 @@ def first_event(h: float, order: int, first: int, run: SingleRun) -> tuple[float
     if reach <= body.standing:
         # A link that all but stands still reverses at the level of rounding.
         tau, event, turn = _of_standing(h, reach, order, first, run)
-        body.change, body.rate, body.bend = motion(tau, order, body)
+        body.change, body.rate, body.bend = motion(tau, order, body.x[:])
     else:
         tau, event, turn = _of_one_way(h, order, first, run)
     return tau, event, turn
@@ -185,7 +186,7 @@ def _of_one_way(h: float, order: int, first: int, run: SingleRun) -> tuple[float
     turn = first_turn(order, first, h, body, run.scratch.work)
     if turn <= h:
         tau, event = turn, FREE if body.part == CORE else TURNED
-    body.change, body.rate, body.bend = motion(tau, order, body)
+    body.change, body.rate, body.bend = motion(tau, order, body.x[:])
     gone, one_way = way * body.change, tau
     gap = gap_to(way, body)
     if gap <= gone and tau > 0.0:
@@ -201,7 +202,7 @@ def _of_one_way(h: float, order: int, first: int, run: SingleRun) -> tuple[float
             if at < tau:
                 tau, event = at, CROSSED
     if tau < one_way:
-        body.change, body.rate, body.bend = motion(tau, order, body)
+        body.change, body.rate, body.bend = motion(tau, order, body.x[:])
     return tau, event, turn
 
 
@@ -264,7 +265,7 @@ def propose(
     body, t = run.body, run.now.t
     a_g = body.even
     if not body.pair:
-        a_g = expand_ground(t, run.limits.order + MORE_TERMS, piece, body.ground[:])
+        a_g = expand_ground(t, run.plan.limits.order + MORE_TERMS, piece, body.ground[:])
         body.even = body.odd = 1.0
     body.step = min(wanted, expected_length(a_g, body))
     set_tolerance(body)
@@ -282,7 +283,7 @@ def propose(
             break
         event = FREE
         tau *= _shortened(tau, order, body)
-        body.change, body.rate, body.bend = motion(tau, order, body)
+        body.change, body.rate, body.bend = motion(tau, order, body.x[:])
     return order, tau, t_end, event, event == TURNED or (turn <= tau and event == FREE)
 
 
@@ -312,7 +313,7 @@ def arrive(tau: float, t_end: float, turned: bool, event: int, run: SingleRun) -
     code = audit(run.progress.stalled, body)
     if code == GOING_ON and event != FREE:
         _happen(event, t_end, run)
-    elif is_over(run.now, run.limits.time):
+    elif is_over(run.now, run.plan.limits.time):
         list_all(run.now, run.events)
     return code
 
@@ -332,7 +333,7 @@ def _shortened(tau: float, order: int, body: SingleBody) -> float:
     """Factor by which a step is to be shortened that does not fit."""
     defect = abs(body.next_a - body.next_g - body.bend) * tau
     error = max(defect / (body.of_v * order), defect * tau / (body.of_u * order))
-    return max(0.1, 0.9 * error ** (-1.0 / order)) if error < np.inf else 0.1
+    return shortened(error, order)
 
 
 @compiled
