@@ -16,7 +16,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration, ground_onset, next_corner
 from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.lending import lend
-from eventpound.solvers.fast.apart.steps import forget_each, go_apart, may_go_apart
+from eventpound.solvers.fast.apart.steps import go_apart, may_go_apart
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import take_instant
@@ -26,6 +26,7 @@ from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.record import has_room, hold, write_row
 from eventpound.solvers.fast.run import GOING_ON, IN_PYTHON, SETTLED, FastRun, piece_of
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
+from eventpound.solvers.fast.single.body import forget
 from eventpound.solvers.fast.sliding import any_slider
 from eventpound.solvers.fast.step import take_step
 from eventpound.tolerances import LENGTH
@@ -61,7 +62,8 @@ def carry_on(budget: int, run: FastRun) -> int:
     last_step = progress.steps + budget
     if not progress.started:
         start(run)
-        forget_each(run.series.each)
+        for b in range(run.series.each.body.size):
+            forget(run.series.each.body[b])
         progress.started = True
     while progress.steps < last_step:
         if not has_room(run):

@@ -44,19 +44,6 @@ CONVERGED = 0.5
 
 
 @compiled
-def begin_link(a: int, run: FastRun) -> None:
-    """Elongation of a link, its rate, force and tangent at the start of a step."""
-    links, state, series = run.plan.links, run.state, run.series
-    x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], state.u, state.v)
-    series.x[a], series.x_rate[a] = x, x_rate
-    force, z = link_force(a, x, run)
-    if links.z_of_link[a] >= 0:
-        series.z[links.z_of_link[a], 0] = z
-    series.stiffness[a] = tangent(a, links, state)
-    series.F[a, 0] = force + links.law.damping[a] * x_rate
-
-
-@compiled
 def on_curve(h: int, part: Ints) -> bool:
     """Whether a hysteretic link is on a curved part of its backbone."""
     return bool(DOWN <= part[h] <= UP)
@@ -231,8 +218,15 @@ def begin_series(t: float, piece: CurrentPiece, run: FastRun) -> None:
         c = series.of_body[b]
         if c >= 0:
             series.X[c, 1] = state.v[b]
-    for a in range(plan.links.ends.shape[0]):
-        begin_link(a, run)
+    links = plan.links
+    for a in range(links.ends.shape[0]):
+        x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], state.u, state.v)
+        series.x[a], series.x_rate[a] = x, x_rate
+        force, z = link_force(a, x, run)
+        if links.z_of_link[a] >= 0:
+            series.z[links.z_of_link[a], 0] = z
+        series.stiffness[a] = tangent(a, links, state)
+        series.F[a, 0] = force + links.law.damping[a] * x_rate
     saturate(series.x, plan.hysteresis, state)
     set_weights(run)
 
@@ -250,8 +244,7 @@ def wrong_way(order: int, run: FastRun) -> bool:
         if state.part[h] == CORE or head == tail or abs(series.x_rate[a]) > still:
             continue
         for k in range(2, order + 1):
-            x_k = series.X[tail, k] if tail >= 0 else 0.0
-            x_k -= series.X[head, k] if head >= 0 else 0.0
+            x_k = distance_coefficient(head, tail, k, series)
             if 2.0 * abs(x_k) > (still / plan.limits.time if k == 2 else 0.0):
                 if state.sigma[h] * x_k < 0.0:
                     reverse(h, series.x[a], hysteresis, state)

@@ -19,7 +19,12 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.links import CORE, elongations
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries
-from eventpound.solvers.fast.search import relative, stays_above
+from eventpound.solvers.fast.search import (
+    bound_of_pair,
+    distance_coefficient,
+    relative,
+    stays_above,
+)
 from eventpound.solvers.fast.sliding import add_held_shear, any_slider
 from eventpound.tolerances import FLAT_WITHIN
 
@@ -139,17 +144,12 @@ def _pair(i: int, head: int, tail: int, value: float, tau: float, order: int, ru
     series, running = run.series, run.running
     if head == tail:
         return
-    reach, swing, rate, slope, bend = 0.0, 0.0, 0.0, 0.0, 0.0
-    X = series.X
-    if tail >= 0:
-        reach, swing = series.reach[tail], series.swing[tail]
-        rate, slope, bend = X[tail, 1], 2.0 * X[tail, 2], 3.0 * X[tail, 3]
-    if head >= 0:
-        reach += series.reach[head]
-        swing += series.swing[head]
-        rate, slope, bend = rate - X[head, 1], slope - 2.0 * X[head, 2], bend - 3.0 * X[head, 3]
+    reach, swing = bound_of_pair(head, tail, series.reach), bound_of_pair(head, tail, series.swing)
     if stays_within(i, value - reach, value + reach, running):
         return
+    rate = distance_coefficient(head, tail, 1, series)
+    slope = 2.0 * distance_coefficient(head, tail, 2, series)
+    bend = 3.0 * distance_coefficient(head, tail, 3, series)
     if rate < 0.0:
         rate, slope, bend = -rate, -slope, -bend
     if not stays_above(rate, slope, bend, swing, tau):

@@ -89,12 +89,6 @@ def end_if_over(run: FastRun) -> None:
 @compiled_apart
 def write_row(t: float, run: FastRun) -> None:
     """Add a line to the history, where one is kept."""
-    put_row(t, run)
-
-
-@compiled
-def put_row(t: float, run: FastRun) -> None:
-    """As `write_row`, where a call would cost more."""
     plan, state, record, seen = run.plan, run.state, run.record, run.seen
     if not takes_rows(record.rows):
         return

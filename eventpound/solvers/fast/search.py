@@ -79,14 +79,8 @@ def motion(tau: float, order: int, x: Floats) -> tuple[float, float, float]:
 @compiled
 def relative(first: int, second: int, order: int, series: FastSeries, out: Floats) -> None:
     """Coefficients 1 ... order of the displacement of one cluster to another, into `out`."""
-    X = series.X
     for k in range(1, order + 1):
-        value = 0.0
-        if second >= 0:
-            value = X[second, k]
-        if first >= 0:
-            value -= X[first, k]
-        out[k] = value
+        out[k] = distance_coefficient(first, second, k, series)
 
 
 @compiled

@@ -36,14 +36,17 @@ window, and how far it strays from between these at most (N)."""
 
 
 @compiled
-def _gap_box(j: int, run: FastRun) -> tuple[float, float]:
-    """Bounds of a gap by those of its bodies (m)."""
-    contacts, box = run.plan.contacts, run.series.each.box
-    low = high = contacts.gap[j]
-    if contacts.right[j] >= 0:
-        low, high = low + box[U_LOW, contacts.right[j]], high + box[U_HIGH, contacts.right[j]]
-    if contacts.left[j] >= 0:
-        low, high = low - box[U_HIGH, contacts.left[j]], high - box[U_LOW, contacts.left[j]]
+def bounds_of_gap(j: int, row: int, start: float, run: FastRun) -> tuple[float, float]:
+    """Bounds of a gap (m), or of its second derivative (m/s²), by those of its bodies.
+
+    They stand in `Each.box` from a row on. The gap is `start` at no displacement.
+    """
+    left, right, box = run.plan.contacts.left[j], run.plan.contacts.right[j], run.series.each.box
+    low = high = start
+    if right >= 0:
+        low, high = low + box[row, right], high + box[row + 1, right]
+    if left >= 0:
+        low, high = low - box[row + 1, left], high - box[row, left]
     return low, high
 
 
@@ -68,29 +71,20 @@ def gap_at(j: int, t: float, run: FastRun) -> tuple[float, float]:
 
 
 @compiled
-def _bends(j: int, run: FastRun) -> tuple[float, float]:
-    """Bounds of the second derivative of a gap between two bodies, or to a barrier (m/s²).
-
-    What the ground does is the same for both bodies; to a barrier nothing is known.
-    """
-    left, right, box = run.plan.contacts.left[j], run.plan.contacts.right[j], run.series.each.box
-    if min(left, right) < 0:
-        return -np.inf, np.inf
-    return box[A_LOW, right] - box[A_HIGH, left], box[A_HIGH, right] - box[A_LOW, left]
-
-
-@compiled
 def time_of_closing(j: int, now: float, run: FastRun) -> float:
     """When a gap closes, as far as both series reach (s)."""
     contacts, until, c = run.plan.contacts, run.series.each.until, run.series.c
     end = np.inf
-    if _gap_box(j, run)[0] > 0.0:
+    if bounds_of_gap(j, U_LOW, contacts.gap[j], run)[0] > 0.0:
         return np.inf
     for b in (contacts.left[j], contacts.right[j]):
         if b >= 0:
             end = min(end, until[b])
     h, (gap, rate) = end - now, gap_at(j, now, run)
-    if stays_above(gap, rate, 0.5 * _bends(j, run)[0], 0.0, h):
+    # What the ground does is the same for two bodies; a barrier goes with it.
+    low, _ = bounds_of_gap(j, A_LOW, 0.0, run)
+    two = min(contacts.left[j], contacts.right[j]) >= 0
+    if two and stays_above(gap, rate, 0.5 * low, 0.0, h):
         return np.inf
     order, rest = set_gap(j, now, run), 0.0
     for k in range(order, 2, -1):
@@ -150,7 +144,7 @@ def take_gaps_of(who: int, now: float, run: FastRun) -> None:
             continue
         if not takes_part(j, run):
             continue
-        low, high = _gap_box(j, run)
+        low, high = bounds_of_gap(j, U_LOW, contacts.gap[j], run)
         low = max(low, 0.0)
         if each.since[j] < now and not stays_within(first + j, low, high, running):
             _take_gap(first + j, j, now, run)
@@ -161,7 +155,11 @@ def take_gaps_of(who: int, now: float, run: FastRun) -> None:
 def _take_gap(place: int, j: int, now: float, run: FastRun) -> None:
     """Turning points of a gap since it was looked at last, and its value at a time (s)."""
     series, running, since = run.series, run.running, run.series.each.since[j]
-    h, (_, rate), (low, high) = now - since, gap_at(j, since, run), _bends(j, run)
+    h, (_, rate), (low, high) = (
+        now - since,
+        gap_at(j, since, run),
+        bounds_of_gap(j, A_LOW, 0.0, run),
+    )
     if not (rate + min(low, 0.0) * h > 0.0 or rate + max(high, 0.0) * h < 0.0):
         order = set_gap(j, since, run)
         set_rate(series.c, order, series.d)

@@ -22,18 +22,10 @@ from eventpound.solvers.fast.apart.together import go_together
 from eventpound.solvers.fast.apart.windows import go_by_windows, windows_fit
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred
 from eventpound.solvers.fast.links import CORE
-from eventpound.solvers.fast.run import Each, FastRun
-from eventpound.solvers.fast.single.body import forget
+from eventpound.solvers.fast.run import FastRun
 from eventpound.tolerances import OWN_GAP
 
 _SAMPLES = int(Family.SAMPLES)
-
-
-@compiled
-def forget_each(each: Each) -> None:
-    """Leave nothing of the run before."""
-    for b in range(each.body.size):
-        forget(each.body[b])
 
 
 @compiled

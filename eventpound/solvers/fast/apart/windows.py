@@ -14,7 +14,15 @@ import numpy as np
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.forcing import CurrentPiece, sample_time
 from eventpound.numerics.lending import lend
-from eventpound.solvers.fast.apart.between import A_HIGH, A_LOW, AFTER, BEFORE, COUNT, STRAY
+from eventpound.solvers.fast.apart.between import (
+    A_HIGH,
+    A_LOW,
+    AFTER,
+    BEFORE,
+    COUNT,
+    STRAY,
+    bounds_of_gap,
+)
 from eventpound.solvers.fast.apart.own import Window
 from eventpound.solvers.fast.apart.together import go_together
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
@@ -96,11 +104,7 @@ def _choose(dt: float, whole: bool, window: Window, run: FastRun) -> bool:
         gap, rate = gap_of(j, contacts, state.u, state.v)
         if gap < least:
             return False
-        down = up = 0.0
-        if right >= 0:
-            down, up = box[A_LOW, right], box[A_HIGH, right]
-        if left >= 0:
-            down, up = down - box[A_HIGH, left], up - box[A_LOW, left]
+        down, up = bounds_of_gap(j, A_LOW, 0.0, run)
         down, up = dt * min(0.0, down), dt * max(0.0, up)
         low, high = gap + dt * min(0.0, rate + 0.5 * down), gap + dt * max(0.0, rate + 0.5 * up)
         # Where a gap goes one way its extreme is yet to come.

@@ -33,8 +33,8 @@ from eventpound.solvers.fast.links import (
     place,
     reverse,
 )
-from eventpound.solvers.fast.record import has_room, put_row
-from eventpound.solvers.fast.run import Contacts, FastRun
+from eventpound.solvers.fast.record import has_room, write_row
+from eventpound.solvers.fast.run import FastRun
 from eventpound.solvers.fast.sampled.bounds import (
     BORDER,
     CLOSING,
@@ -46,7 +46,6 @@ from eventpound.solvers.fast.sampled.bounds import (
     places_unseen,
     stays_open,
 )
-from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.solvers.fast.sampled.forces import GroundLine, accelerations
 from eventpound.solvers.fast.sampled.series import (
     end_of_series,
@@ -62,7 +61,7 @@ def first_simple_event(order: int, h: float, run: FastRun) -> tuple[int, int, fl
 
     NOTHING where none is beyond an event at the end, or the first is not a simple one.
     """
-    plan, state, series = run.plan, run.state, run.series
+    plan, state, bodies = run.plan, run.state, run.series.tables.bodies
     what, which, first, second = NOTHING, -1, 2.0 * h, 2.0 * h
     for a in range(plan.links.offset.size):
         kind = _left(a, run)
@@ -74,7 +73,7 @@ def first_simple_event(order: int, h: float, run: FastRun) -> tuple[int, int, fl
         else:
             second = min(second, tau)
     for j in range(plan.contacts.gap.size):
-        if not _overlaps(j, plan.contacts, series.tables):
+        if not gap_of(j, plan.contacts, bodies.next_u, bodies.next_v)[0] < 0.0:
             continue
         tau = _when_closed(j, order, h, run)
         if tau < first:
@@ -85,12 +84,6 @@ def first_simple_event(order: int, h: float, run: FastRun) -> tuple[int, int, fl
     if first < SOONEST_EVENT * h or second < first + EVENTS_APART * h or fleeting:
         return NOTHING, -1, h
     return what, which, first
-
-
-@compiled
-def _overlaps(j: int, contacts: Contacts, tables: SampleTables) -> bool:
-    """Whether a gap is below zero at the end of the step proposed."""
-    return gap_of(j, contacts, tables.bodies.next_u, tables.bodies.next_v)[0] < 0.0
 
 
 @compiled
@@ -170,9 +163,9 @@ def do_event(what: int, which: int, g: float, run: FastRun) -> None:
             cross_border(h, x, plan.hysteresis, state)
         return
     look(0.0, plan.limits.order, g, run)
-    put_row(state.now[0].t, run)
+    write_row(state.now[0].t, run)
     if what == KINK:
-        put_row(state.now[0].t, run)
+        write_row(state.now[0].t, run)
         state.branch[which] = -state.branch[which]
     else:
         state.progress[0].due = 1

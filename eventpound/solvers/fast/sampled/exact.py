@@ -127,10 +127,8 @@ def table_of(
     dt: float, tangents: Floats, ends: Ints, damping: Floats, mass: Floats, tables: SampleTables
 ) -> int:
     """Number of the table for a step of length dt (s) and the tangents of the links (N/m)."""
-    i = tables.latest[1]
-    if _is_table(i, dt, tangents, tables):
-        return i
-    for i in range(KEPT):
+    for m in range(KEPT):
+        i = (tables.latest[1] + m) % KEPT
         if _is_table(i, dt, tangents, tables):
             tables.latest[1] = i
             return i

@@ -9,13 +9,12 @@ by itself, so the accelerations depend on nothing but the state.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from eventpound.mechanics.elements import pull_per_z
-from eventpound.motion.forcing import CurrentPiece, next_sample, sample_time
+from eventpound.motion.forcing import CurrentPiece, sample_time
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_stepwise
 from eventpound.solvers.fast.links import (
@@ -43,13 +42,6 @@ class GroundLine(NamedTuple):
     since: float
     g: float
     slope: float
-
-
-@compiled
-def first_segment(coefficients: Floats, t: float, piece_end: float) -> int:
-    """Number of the sample at which the line of a record begins that t (s) is on."""
-    following = next_sample(coefficients, t, piece_end)
-    return math.floor((following - coefficients[0]) / coefficients[1] + 0.5) - 1
 
 
 @compiled
@@ -161,22 +153,3 @@ def linear_accelerations(
         for c in range(n):
             a -= K[i, b, c] * u[c] + C[i, b, c] * v[c]
         out[b] = a
-
-
-@compiled
-def end_is_now(tables: SampleTables) -> None:
-    """Make accelerations, elongations and their rates at the end of a step those of the present."""
-    bodies, along = tables.bodies, tables.along
-    for b in range(bodies.acceleration.size):
-        bodies.acceleration[b] = bodies.next_acceleration[b]
-    for a in range(along.x.size):
-        along.x[a], along.x_rate[a] = along.next_x[a], along.next_x_rate[a]
-
-
-@compiled
-def base_shear(mass: Floats, acceleration: Floats) -> float:
-    """Base shear (N) that absolute accelerations (m/s²) need."""
-    shear = 0.0
-    for b in range(mass.size):
-        shear -= mass[b] * acceleration[b]
-    return shear

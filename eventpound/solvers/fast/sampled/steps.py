@@ -11,6 +11,7 @@ events (`eventpound.solvers.fast.sampled.choice`); any other is left to
 from __future__ import annotations
 
 from eventpound.motion.forcing import CurrentPiece
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.extremes import take_all
 from eventpound.solvers.fast.links import elongations, gap_of, saturate
@@ -26,15 +27,13 @@ from eventpound.solvers.fast.sampled.exact import MOST_TURN, propose_by_matrices
 from eventpound.solvers.fast.sampled.forces import (
     GroundLine,
     accelerations_now,
-    base_shear,
     begin,
-    end_is_now,
-    first_segment,
     line_at,
     linear_accelerations,
 )
 from eventpound.solvers.fast.sampled.room import set_room, stays_in_room
 from eventpound.solvers.fast.sampled.series import expand_linear
+from eventpound.solvers.fast.single.series import sample_after
 from eventpound.tolerances import SAME_SAMPLE
 
 
@@ -125,7 +124,7 @@ def sample_steps(budget: int, piece_end: float, piece: CurrentPiece, run: FastRu
     rounding, now, progress = SAME_SAMPLE * dt, state.now[0], state.progress[0]
     i, fresh = begin(dt, run), True
     until, last = piece_end - rounding, progress.steps + budget
-    segment = first_segment(piece.coefficients, now.t, piece_end)
+    _, segment = sample_after(now.t, piece_end, piece)
     while progress.steps < last and progress.due == 0:
         line = line_at(segment, piece, now.t)
         if not (line.end < until and now.t + rounding < line.end):
@@ -185,16 +184,18 @@ def _take(
 def _accept(step: ProposedStep, t: float, run: FastRun) -> None:
     """Make the end of the step, at t (s), the present state, and take it into the extremes."""
     plan, state, tables = run.plan, run.state, run.series.tables
-    bodies, progress = tables.bodies, state.progress[0]
-    end_is_now(tables)
+    bodies, along, progress, shear = tables.bodies, tables.along, state.progress[0], 0.0
+    copy_numbers(bodies.next_acceleration, bodies.acceleration)
+    copy_numbers(along.next_x, along.x)
+    copy_numbers(along.next_x_rate, along.x_rate)
     progress.guess = step.h
     pass_time(step.h, t, 1, state.now[0], progress)
     for b in range(state.u.size):
         state.u[b], state.v[b] = bodies.next_u[b], bodies.next_v[b]
+        shear -= plan.mass[b] * bodies.acceleration[b]
     set_gaps(plan, state)
     if step.what == CLOSING:
         state.gap[step.which] = 0.0
     elif step.what == NOTHING:
         end_if_over(run)
-    shear = base_shear(plan.mass, bodies.acceleration)
-    take_all(state.u, bodies.acceleration, tables.along.x, state.gap, shear, t, run.running)
+    take_all(state.u, bodies.acceleration, along.x, state.gap, shear, t, run.running)

@@ -108,7 +108,6 @@ class SingleBody(NamedNumbers, room=ROOM):
     no_force: float  # contact force for each unit of mass (m/s²)
     standing: float  # change of u, of a body on a hysteretic link (m)
     flat_time: float  # time within which a peak is flat (s)
-    own_speed: float  # the scene's own speed (m/s)
     own_gap: float  # gap below which it is a variable of its own (m)
     least_gap: float  # the one that is penetration (m)
 
@@ -327,7 +326,6 @@ def _set_limits(b: int, limits: Limits, body: SingleBody) -> None:
     """Tolerances of a step, and what is rounding."""
     body.atol_u, body.atol_v = LOCAL_SHARE * limits.atol_u[b], LOCAL_SHARE * limits.atol_v[b]
     body.rtol = LOCAL_SHARE * limits.rtol
-    body.own_speed = limits.length / limits.time
     body.still = still_rate(limits.length, limits.time)
     body.no_acceleration = ACCELERATION * limits.length / limits.time**2
     body.no_force = FORCE * limits.length / limits.time**2
@@ -376,15 +374,6 @@ def set_force(g: float, body: SingleBody) -> None:
     side = body.rests_on
     body.right_force = body.mass * (body.a - g) if side > 0.0 else 0.0
     body.left_force = body.mass * (g - body.a) if side < 0.0 else 0.0
-
-
-@compiled
-def put_on_barrier(side: float, body: SingleBody) -> None:
-    """Make the displacement agree with a gap of zero."""
-    if side > 0.0:
-        body.u = body.right_gap
-    elif side < 0.0:
-        body.u = -body.left_gap
 
 
 def has_play(gap: Floats, length: Floats | float) -> Any:

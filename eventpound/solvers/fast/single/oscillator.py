@@ -60,7 +60,6 @@ from eventpound.solvers.fast.single.body import (
     enter,
     forget,
     leave,
-    put_on_barrier,
     set_force,
     side_closed,
     spring_state,
@@ -119,7 +118,9 @@ def settle_single(g: float, piece: CurrentPiece, run: SingleRun) -> None:
     body = run.body
     side = side_closed(body)
     j = run.oscillator.right if side > 0.0 else run.oscillator.left
-    put_on_barrier(side, body)
+    if side != 0.0:
+        # The displacement agrees with a gap of zero.
+        body.u = body.right_gap if side > 0.0 else -body.left_gap
     body.z = spring_state(body.u, run)
     if side != 0.0 and duty(0.0, -side * body.v) == IMPACT:
         impact_at_barrier(side, j, run)
