@@ -8,7 +8,6 @@ from eventpound.mechanics.clusters import is_support
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.lending import lend
-from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.followed import follows, see_followed
 from eventpound.solvers.fast.links import add_pull, elongation, gap_of, link_force
@@ -114,8 +113,12 @@ def _gaps(tau: float, order: int, run: FastRun) -> None:
             continue
         gap, rate = gap_of(j, contacts, seen.u, seen.v)
         if gap < OWN_GAP * plan.limits.length:
-            gap_polynomial(j, order, contacts, plan.limits, state, series)
-            gap, rate = value_and_slope(series.c[: order + 1], tau)
+            gap_polynomial(j, order, run)
+            c = series.c
+            gap, rate = c[order], 0.0
+            for k in range(order - 1, -1, -1):
+                rate = rate * tau + gap
+                gap = gap * tau + c[k]
         seen.gap[j], seen.gap_rate[j] = gap, rate
 
 

@@ -22,7 +22,7 @@ from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries
 from eventpound.solvers.fast.search import (
     bound_of_pair,
     distance_coefficient,
-    relative,
+    set_distance,
     stays_above,
 )
 from eventpound.solvers.fast.sliding import add_held_shear, any_slider
@@ -160,8 +160,7 @@ def _pair(i: int, head: int, tail: int, value: float, tau: float, order: int, ru
 def _locate(
     i: int, head: int, tail: int, value: float, tau: float, order: int, run: FastRun
 ) -> None:
-    relative(head, tail, order, run.series, run.series.c)
-    run.series.c[0] = value
+    set_distance(value, 1.0, head, tail, order, run.series)
     set_rate(run.series.c, order, run.series.d)
     take_turns(i, run.series.c, order, run.state.now[0].t, tau, run)
 
@@ -236,7 +235,8 @@ def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bo
         shear, end = shear - m * value, end - m * last[b]
         rate, bend = rate - m * its_rate, bend + m * series.bend[c]
         if _may_turn(at.acceleration + b, value, last[b], its_rate, series.bend[c], tau, running):
-            _set_acceleration_rate(c, order, series)
+            series.d[:] = 0.0
+            _add_acceleration_rate(c, 1.0, order, series)
             looked = _turns(c, tau, order, run) or looked
     if held:
         value = _base_shear(order, plan, series)
@@ -245,7 +245,9 @@ def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bo
         if not _settled(at.base_shear, value, tau, order, series, running):
             looked = _turns(-1, tau, order, run) or looked
     elif _may_turn(at.base_shear, shear, end, rate, bend, tau, running):
-        _shear_rate_of_bodies(order, plan.mass, series)
+        series.d[:] = 0.0
+        for b in range(bodies):
+            _add_acceleration_rate(series.of_body[b], -plan.mass[b], order, series)
         looked = _turns(-1, tau, order, run) or looked
     if state.progress[0].resting > 0:
         _at_rest(tau, order, run)
@@ -306,20 +308,10 @@ def _acceleration_term(c: int, k: int, series: FastSeries) -> float:
 
 
 @compiled
-def _set_acceleration_rate(c: int, order: int, series: FastSeries) -> None:
-    """Rate of the absolute acceleration of a cluster into `series.d`."""
+def _add_acceleration_rate(c: int, factor: float, order: int, series: FastSeries) -> None:
+    """Add a multiple of the rate of the absolute acceleration of a cluster to `series.d`."""
     for k in range(1, order - 1):
-        series.d[k - 1] = k * _acceleration_term(c, k, series)
-
-
-@compiled
-def _shear_rate_of_bodies(order: int, mass: Floats, series: FastSeries) -> None:
-    """Rate of the base shear into `series.d`, where no body is held but by links."""
-    d = series.d
-    for k in range(1, order - 1):
-        d[k - 1] = 0.0
-        for b in range(mass.size):
-            d[k - 1] -= mass[b] * k * _acceleration_term(series.of_body[b], k, series)
+        series.d[k - 1] += factor * k * _acceleration_term(c, k, series)
 
 
 @compiled

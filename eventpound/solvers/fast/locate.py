@@ -30,12 +30,13 @@ from eventpound.solvers.fast.run import FastMarks, FastPlan, FastRun, FastSeries
 from eventpound.solvers.fast.search import (
     bound_of_pair,
     distance_coefficient,
+    distance_stays_above,
     fall_beyond,
     first_fall,
     force_level,
     gap_polynomial,
-    relative,
     release_time,
+    set_distance,
     stays_above,
 )
 from eventpound.solvers.fast.sliding import end_of_slip, of_slider, set_room
@@ -96,11 +97,9 @@ def _closings(order: int, h: float, run: FastRun) -> float:
         left, right = contacts.left[j], contacts.right[j]
         a = series.of_body[left] if left >= 0 else -1
         b = series.of_body[right] if right >= 0 else -1
-        slope, bend = distance_coefficient(a, b, 1, series), distance_coefficient(a, b, 2, series)
-        rest = bound_of_pair(a, b, series.travel)
-        if state.gap[j] > 0.0 and stays_above(state.gap[j], slope, bend, rest, h):
+        if state.gap[j] > 0.0 and distance_stays_above(state.gap[j], 1.0, a, b, h, series):
             continue
-        gap_polynomial(j, order, contacts, plan.limits, state, series)
+        gap_polynomial(j, order, run)
         tau = closing_time(series.c, order + 1, min(h, first), series.work)
         first = _mark(tau, first, j, happened.closing, happened)
     return first
@@ -138,9 +137,9 @@ def _reversal(order: int, h: float, a: int, sigma: float, run: FastRun) -> float
         return np.inf
     c, limits = series.c, plan.limits
     still = still_rate(limits.length, limits.time)
-    relative(head, tail, order, series, c)
+    set_distance(0.0, sigma, head, tail, order, series)
     for k in range(order):
-        c[k] = sigma * (k + 1) * c[k + 1]
+        c[k] = (k + 1) * c[k + 1]
     c[0] = rate
     return first_fall(c, order, h, still, still / limits.time, series.work)
 
@@ -149,33 +148,18 @@ def _reversal(order: int, h: float, a: int, sigma: float, run: FastRun) -> float
 def _border(order: int, h: float, first: float, i: int, run: FastRun) -> float:
     """When a hysteretic link leaves its part of the backbone, or inf."""
     hysteresis, state, series = run.plan.hysteresis, run.state, run.series
-    a, sigma, part = hysteresis.link[i], state.sigma[i], state.part[i]
+    a, part = hysteresis.link[i], state.part[i]
     head, tail = series.ends[a, 0], series.ends[a, 1]
-    xi = place(i, series.x[a], hysteresis, state)
-    upper = hysteresis.core[i] if part <= UNLOADING else hysteresis.down[i]
-    scale = 1.0 / hysteresis.scale[i]
-    slope = sigma * scale * distance_coefficient(head, tail, 1, series)
-    bend = sigma * scale * distance_coefficient(head, tail, 2, series)
-    rest = scale * bound_of_pair(head, tail, series.travel)
-    limit, tau = min(h, first), np.inf
-    if not stays_above(upper - xi, -slope, -bend, rest, h):
-        tau = _level(order, limit, sigma, upper - xi, i, run)
-    lower = hysteresis.core[i] + xi
-    if part == CORE and not stays_above(lower, slope, bend, rest, h):
-        tau = min(tau, _level(order, limit, -sigma, lower, i, run))
+    xi, factor = place(i, series.x[a], hysteresis, state), state.sigma[i] / hysteresis.scale[i]
+    above = (hysteresis.core[i] if part <= UNLOADING else hysteresis.down[i]) - xi
+    below, limit, tau = hysteresis.core[i] + xi, min(h, first), np.inf
+    if not distance_stays_above(above, -factor, head, tail, h, series):
+        set_distance(above, -factor, head, tail, order, series)
+        tau = first_fall(series.c, order + 1, limit, OF_BACKBONE, 0.0, series.work)
+    if part == CORE and not distance_stays_above(below, factor, head, tail, h, series):
+        set_distance(below, factor, head, tail, order, series)
+        tau = min(tau, first_fall(series.c, order + 1, limit, OF_BACKBONE, 0.0, series.work))
     return tau
-
-
-@compiled
-def _level(order: int, limit: float, sigma: float, distance: float, i: int, run: FastRun) -> float:
-    """When σ x of a hysteretic link has grown by a distance given in ξ."""
-    hysteresis, series = run.plan.hysteresis, run.series
-    a, c = hysteresis.link[i], series.c
-    relative(series.ends[a, 0], series.ends[a, 1], order, series, c)
-    for k in range(1, order + 1):
-        c[k] = -sigma * c[k] / hysteresis.scale[i]
-    c[0] = distance
-    return first_fall(c, order + 1, limit, OF_BACKBONE, 0.0, series.work)
 
 
 @compiled
@@ -198,18 +182,10 @@ def _leaves_branch(
     order: int, h: float, limit: float, a: int, side: float, away: float, run: FastRun
 ) -> float:
     """When a link has gone a distance `away` against a side (m) within h, up to `limit` (s)."""
-    series, c = run.series, run.series.c
-    head, tail = series.ends[a, 0], series.ends[a, 1]
-    slope, bend = (
-        side * distance_coefficient(head, tail, 1, series),
-        side * distance_coefficient(head, tail, 2, series),
-    )
-    if stays_above(away, slope, bend, bound_of_pair(head, tail, series.travel), h):
+    series, head, tail = run.series, run.series.ends[a, 0], run.series.ends[a, 1]
+    if distance_stays_above(away, side, head, tail, h, series):
         return np.inf
-    relative(head, tail, order, series, c)
-    for k in range(1, order + 1):
-        c[k] *= side
-    c[0] = away
+    set_distance(away, side, head, tail, order, series)
     kept = run.state.progress[0].stalled > 0
     return _passes_end(order, limit, kept, head, tail, run.plan.limits, series)
 

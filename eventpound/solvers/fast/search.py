@@ -14,7 +14,7 @@ from eventpound.contact.rest import acceleration_noise, is_none
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.run import Contacts, FastSeries, FastState, Limits
+from eventpound.solvers.fast.run import FastRun, FastSeries, Limits
 from eventpound.tolerances import ACCELERATION, FORCE, GAP_COEFFICIENT
 
 OF_BODIES = 0.2
@@ -77,10 +77,24 @@ def motion(tau: float, order: int, x: Floats) -> tuple[float, float, float]:
 
 
 @compiled
-def relative(first: int, second: int, order: int, series: FastSeries, out: Floats) -> None:
-    """Coefficients 1 ... order of the displacement of one cluster to another, into `out`."""
+def set_distance(
+    start: float, factor: float, first: int, second: int, order: int, series: FastSeries
+) -> None:
+    """Put a polynomial into `series.c`: a start, and a multiple of how two clusters part."""
+    series.c[0] = start
     for k in range(1, order + 1):
-        out[k] = distance_coefficient(first, second, k, series)
+        series.c[k] = factor * distance_coefficient(first, second, k, series)
+
+
+@compiled
+def distance_stays_above(
+    start: float, factor: float, first: int, second: int, h: float, series: FastSeries
+) -> bool:
+    """Whether that is sure to stay above zero on [0, h]."""
+    slope = factor * distance_coefficient(first, second, 1, series)
+    bend = factor * distance_coefficient(first, second, 2, series)
+    rest = abs(factor) * bound_of_pair(first, second, series.travel)
+    return stays_above(start, slope, bend, rest, h)
 
 
 @compiled
@@ -115,20 +129,18 @@ def bound_of_pair(first: int, second: int, bounds: Floats) -> float:
 
 
 @compiled
-def gap_polynomial(
-    j: int, order: int, contacts: Contacts, limits: Limits, state: FastState, series: FastSeries
-) -> None:
+def gap_polynomial(j: int, order: int, run: FastRun) -> None:
     """Coefficients of a gap into `series.c`: the first two are its own variables.
 
     A gap that opens goes on with the first coefficient that differs from
     rounding. Bodies that the ground alone accelerates do so without any.
     """
-    c = series.c
-    left, right = contacts.left[j], contacts.right[j]
+    limits, state, series, c = run.plan.limits, run.state, run.series, run.series.c
+    left, right = run.plan.contacts.left[j], run.plan.contacts.right[j]
     first = series.of_body[left] if left >= 0 else -1
     second = series.of_body[right] if right >= 0 else -1
-    relative(first, second, order, series, c)
-    c[0], c[1] = max(state.gap[j], 0.0), state.gap_rate[j]
+    set_distance(max(state.gap[j], 0.0), 1.0, first, second, order, series)
+    c[1] = state.gap_rate[j]
     opening = c[0] == 0.0 and c[1] == 0.0
     if not (opening or c[1] > 0.0 > c[2]):
         return

@@ -51,7 +51,7 @@ from eventpound.solvers.fast.sampled.series import (
     end_of_series,
     propose_by_series,
 )
-from eventpound.solvers.fast.search import relative, set_travel
+from eventpound.solvers.fast.search import set_distance, set_travel
 from eventpound.tolerances import EVENTS_APART, OWN_GAP, SOONEST_EVENT
 
 
@@ -92,8 +92,8 @@ def _when_closed(j: int, order: int, h: float, run: FastRun) -> float:
     plan, state, series = run.plan, run.state, run.series
     if state.gap[j] < OWN_GAP * plan.limits.length:
         return 0.0
-    relative(plan.contacts.left[j], plan.contacts.right[j], order, series, series.c)
-    series.c[0] = state.gap[j]
+    left, right = plan.contacts.left[j], plan.contacts.right[j]
+    set_distance(state.gap[j], 1.0, left, right, order, series)
     return only_root(series.c, order + 1, h)
 
 
@@ -124,25 +124,22 @@ def _when(a: int, kind: int, order: int, h: float, run: FastRun) -> float:
     """Local time at which a link leaves its branch, its part or its direction (s)."""
     plan, state, series = run.plan, run.state, run.series
     c, along, hysteresis = series.c, series.tables.along, plan.hysteresis
-    relative(series.ends[a, 0], series.ends[a, 1], order, series, c)
-    i, scale, x = plan.links.z_of_link[a], 1.0, along.x[a]
+    head, tail, i, x = series.ends[a, 0], series.ends[a, 1], plan.links.z_of_link[a], along.x[a]
     if kind == REVERSAL:
+        set_distance(0.0, state.sigma[i], head, tail, order, series)
+        for k in range(order):
+            c[k] = (k + 1) * c[k + 1]
         c[0] = state.sigma[i] * along.x_rate[a]
-        for k in range(1, order):
-            c[k] = state.sigma[i] * (k + 1) * c[k + 1]
         return only_root(c, order, h)
     if kind == KINK:
-        scale = float(state.branch[a])
-        c[0] = scale * (x - plan.links.offset[a])
+        factor = float(state.branch[a])
+        start = factor * (x - plan.links.offset[a])
     else:
-        xi = place(i, x, hysteresis, state)
-        scale = -state.sigma[i] / hysteresis.scale[i]
-        c[0] = (hysteresis.down[i] if state.part[i] == DOWN else hysteresis.core[i]) - xi
+        xi, factor = place(i, x, hysteresis, state), -state.sigma[i] / hysteresis.scale[i]
+        start = (hysteresis.down[i] if state.part[i] == DOWN else hysteresis.core[i]) - xi
         if state.part[i] == CORE and place(i, along.next_x[a], hysteresis, state) < 0.0:
-            scale = -scale
-            c[0] = hysteresis.core[i] + xi
-    for k in range(1, order + 1):
-        c[k] *= scale
+            start, factor = hysteresis.core[i] + xi, -factor
+    set_distance(start, factor, head, tail, order, series)
     return only_root(c, order + 1, h)
 
 

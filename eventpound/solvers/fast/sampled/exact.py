@@ -14,7 +14,7 @@ summed to rounding, once for every set of tangents of the links that a run comes
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -99,27 +99,19 @@ class SampleTables(NamedTuple):
 def blank_tables(bodies: int, links: int) -> SampleTables:
     """Tables of nothing; without room where there are too many bodies."""
     n = bodies if bodies <= MOST_BODIES else 0
-    stiffness, damping, of_v, of_a, rate_of_v, rate_of_a = np.zeros((6, KEPT, n, n))
-    of_slope, rate_of_slope, turn = np.zeros((3, KEPT, n))
-    return SampleTables(
-        tangents=np.zeros((KEPT, links)),
-        step=np.zeros(KEPT),
-        latest=np.zeros(2, np.int64),
-        stiffness=stiffness,
-        damping=damping,
-        of_v=of_v,
-        of_a=of_a,
-        rate_of_v=rate_of_v,
-        rate_of_a=rate_of_a,
-        of_slope=of_slope,
-        rate_of_slope=rate_of_slope,
-        turn=turn,
-        most_turn=np.zeros(KEPT),
-        work=np.zeros((3, n)),
-        bodies=StepBodies(*np.zeros((len(StepBodies._fields), n))),
-        along=StepLinks(*np.zeros((len(StepLinks._fields), links))),
-        room=Room(*np.zeros((len(Room._fields), n, n))),
-    )
+    tables: list[Any] = [
+        np.zeros((KEPT, links)),
+        np.zeros(KEPT),
+        np.zeros(2, np.int64),
+        *np.zeros((6, KEPT, n, n)),
+        *np.zeros((3, KEPT, n)),
+        np.zeros(KEPT),
+        np.zeros((3, n)),
+        StepBodies(*np.zeros((len(StepBodies._fields), n))),
+        StepLinks(*np.zeros((len(StepLinks._fields), links))),
+        Room(*np.zeros((len(Room._fields), n, n))),
+    ]
+    return SampleTables(*tables)
 
 
 @compiled
