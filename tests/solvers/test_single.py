@@ -69,14 +69,8 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
         record.events,
         record.rows,
         Running(*record.extremes, places_in(model)),
-        plan.links.springs,
-        plan.output_times,
         plan.hysteresis.tables,
-        plan.links,
-        plan.contacts,
-        plan.ground,
-        plan.limits,
-        plan.oscillator,
+        plan,
         series.single,
     )
     enter(plan, state, run)
@@ -107,7 +101,7 @@ def test_duty(before: str, gap: float, gap_rate: float, duty: int, side: float) 
         assert body.rests_on == 0.0
     elif duty == modes.IMPACT:
         # Below the last speed of a cascade it is plastic, and the ground presses.
-        last = -gap_rate <= LAST_SPEED * body.own_speed
+        last = -gap_rate <= LAST_SPEED * run.plan.limits.length / run.plan.limits.time
         assert after == (0.0 if last else -RESTITUTION * gap_rate)
         assert kinds[0] == (ACCUMULATION if last else IMPACT)
         assert body.rests_on == (side if last else 0.0)
@@ -122,9 +116,9 @@ def test_duty(before: str, gap: float, gap_rate: float, duty: int, side: float) 
 @pytest.mark.parametrize("eps", [0.0, 0.35, 1.0])
 def test_impact_is_that_of_the_law(side: float, eps: float) -> None:
     run = at_barrier(side, True, -0.7)
-    run.contacts.restitution[:] = eps
+    run.plan.contacts.restitution[:] = eps
     settle(run, 0.0)
-    j = run.oscillator.right if side > 0.0 else run.oscillator.left
+    j = run.plan.oscillator.right if side > 0.0 else run.plan.oscillator.left
     rate, v = np.where(np.arange(2) == j, -0.7, 0.7), np.array([side * 0.7])
     ends = np.array([0, -1]), np.array([-1, 0])
     impulse, _, lost, solved = impact_law(

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from eventpound.mechanics.monitored import places_of, running_of
+from eventpound.mechanics.monitored import Running, places_of, running_of
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece
 from eventpound.numerics.lending import lend
@@ -16,7 +16,7 @@ from eventpound.solvers.fast.apart.between import A_HIGH, A_LOW, U_HIGH, U_LOW
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.extremes import flat_time, followers
 from eventpound.solvers.fast.links import turns_back
-from eventpound.solvers.fast.run import GOING_ON, Each, FastRun, Oscillator
+from eventpound.solvers.fast.run import GOING_ON, Each, FastRun
 from eventpound.solvers.fast.search import motion
 from eventpound.solvers.fast.single.body import (
     SingleBody,
@@ -58,13 +58,18 @@ a first step in a window, or after an impact; end the present step and take anot
 """
 
 
+@compiled
+def running_of_own(b: int, each: Each) -> Running:
+    """Extremes of the run of a body, without elongations and gaps."""
+    return running_of(each.extremes[b], places_of(1, 0, 0))
+
+
 @compiled_apart
 def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
     """Let a body do something at a time (s); whether its step, within the window, holds."""
     plan, each, h = run.plan, run.series.each, run.plan.links.grounded[b]
-    tables, times, piece = plan.hysteresis.tables, plan.output_times, window.piece
-    # Without output times, elongations and barriers: rows and what belongs to several bodies is
-    # taken elsewhere.
+    tables, piece, own = plan.hysteresis.tables, window.piece, running_of_own(b, each)
+    # Rows and what belongs to several bodies is taken elsewhere.
     one = lend(
         SingleRun(
             each.body[b],
@@ -72,12 +77,9 @@ def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
             each.progress[b],
             run.record.events,
             run.record.rows,
-            running_of(each.extremes[b], places_of(1, 0, 0)),
-            0,
-            times[times.size :],
+            own,
             tables[plan.hysteresis.at[h] if h >= 0 else 0 :],
             plan,
-            Oscillator(True, -1, -1),
             run.series.single,
         )
     )
@@ -203,7 +205,7 @@ def _set_box(b: int, tau: float, order: int, body: SingleBody, each: Each) -> No
 def take_own(b: int, run: FastRun) -> None:
     """Put the extremes of a body's own run among those of all."""
     each, extremes, running = run.series.each, run.record.extremes, run.running
-    own, at = running_of(each.extremes[b], places_of(1, 0, 0)), running.at
+    own, at = running_of_own(b, each), running.at
     i, i_own, near = at.displacement + b, own.at.displacement, flat_time(run.plan)
     for u, t in (
         (own.maximum[i_own], own.time_of_maximum[i_own]),

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.forcing import CurrentPiece, sample_time
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.apart.between import (
@@ -23,7 +22,7 @@ from eventpound.solvers.fast.apart.between import (
     STRAY,
     bounds_of_gap,
 )
-from eventpound.solvers.fast.apart.own import Window
+from eventpound.solvers.fast.apart.own import Window, running_of_own
 from eventpound.solvers.fast.apart.together import go_together
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import stays_within
@@ -125,7 +124,7 @@ def _choose(dt: float, whole: bool, window: Window, run: FastRun) -> bool:
 def _go_exactly(b: int, dt: float, ground: GroundLine, run: FastRun) -> bool:
     """An exact step of a body, if it holds."""
     each, mass, body = run.series.each, run.plan.mass[b], run.series.each.body[b]
-    outside, own = each.outside, running_of(each.extremes[b], places_of(1, 0, 0))
+    outside, own = each.outside, running_of_own(b, each)
     step = exact_step(body.u, body.v, body.a, ground, dt, body, own)
     if step.holds:
         body.change, body.rate, body.next_a = step.change, step.v, step.a

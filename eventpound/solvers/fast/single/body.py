@@ -157,8 +157,7 @@ class SingleBody(NamedNumbers, room=ROOM):
 class SingleRun(NamedTuple):
     """A run of a single body, lent (`eventpound.numerics.lending`): parts of a `FastRun`.
 
-    now, progress: those of `FastState`. springs: elongations among the extremes. times: of output.
-    table: of its backbone. oscillator: that of `FastPlan`, or one without barriers.
+    now, progress: those of `FastState`. table: of its backbone.
     """
 
     body: SingleBody
@@ -167,11 +166,8 @@ class SingleRun(NamedTuple):
     events: Floats
     rows: Floats
     running: Running
-    springs: int
-    times: Floats
     table: Floats
     plan: FastPlan
-    oscillator: Oscillator
     scratch: Single
 
 

@@ -155,7 +155,7 @@ def _extremes_inside(t: float, tau: float, f: Floats, run: SingleRun) -> None:
         spread = (spread + abs(f[k])) * tau
         d[k - 1] = k * f[k]
     side, mass, i = body.rests_on, body.mass, running.at.acceleration
-    touched = run.oscillator.right if side > 0.0 else run.oscillator.left
+    touched = run.plan.oscillator.right if side > 0.0 else run.plan.oscillator.left
     force = running.at.contact_force + touched
     g = body.a - side * f[0]
     low, high = mass * (f[0] - spread), mass * (f[0] + spread)
@@ -238,7 +238,8 @@ def swing_freely(stop: float, piece: CurrentPiece, run: SingleRun) -> int:
     if not (tau > 0.0 and fits(tau, 1, body)):
         return NOT_FREE
     t_end = stop if tau == left else t + tau
-    if is_due(t_end, run.times, run.progress):  # the record has room, which was looked for before
+    if is_due(t_end, run.plan.output_times, run.progress):
+        # The record has room, which was looked for before.
         sample_single(t, t_end, 0, piece, run)
     return arrive(tau, t_end, rate == 0.0, event, run)
 
@@ -367,7 +368,7 @@ def sample_steps(
         step = exact_step(u, v, a, ground, dt, body, run.running)
         if not step.holds:
             break
-        if is_due(ground.end, run.times, run.progress):
+        if is_due(ground.end, run.plan.output_times, run.progress):
             if segment > started:
                 _arrive(u, v, t, segment - started, dt, run)
                 started = segment

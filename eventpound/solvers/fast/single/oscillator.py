@@ -117,7 +117,7 @@ def settle_single(g: float, piece: CurrentPiece, run: SingleRun) -> None:
     """Do the duties of the present instant; `g` is the acceleration of the ground (m/s²)."""
     body = run.body
     side = side_closed(body)
-    j = run.oscillator.right if side > 0.0 else run.oscillator.left
+    j = run.plan.oscillator.right if side > 0.0 else run.plan.oscillator.left
     if side != 0.0:
         # The displacement agrees with a gap of zero.
         body.u = body.right_gap if side > 0.0 else -body.left_gap
@@ -185,11 +185,8 @@ def oscillate(
             record.events,
             record.rows,
             running_of(record.extremes, at),
-            plan.links.springs,
-            plan.output_times,
             plan.hysteresis.tables[start:],
             plan,
-            plan.oscillator,
             single,
         )
     )
@@ -201,7 +198,7 @@ def oscillate(
     last_step = progress.steps + budget
     code = GOING_ON
     while code == GOING_ON:
-        if not has_room_for(1, run.times.size, now, progress, run.events, run.rows):
+        if not has_room_for(1, run.plan.output_times.size, now, progress, run.events, run.rows):
             code = FULL
             break
         if progress.due == 1 or now.t >= run.plan.limits.end:

@@ -18,7 +18,7 @@ from eventpound.mechanics.monitored import (
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.extremes import stays_within, turning_times
+from eventpound.solvers.fast.extremes import followers, stays_within, turning_times
 from eventpound.solvers.fast.record import is_due, takes_rows
 from eventpound.solvers.fast.search import motion
 from eventpound.solvers.fast.single.body import (
@@ -49,7 +49,7 @@ def write_single_row(
     run : SingleRun
         The run, with the present gaps and contact forces.
     """
-    body, springs = run.body, run.springs
+    body, springs = run.body, run.plan.links.springs
     at = line_of(1, 1 if body.hysteretic else 0, springs, run.plan.contacts.gap.size)
     row, u = run.rows[run.progress.rows], body.u + change
     row[at.t], row[at.ground], row[at.u], row[at.v], row[at.a] = t, g, u, v, a
@@ -60,7 +60,7 @@ def write_single_row(
         row[at.force + s] = run.plan.links.extension[s] * (x - run.plan.links.offset[s])
         if run.plan.links.z_of_link[s] >= 0:
             row[at.force + s] += pull_per_z(s, run.plan.links.law.memory) * row[at.z]
-    right, left = run.oscillator.right, run.oscillator.left
+    right, left = run.plan.oscillator.right, run.plan.oscillator.left
     if right >= 0:
         row[at.gap + right] = body.right - change
         row[at.contact_force + right] = body.right_force
@@ -85,8 +85,8 @@ def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: 
     `order` is that of the step's series, 0 for a free swing and a rest.
     """
     body, progress, x = run.body, run.progress, run.body.x[:]
-    while is_due(t_end, run.times, progress):
-        now = run.times[progress.output]
+    while is_due(t_end, run.plan.output_times, progress):
+        now = run.plan.output_times[progress.output]
         if now >= t:
             if progress.rows + 4 > run.rows.shape[0]:
                 return False
@@ -116,31 +116,6 @@ def force_exceeds(low: float, high: float, mass: float, running: Running) -> boo
 
 
 @compiled
-def _take(i: int, value: float, t: float, settled: bool, run: SingleRun) -> None:
-    """Take the turning point of a place, or one just put on its constraint."""
-    running = run.running
-    if settled:
-        update_beyond(i, value, t, SETTLED * running.rounding[i], running)
-    else:
-        update_turning_point(i, value, t, run.body.flat_time, running)
-
-
-@compiled
-def _take_places(t: float, u: float, settled: bool, run: SingleRun) -> None:
-    """Take displacement, elongations and gaps at u (m) into the extremes."""
-    body, at, ends, o = run.body, run.running.at, run.plan.links.ends, run.oscillator
-    _take(at.displacement, u, t, settled, run)
-    for s in range(run.springs):
-        _take(at.elongation + s, u if ends[s, 1] >= 0 else -u, t, settled, run)
-    if o.right >= 0:
-        gap = body.right if settled else body.right_gap - u
-        _take(at.gap + o.right, gap, t, settled, run)
-    if o.left >= 0:
-        gap = body.left if settled else body.left_gap + u
-        _take(at.gap + o.left, gap, t, settled, run)
-
-
-@compiled
 def _take_forces(t: float, a: float, shear: float, run: SingleRun) -> None:
     """Take an acceleration (m/s²) and a base shear (N) into the extremes."""
     update_extreme(run.running.at.acceleration, a, t, run.running)
@@ -150,7 +125,11 @@ def _take_forces(t: float, a: float, shear: float, run: SingleRun) -> None:
 @compiled_apart
 def _take_turn(t: float, u: float, a: float, run: SingleRun) -> None:
     """Take a turning point, or the end of a stretch, at t (s) into the extremes."""
-    _take_places(t, u, False, run)
+    running, near = run.running, run.body.flat_time
+    update_turning_point(running.at.displacement, u, t, near, running)
+    # Elsewhere than in a scene of one body elongations and gaps are taken by others.
+    if running.at.acceleration > running.at.elongation:
+        followers(0, u, t, near, run.plan, running)
     _take_forces(t, a, -run.body.mass * a, run)
 
 
@@ -165,14 +144,27 @@ def take_if_new(t: float, u: float, a: float, run: SingleRun) -> None:
         _take_turn(t, u, a, run)
 
 
+@compiled
+def _take_place(i: int, value: float, t: float, running: Running) -> None:
+    """Take quantity i, just put on its constraint."""
+    update_beyond(i, value, t, SETTLED * running.rounding[i], running)
+
+
 @compiled_apart
 def take_settled(t: float, a: float, run: SingleRun) -> None:
     """Take a settled instant: places just put on their constraints, and what jumps in it.
 
     `a` is the absolute acceleration (m/s²): that of the ground where the body rests.
     """
-    body = run.body
-    _take_places(t, body.u, True, run)
+    body, running, at, o = run.body, run.running, run.running.at, run.plan.oscillator
+    _take_place(at.displacement, body.u, t, running)
+    for s in range(run.plan.links.springs):
+        x = body.u if run.plan.links.ends[s, 1] >= 0 else -body.u
+        _take_place(at.elongation + s, x, t, running)
+    if o.right >= 0:
+        _take_place(at.gap + o.right, body.right, t, running)
+    if o.left >= 0:
+        _take_place(at.gap + o.left, body.left, t, running)
     _take_forces(t, a, -body.mass * body.a, run)
     take_contact_forces(t, run)
 
@@ -180,7 +172,7 @@ def take_settled(t: float, a: float, run: SingleRun) -> None:
 @compiled
 def take_contact_forces(t: float, run: SingleRun) -> None:
     """Take the present contact forces into the extremes."""
-    i, o = run.running.at.contact_force, run.oscillator
+    i, o = run.running.at.contact_force, run.plan.oscillator
     if o.right >= 0:
         update_extreme(i + o.right, run.body.right_force, t, run.running)
     if o.left >= 0:

@@ -296,7 +296,8 @@ def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SingleRun) -
         return NO_STEP
     if body.damping > 0.0:
         damped_acceleration(t, tau, order, run)
-    if is_due(t_end, run.times, run.progress) and not sample_single(t, t_end, order, piece, run):
+    due = is_due(t_end, run.plan.output_times, run.progress)
+    if due and not sample_single(t, t_end, order, piece, run):
         return FULL
     return arrive(tau, t_end, turned, event, run)
 
