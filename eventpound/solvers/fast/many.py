@@ -210,7 +210,7 @@ def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kep
         while ended == GOING_ON:
             ended = carry_on(budget, one)
         kept.ended[i] = ended
-        _keep(i, plan, state, series, record, scratch.since, kept)
+        _keep(i, plan, state, scratch, kept)
     return int(kept.ended.size)
 
 
@@ -219,7 +219,7 @@ def run_single_rows(
     budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kept: Kept
 ) -> int:
     """Run every row of a single body, as `run_rows`; no lines of a history are written."""
-    series, single = scratch.series, scratch.series.single
+    single = scratch.series.single
     for i in range(begun, kept.ended.size):
         if _is_full(scratch.events, kept):
             return i
@@ -233,37 +233,23 @@ def run_single_rows(
         while ended == GOING_ON:
             ended = oscillate(budget, plan, state, single, record)
         kept.ended[i] = ended
-        _keep(i, plan, state, series, record, scratch.since, kept)
+        _keep(i, plan, state, scratch, kept)
     return int(kept.ended.size)
 
 
 @compiled
-def _keep(
-    i: int,
-    plan: FastPlan,
-    state: FastState,
-    series: FastSeries,
-    record: FastRecord,
-    since: Floats,
-    kept: Kept,
-) -> None:
+def _keep(i: int, plan: FastPlan, state: FastState, scratch: Scratch, kept: Kept) -> None:
     """Keep what is wanted of run i."""
-    now = state.now[0]
+    now, series, events = state.now[0], scratch.series, scratch.events
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     all_variables(series.x, plan.hysteresis, state, kept.z[i])
-    _count_events(
-        now.t,
-        now.events,
-        record.events,
-        since,
-        kept.impacts[i],
-        kept.resting_time[i],
-    )
-    for j in range(record.unique.size):
-        kept.unique[i, j] = record.unique[j]
+    impacts, resting_time = kept.impacts[i], kept.resting_time[i]
+    _count_events(now.t, now.events, events, scratch.since, impacts, resting_time)
+    for j in range(scratch.unique.size):
+        kept.unique[i, j] = scratch.unique[j]
     if kept.log.shape[0] > 0:
         for row in range(now.events):
-            place, event = kept.log[kept.logged[0]], record.events[row]
+            place, event = kept.log[kept.logged[0]], events[row]
             place[0] = i
             for k in range(event.size):
                 place[1 + k] = event[k]
