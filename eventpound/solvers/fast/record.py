@@ -64,9 +64,15 @@ def has_room(run: FastRun) -> bool:
 
 
 @compiled
+def next_output(times: Floats, progress: FastProgress) -> float:
+    """Time of the next row of the history (s), inf where there is none."""
+    return times[progress.output] if progress.output < times.size else np.inf
+
+
+@compiled
 def is_due(t: float, times: Floats, progress: FastProgress) -> bool:
-    """Whether a row of the history at one of the output times is due before t (s)."""
-    return bool(progress.output < times.size and times[progress.output] < t)
+    """Whether a row of the history is due before t (s)."""
+    return next_output(times, progress) < t
 
 
 @compiled

@@ -22,7 +22,7 @@ from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import stays_within
-from eventpound.solvers.fast.links import CORE, DOWN, UP, elongation, gap_of, place
+from eventpound.solvers.fast.links import CORE, DOWN, UP, gap_of, place
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.solvers.fast.search import bound_of_pair
@@ -169,36 +169,43 @@ def _covered(k: int, now: float, then: float, spread: float, running: Running) -
 
 
 @compiled
-def places_unseen(h: float, run: FastRun) -> bool:
+def places_unseen(h: float, tables: SampleTables, run: FastRun) -> bool:
     """Whether displacements, elongations and gaps cannot exceed their extremes inside the step.
 
     What is joined to the ground turns with its body.
     """
-    links, contacts, at = run.plan.links, run.plan.contacts, run.running.at
-    for b in range(run.state.u.size):
-        if not _unseen(at.displacement + b, 0.0, -1, b, h, run):
+    plan, state, running = run.plan, run.state, run.running
+    bodies, along, links, at = tables.bodies, tables.along, plan.links, running.at
+    for b in range(state.u.size):
+        v, v_1 = state.v[b], bodies.next_v[b]
+        if not _covered(
+            at.displacement + b, state.u[b], bodies.next_u[b], bodies.sag[b], running
+        ) and not pair_goes_one_way(h, -1, b, v, v_1, plan, tables):
             return False
     for a in range(links.springs):
         first, second = links.ends[a, 0], links.ends[a, 1]
-        if min(first, second) >= 0 and not _unseen(at.elongation + a, 0.0, first, second, h, run):
+        if first < 0 or second < 0:
+            continue
+        sag = bound_of_pair(first, second, tables.bodies.sag)
+        if not _covered(
+            at.elongation + a, along.x[a], along.next_x[a], sag, running
+        ) and not pair_goes_one_way(
+            h, first, second, along.x_rate[a], along.next_x_rate[a], plan, tables
+        ):
             return False
+    contacts = plan.contacts
     for j in range(contacts.gap.size):
-        left, right, gap = contacts.left[j], contacts.right[j], contacts.gap[j]
-        if min(left, right) >= 0 and not _unseen(at.gap + j, gap, left, right, h, run):
+        left, right = contacts.left[j], contacts.right[j]
+        if left < 0 or right < 0:
+            continue
+        sag = bound_of_pair(left, right, tables.bodies.sag)
+        gap, rate = gap_of(j, contacts, state.u, state.v)
+        gap_1, rate_1 = gap_of(j, contacts, bodies.next_u, bodies.next_v)
+        if _covered(at.gap + j, gap, gap_1, sag, running):
+            continue
+        if not pair_goes_one_way(h, left, right, rate, rate_1, plan, tables):
             return False
     return True
-
-
-@compiled
-def _unseen(i: int, offset: float, first: int, second: int, h: float, run: FastRun) -> bool:
-    """The same of quantity i, the distance of two bodies and an offset (m)."""
-    state, tables = run.state, run.series.tables
-    x, rate = elongation(first, second, state.u, state.v)
-    x_1, rate_1 = elongation(first, second, tables.bodies.next_u, tables.bodies.next_v)
-    sag = bound_of_pair(first, second, tables.bodies.sag)
-    return _covered(i, offset + x, offset + x_1, sag, run.running) or pair_goes_one_way(
-        h, first, second, rate, rate_1, run.plan, tables
-    )
 
 
 @compiled

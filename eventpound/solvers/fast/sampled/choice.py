@@ -242,7 +242,7 @@ def _is_clear(step: ProposedStep, line: GroundLine, run: FastRun) -> bool:
     accelerations(n, step.table, tables.along.next_x, u, v, a, run)
     if not defect_error(h, order, line.g + line.slope * h, a, series) <= 1.0:
         return False
-    unseen, covered = places_unseen(h, run), forces_covered(n, plan.mass, tables, running)
+    unseen, covered = places_unseen(h, tables, run), forces_covered(n, plan.mass, tables, running)
     if not (unseen and covered):
         series.ground[:order] = 0.0
         series.ground[0], series.ground[1] = line.g, line.slope

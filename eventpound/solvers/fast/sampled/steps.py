@@ -15,7 +15,7 @@ from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.extremes import take_all
 from eventpound.solvers.fast.links import elongations, gap_of, saturate
-from eventpound.solvers.fast.record import end_if_over, is_due, pass_time, sample_step
+from eventpound.solvers.fast.record import end_if_over, is_due, next_output, pass_time, sample_step
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.bounds import CLOSING, NOTHING, forces_covered
 from eventpound.solvers.fast.sampled.choice import (
@@ -49,6 +49,7 @@ def stretch(
     tables, bodies, u, v = series.tables, series.tables.bodies, state.u, state.v
     set_room(tables, run)
     dt, t, taken, counted = tables.step[i], state.now[0].t, 0, 0
+    output = next_output(plan.output_times, state.progress[0])
     while taken < budget:
         line = line_at(segment + taken, piece, t)
         if not line.end < until:
@@ -61,10 +62,11 @@ def stretch(
         linear_accelerations(n, i, bodies.next_u, bodies.next_v, tables, bodies.next_acceleration)
         if not forces_covered(n, plan.mass, tables, running):
             break
-        if is_due(line.end, plan.output_times, state.progress[0]):
+        if output < line.end:
             _arrive(t, taken - counted, dt, run)
             counted = taken
             write_line(i, line.slope, line.end, piece, run)
+            output = next_output(plan.output_times, state.progress[0])
         for b in range(n):
             u[b], v[b] = bodies.next_u[b], bodies.next_v[b]
             bodies.acceleration[b] = bodies.next_acceleration[b]

@@ -358,29 +358,35 @@ def sample_steps(
     the motion does not depend on them. The sample where the body is then is returned.
     """
     body, dt = run.body, piece.coefficients[1]
+    if UNLOADING < body.part < SATURATED:
+        return segment
     set_line(dt, body)
     u, v, a, t, until = body.u, body.v, body.a, run.now.t, piece_end - SAME_SAMPLE * dt
-    first, started = segment, segment
-    while segment - first < budget:
-        ground = line_at(segment, piece, t)
-        if not ground.end < until:
-            break
-        step = exact_step(u, v, a, ground, dt, body, run.running)
-        if not step.holds:
-            break
-        if is_due(ground.end, run.plan.output_times, run.progress):
-            if segment > started:
-                _arrive(u, v, t, segment - started, dt, run)
-                started = segment
+    first, started, due = segment, segment, True
+    while due:
+        due = False
+        # This loop writes nothing, so what it needs to know stays where it is.
+        while segment - first < budget:
+            ground = line_at(segment, piece, t)
+            if not ground.end < until:
+                break
+            step = exact_step(u, v, a, ground, dt, body, run.running)
+            due = step.holds and is_due(ground.end, run.plan.output_times, run.progress)
+            if due or not step.holds:
+                break
+            u, v, a, t = u + step.change, step.v, step.a, ground.end
+            segment += 1
+        if segment > started:
+            _arrive(u, v, t, segment - started, dt, run)
+            started = segment
+        if due:
             # The body's own ground is not known any more.
             body.odd, body.segment = ground.slope, -1
             order = show_line(v, a - ground.g, dt, body)
-            if not sample_single(t, ground.end, order, piece, run):
-                break
-        u, v, a, t = u + step.change, step.v, step.a, ground.end
-        segment += 1
-    if segment > started:
-        _arrive(u, v, t, segment - started, dt, run)
+            due = sample_single(t, ground.end, order, piece, run)
+        if due:
+            u, v, a, t = u + step.change, step.v, step.a, ground.end
+            segment += 1
     if segment > first:
         body.z, body.a = spring_state(u, run), a
     return segment
