@@ -41,6 +41,10 @@ PARTS = 4
 """Equal parts of a step between whose ends turning points are looked for first."""
 MOST_ITERATIONS = 100
 """Iterations after which a bracket of a root is taken as it is."""
+NEWTON = 12
+"""Of these by Newton's rule; then the bracket is halved. Where rounding keeps a quantity from
+changing, as the force on a stiff body that rests on one far from its origin, Newton's steps
+creep along and leave one end of the bracket where it was."""
 _GAP, _FORCE, _KINK, _MONITORED = 0, 1, 2, 3
 
 
@@ -119,7 +123,7 @@ def first_below(sought: Sought, end: float, step: DenseStep) -> float:
         clear = not below and (short or min(c) > 0.05 * (max(c) - min(c)) - noise)
         if not (clear or below) and a.rate < 0.0 < b.rate:
             bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
-            tau = root_in(bracket, 2.0 * EPS * b.tau, _rate_at, (sought, step))
+            tau = turning_point(_rate_at, (sought, step), bracket, 2.0 * EPS * b.tau)
             lowest = _sample(tau, sought, step)
             if lowest.value < -noise:
                 return _falling_root(a, lowest, sought, step)
@@ -134,13 +138,28 @@ def first_below(sought: Sought, end: float, step: DenseStep) -> float:
 
 @kernel
 def _falling_root(a: Sample, b: Sample, sought: Sought, step: DenseStep) -> float:
-    """Root between a (not below) and b (below)."""
-    bracket = Bracket(a.tau, a.value, b.tau, b.value)
-    return root_in(bracket, 2.0 * EPS * abs(b.tau), _value_at, (sought, step))
+    """Root between a (not below) and b (below): Newton's iteration kept inside the bracket."""
+    low, high = a.tau, b.tau
+    tau = high if b.rate == 0.0 else high - b.value / b.rate
+    for i in range(MOST_ITERATIONS):
+        if not low < tau < high or i > NEWTON:
+            tau = 0.5 * (low + high)
+        if tau <= low or tau >= high:
+            return high
+        s = _sample(tau, sought, step)
+        if s.value < 0.0:
+            high = tau
+        else:
+            low = tau
+        new = tau - s.value / s.rate if s.rate != 0.0 else 0.5 * (low + high)
+        if s.value == 0.0 or abs(new - tau) <= 2.0 * EPS * abs(tau):
+            return tau
+        tau = new
+    return high
 
 
 class Bracket(NamedTuple):
-    """Two times (s) between which a quantity changes its sign, and what it is at both."""
+    """Two times (s) between which a rate changes its sign, and the rate at both."""
 
     a: float
     at_a: float
@@ -158,9 +177,9 @@ def _next_inside(bracket: Bracket) -> float:
 
 @scalar_kernel
 def _narrowed(bracket: Bracket, x: float, at_x: float) -> Bracket:
-    """The bracket with the quantity known inside it, by Anderson and Björck's rule.
+    """The bracket with a rate known inside it, by Anderson and Björck's rule.
 
-    The end that stays has its value scaled down, so that the next chord comes from its side
+    The end that stays has its rate scaled down, so that the next chord comes from its side
     (BIT 13, 1973, p. 253-264): of order 1.7, and never outside.
     """
     a, at_a, b, at_b = bracket
@@ -171,25 +190,20 @@ def _narrowed(bracket: Bracket, x: float, at_x: float) -> Bracket:
 
 
 @kernel
-def root_in(
-    bracket: Bracket, tolerance: float, value_at: Callable[[float, Any], float], of: Any
+def turning_point(
+    rate_at: Callable[[float, Any], float], of: Any, bracket: Bracket, tolerance: float
 ) -> float:
-    """Time inside a bracket at which a quantity vanishes, to a tolerance (s).
+    """Time inside a bracket at which a rate vanishes, to a tolerance (s).
 
-    `value_at` tells it at a time (s), and is handed `of`, too.
+    `rate_at` tells it at a time (s), from what it is the rate `of`.
     """
     for _ in range(MOST_ITERATIONS):
         x = _next_inside(bracket)
-        value = value_at(x, of)
-        if value == 0.0 or abs(x - bracket.b) <= tolerance:
+        rate = rate_at(x, of)
+        if rate == 0.0 or abs(x - bracket.b) <= tolerance:
             return x
-        bracket = _narrowed(bracket, x, value)
+        bracket = _narrowed(bracket, x, rate)
     return bracket.b
-
-
-@kernel
-def _value_at(tau: float, of: tuple[Sought, DenseStep]) -> float:
-    return _sample(tau, of[0], of[1]).value
 
 
 @kernel
@@ -386,6 +400,6 @@ def _take_turn(
     """Take the turning point between two samples, if any, into the extremes."""
     if a.rate * b.rate < 0.0:
         bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
-        tau = root_in(bracket, 4.0 * EPS * step.dense.end, _rate_at, (sought, step))
+        tau = turning_point(_rate_at, (sought, step), bracket, 4.0 * EPS * step.dense.end)
         value = _sample(tau, sought, step).value
         update_turning_point(sought.index, value, step.forcing.start + tau, near, running)

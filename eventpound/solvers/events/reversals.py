@@ -21,7 +21,7 @@ from eventpound.mechanics.reduced import Reduced, link_motion
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.dense import Dense
-from eventpound.solvers.events.location import PARTS, Bracket, root_in
+from eventpound.solvers.events.location import PARTS, Bracket, turning_point
 from eventpound.tolerances import EPS, HELD_BELOW, REVERSAL_WITHIN
 
 NEGLIGIBLE = 0.01
@@ -164,7 +164,7 @@ def _reversal(a: int, way: float, dense: Dense, origin: float, system: Reduced) 
     if at_high >= 0.0:
         return np.inf
     bracket = Bracket(low, at_low, high, at_high)
-    return root_in(bracket, _instant(dense), _ahead, (way, a, dense, origin, system))
+    return turning_point(_ahead, (way, a, dense, origin, system), bracket, _instant(dense))
 
 
 @kernel
