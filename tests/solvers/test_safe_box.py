@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.solvers.fast.links import DOWN, UP, set_curve
+from eventpound.solvers.fast.links import DOWN, UP, elongations, set_curve
 from eventpound.solvers.fast.sampled.bounds import (
     NOTHING,
     keeps_parts,
@@ -13,7 +13,7 @@ from eventpound.solvers.fast.sampled.bounds import (
     stays_open,
 )
 from eventpound.solvers.fast.sampled.exact import propose_by_matrices
-from eventpound.solvers.fast.sampled.forces import begin, stretch_links
+from eventpound.solvers.fast.sampled.forces import begin
 from eventpound.solvers.fast.sampled.room import set_room, stays_in_room
 from tests.solvers.stepping import Stepper, stepper_of
 from tests.solvers.test_sample_steps import STEP, bridge
@@ -59,7 +59,8 @@ def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
         if not stays_in_room(2, STEP, state, tables):
             continue
         inside += 1
-        stretch_links(plan.links.ends, tables)
+        along, ends = tables.along, plan.links.ends
+        elongations(ends, bodies.next_u, bodies.next_v, along.next_x, along.next_x_rate)
         assert stays_open(STEP, NOTHING, -1, plan, state, tables)
         assert keeps_parts(STEP, NOTHING, -1, plan, state, tables)
         assert places_unseen(STEP, tables, at.run)
