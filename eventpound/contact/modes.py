@@ -65,16 +65,6 @@ def ends_of_stick(slip: float) -> tuple[float, float]:
 
 
 @scalar_kernel
-def depth_of(value: float, noise: float) -> float:
-    """How far below zero a contact force, gap or room of a link on its branch has vanished.
-
-    By its `noise`. What is below zero already, although an instant has kept it as it is, is so by
-    rounding and must fall by so much further: else the same instant would come again for ever.
-    """
-    return noise - min(value, 0.0)
-
-
-@scalar_kernel
 def force_vanishes(force: float, rate: float, level: float, time: float) -> bool:
     """Whether a contact force (N) vanishes in the instant in which another does.
 

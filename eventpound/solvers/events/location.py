@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.contact.kinks import passes_kink
-from eventpound.contact.modes import depth_of, force_vanishes
+from eventpound.contact.modes import force_vanishes
 from eventpound.mechanics.monitored import Running, motion_of, update_turning_point
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools
@@ -251,9 +251,7 @@ def first_event(
                 noise = noise_on_branch(i, watched, rules.length, rules.time)
             sought = Sought(kind, i, noise, 0.0)
             if (kind == _FORCE and released[i]) or (kind == _KINK and kinked[i]):
-                value = _sample(step.dense.start, sought, step).value
-                if value < 0.0:
-                    sought = Sought(kind, i, 0.0, -depth_of(value, noise))
+                sought = Sought(kind, i, noise, _level_of_kept(sought, step))
             tau = first_below(sought, first, step)
             if tau == np.inf:
                 continue
@@ -271,6 +269,17 @@ def first_event(
     look(first, step)
     add_vanished(step.seen, watched, rules, happened)
     return first
+
+
+@kernel
+def _level_of_kept(sought: Sought, step: DenseStep) -> float:
+    """What counts as zero of a force or room that has just passed zero and is as it was before.
+
+    Where an instant decides nothing, or decides otherwise, what is below zero is so by rounding:
+    it must fall further, or the same instant would come again for ever.
+    """
+    value = _sample(step.dense.start, sought, step).value
+    return value - sought.noise if value < 0.0 else 0.0
 
 
 @scalar_kernel

@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.modes import depth_of
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python, scalar_kernel
@@ -74,7 +73,7 @@ def values_and_rates(seen: Observed, watched: Watched, pairs: Floats) -> None:
 def lift(pairs: Floats, noise: Floats, lifted: Floats) -> None:
     """What every value is to be lifted by, (n,), from what it is at a start and its noise."""
     for i in range(lifted.size):
-        lifted[i] = depth_of(pairs[i, 0], noise[i])
+        lifted[i] = max(noise[i], noise[i] - pairs[i, 0])
 
 
 @scalar_kernel

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.modes import depth_of
 from eventpound.contact.rest import acceleration_noise, is_none
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
@@ -181,10 +180,14 @@ def first_fall(
 
 @compiled_apart
 def fall_beyond(c: Floats, size: int, limit: float, level: float, work: Floats) -> float:
-    """When a polynomial has fallen past zero by more than rounding, `level`, or inf."""
+    """When a polynomial has fallen past zero by more than rounding, or inf.
+
+    It has twice `level` below zero: what has been found at zero, or is nothing at all, may
+    be there by rounding.
+    """
     start = c[0]
-    c[0] = start + depth_of(start, level)
-    tau = first_root(c, size, limit, work)
+    c[0] = start + 2.0 * level
+    tau = first_root(c, size, limit, work) if c[0] > 0.0 else 0.0
     c[0] = start
     return tau
 
@@ -200,7 +203,7 @@ def release_time(
     rounding can let the force fall at once.
     """
     release = first_fall(c, size, limit, level, 0.0, work)
-    if release < np.inf and c[0] >= 0.0:
+    if release < np.inf:
         beyond = fall_beyond(c, size, h, level, work)
         if beyond == np.inf or (kept and release == 0.0):
             return beyond
