@@ -101,7 +101,7 @@ def work_precision_figure(comparison: Comparison) -> Figure:
         With at least one timed run. Histories of other programs have no time and
         are drawn as horizontal lines.
     """
-    looks = _looks(comparison)
+    looks = _looks([comparison])
     figure = new_figure(8.6, 4.2, comparison.case.title)
     panels = figure.subplots(1, 2, sharex=True)
     measures = peak_measure(comparison), graph_measure(comparison)
@@ -109,7 +109,7 @@ def work_precision_figure(comparison: Comparison) -> Figure:
         _draw(axes, comparison, measure, looks)
         for axes, measure in zip(panels, measures, strict=True)
     ]
-    handles = _legend(comparison, looks)
+    handles = _legend([comparison], looks)
     # Rows of equal length, of four entries at most.
     columns = math.ceil(len(handles) / math.ceil(len(handles) / 4))
     figure.legend(handles=handles, loc="outside lower center", ncols=columns)
@@ -124,9 +124,10 @@ def work_precision_png(comparison: Comparison) -> bytes:
     return png(work_precision_figure(comparison))
 
 
-def _looks(comparison: Comparison) -> _Looks:
+def _looks(comparisons: Sequence[Comparison]) -> _Looks:
     """A colour and a marker for each line, by its label."""
-    labels = dict.fromkeys(run.label for run in comparison.runs if run.errors is not None)
+    runs = [run for comparison in comparisons for run in comparison.runs]
+    labels = dict.fromkeys(run.label for run in runs if run.errors is not None)
     return dict(zip(labels, zip(colors(len(labels)), cycle(_MARKERS), strict=False), strict=True))
 
 
@@ -202,21 +203,21 @@ def _name_ends(axes: Axes, ends: Sequence[_End]) -> None:
             other.remove()
 
 
-def _legend(comparison: Comparison, looks: _Looks) -> list[Artist]:
+def _legend(comparisons: Sequence[Comparison], looks: _Looks) -> list[Artist]:
     """Entries for lines, and for what is drawn beside them."""
     handles: list[Artist] = []
-    drawn = {run.label for run in timed(comparison)}
+    drawn = {run.label for comparison in comparisons for run in timed(comparison)}
     for label, (color, marker) in looks.items():
         points: Any = {"marker": marker, "markersize": _SIZE}
         points = points if label in drawn else {"linestyle": _DASHES}
         handles.append(Line2D([], [], label=label, **points | {"color": color}))
     grey: Any = {"color": _GREY, "marker": "o"}
-    if any(run.wrong for run in comparison.runs):
+    if any(run.wrong for comparison in comparisons for run in comparison.runs):
         wrong: Any = {"markerfacecolor": "white", "markersize": _SIZE, "linestyle": "none"}
         handles.append(Line2D([], [], label="impacts missed or extra", **grey, **wrong))
-    if comparison.laws is not None:
+    if any(comparison.laws is not None for comparison in comparisons):
         handles.append(Line2D([], [], label="against the rigid law", **grey, **_RIGID))
         handles.append(Line2D([], [], color=_GREY, label="contact laws alone", **_LAWS))
-    if graph_measure(comparison).floor > 0.0:
+    if any(graph_measure(comparison).floor > 0.0 for comparison in comparisons):
         handles.append(Patch(label="closer than the reference is known", **_SHADE))
     return handles

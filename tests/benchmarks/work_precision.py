@@ -171,8 +171,7 @@ def panels(comparisons: list[Comparison]) -> Figure:
     """Graph distance against wall time, a panel a comparison."""
     from matplotlib.figure import Figure
 
-    every = replace(comparisons[0], runs=tuple(run for each in comparisons for run in each.runs))
-    looks = diagram._looks(every)
+    looks = diagram._looks(comparisons)
     with styled():
         size = (PANEL[0] * len(comparisons), PANEL[1] + 0.6)
         figure = Figure(figsize=size, layout="constrained")
