@@ -12,12 +12,8 @@ import threading
 from types import FrameType, TracebackType
 from typing import Any, Self
 
-_ENDING = (
-    signal.SIGINT,
-    signal.SIGTERM,
-    # Windows has none.
-    *(getattr(signal, name) for name in ("SIGALRM",) if hasattr(signal, name)),
-)
+_ENDING = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGALRM", signal.SIGTERM)}
+"""Windows has no SIGALRM."""
 
 
 class Deferred:
