@@ -13,7 +13,7 @@ import numpy as np
 
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Observed
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.tolerances import ATTAINED_ANEW, SETTLED
@@ -53,6 +53,20 @@ def places_of(bodies: int, springs: int, contacts: int) -> Places:
 def places_in(model: Model) -> Places:
     """Columns of the extremes of an assembled scene."""
     return in_python(places_of)(model.bodies, model.springs, model.contacts)
+
+
+def distances_of(model: Model) -> Ints:
+    """Of the first D monitored quantities, between whom they are distances: ends (D, 2).
+
+    They are displacements, elongations and gaps; -1 is the ground.
+    """
+    at = places_in(model)
+    elongation, gap, end = (place - at.displacement for place in at[1:4])
+    ends = np.empty((end, 2), np.int64)
+    ends[:elongation, 0], ends[:elongation, 1] = -1, np.arange(model.bodies)
+    ends[elongation:gap] = model.link_ends[: model.springs]
+    ends[gap:, 0], ends[gap:, 1] = model.left, model.right
+    return ends
 
 
 def columns_of_kind(kind: str, at: Places) -> slice:
@@ -187,24 +201,20 @@ def update_extreme(i: int, value: float, t: float, running: Running) -> None:
 
 
 @scalar_kernel
-def update_all(first: int, values: Floats, t: float, part: float, running: Running) -> None:
-    """Take values of the quantities from `first` on that exceed a part of their rounding."""
+def update_all(first: int, values: Floats, t: float, running: Running) -> None:
+    """Take values of the quantities from `first` on into the extremes."""
     for k in range(values.size):
-        i = first + k
-        update_beyond(i, values[k], t, part * running.rounding[i], running)
+        update_extreme(first + k, values[k], t, running)
 
 
 @scalar_kernel
-def update_settled(u: Floats, elongation: Floats, gap: Floats, t: float, running: Running) -> None:
-    """Take the displacements of a settled instant into the extremes.
+def update_settled(i: int, value: float, t: float, running: Running) -> None:
+    """Take a distance at a settled instant into the extremes.
 
     Bodies in touch have just been put exactly on their constraints, so a place
     that a cascade only approached is attained here, by however little.
     """
-    at = running.at
-    update_all(at.displacement, u, t, SETTLED, running)
-    update_all(at.elongation, elongation[: at.gap - at.elongation], t, SETTLED, running)
-    update_all(at.gap, gap, t, SETTLED, running)
+    update_beyond(i, value, t, SETTLED * running.rounding[i], running)
 
 
 @scalar_kernel

@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.kinks import pass_kinks
-from eventpound.mechanics.monitored import copy_extremes, update_extremes, update_settled
+from eventpound.mechanics.monitored import (
+    copy_extremes,
+    update_extremes,
+    update_settled,
+    value_of,
+)
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,
@@ -132,7 +137,9 @@ def put_present(run: Run, settled: bool) -> None:
     record, t = run.record, run.state.now[0].t
     seen = run.looks[0]
     if settled:
-        update_settled(seen.u, seen.elongation[0], seen.gap[0], t, record.running)
+        at = record.running.at
+        for i in range(at.displacement, at.acceleration):
+            update_settled(i, value_of(i, at, seen), t, record.running)
     put_instant(t, seen, record)
 
 

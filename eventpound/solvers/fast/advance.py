@@ -19,10 +19,9 @@ from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.apart.steps import go_apart, may_go_apart
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.evaluate import look_apart
-from eventpound.solvers.fast.extremes import take_instant
+from eventpound.solvers.fast.extremes import distance_now, take_instant
 from eventpound.solvers.fast.followed import follows, put_on_branches
 from eventpound.solvers.fast.instant import instant_of, settle, start
-from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.record import has_room, hold, write_row
 from eventpound.solvers.fast.run import GOING_ON, IN_PYTHON, SETTLED, FastRun, piece_of
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
@@ -166,7 +165,8 @@ def _settle_instant(run: FastRun) -> int:
         run.happened.released[:] = False
     look_apart(0.0, order, g, run)
     write_row(t, run)
-    elongations(plan.links.ends, seen.u, seen.v, series.x, series.x_rate)
-    update_settled(seen.u, series.x, seen.gap, t, run.running)
+    for k in range(plan.distances.shape[0]):
+        there = distance_now(k, seen.u, seen.gap, plan)
+        update_settled(run.running.at.displacement + k, there, t, run.running)
     take_instant(t, run)
     return DONE

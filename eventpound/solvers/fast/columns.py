@@ -17,7 +17,7 @@ import numpy as np
 from eventpound.mechanics.backbone import hysteresis_of
 from eventpound.mechanics.link_law import LinkLaw, z_bound
 from eventpound.mechanics.model import Model, assemble
-from eventpound.mechanics.monitored import blank_extremes, places_in
+from eventpound.mechanics.monitored import blank_extremes, distances_of, places_in
 from eventpound.mechanics.numbers import numbers_of, put_numbers, with_numbers
 from eventpound.motion.base import GroundMotion, Scales
 from eventpound.motion.record import Record
@@ -149,6 +149,7 @@ def rows_of(variants: Variants, low: int, high: int) -> VariantArrays:
         limits,
         np.empty(0),
         oscillators_of(model, numbers["gap"], scales.length, links, energy=False),
+        distances_of(model),
     )
     state = zero_state(model.counts, runs=(high - low,))
     begin_state(plan, numbers["u0"], numbers["v0"], numbers["z0"], task.start, state)

@@ -13,7 +13,7 @@ from eventpound.mechanics.backbone import hysteresis_of
 from eventpound.mechanics.elements import CURVE_PLACES
 from eventpound.mechanics.link_law import YIELD, yielding
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model
-from eventpound.mechanics.monitored import places_of
+from eventpound.mechanics.monitored import distances_of, places_of
 from eventpound.motion.base import Family, Piece
 from eventpound.motion.parametric import Parametric
 from eventpound.motion.record import Record
@@ -169,6 +169,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_ane
         # Those of a task may be written to.
         output_times=np.array(task.output_times, np.float64),
         oscillator=oscillator_of(model, scales.length, links, energy=task.energy),
+        distances=keep(("distances",), lambda: distances_of(model)),
     )
 
 

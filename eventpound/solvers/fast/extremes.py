@@ -13,11 +13,12 @@ from eventpound.mechanics.monitored import (
     update_extreme,
     update_turning_point,
 )
-from eventpound.numerics.arrays import Floats
+from eventpound.mechanics.observables import difference
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.polynomial import first_root, only_root, value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import look_apart
-from eventpound.solvers.fast.links import CORE, elongations
+from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries
 from eventpound.solvers.fast.search import (
     bound_of_pair,
@@ -32,23 +33,42 @@ from eventpound.tolerances import FLAT_WITHIN
 @compiled
 def take_instant(t: float, run: FastRun) -> None:
     """Take everything known at one time (s) into the extremes."""
-    series, seen, running = run.series, run.seen, run.running
-    elongations(run.plan.links.ends, seen.u, seen.v, series.x, series.x_rate)
-    take_all(seen.u, seen.a, series.x, seen.gap, seen.base[1], t, running)
-    update_all(running.at.contact_force, seen.contact_force, t, 1.0, running)
+    seen, running = run.seen, run.running
+    take_all(seen.u, seen.a, seen.gap, seen.base[1], t, run)
+    update_all(running.at.contact_force, seen.contact_force, t, running)
 
 
 @compiled
-def take_all(
-    u: Floats, a: Floats, x: Floats, gap: Floats, shear: float, t: float, running: Running
-) -> None:
-    """Take displacements, accelerations, elongations, gaps and the base shear into the extremes."""
-    at = running.at
-    update_all(at.displacement, u, t, 1.0, running)
-    update_all(at.acceleration, a, t, 1.0, running)
-    update_all(at.elongation, x[: at.gap - at.elongation], t, 1.0, running)
-    update_all(at.gap, gap, t, 1.0, running)
+def take_all(u: Floats, a: Floats, gap: Floats, shear: float, t: float, run: FastRun) -> None:
+    """Take distances, accelerations and the base shear into the extremes."""
+    running, at = run.running, run.running.at
+    for k in range(run.plan.distances.shape[0]):
+        update_extreme(at.displacement + k, distance_now(k, u, gap, run.plan), t, running)
+    update_all(at.acceleration, a, t, running)
     update_extreme(at.base_shear, shear, t, running)
+
+
+@compiled
+def start_of(k: int, plan: FastPlan) -> float:
+    """Distance k at no displacement (m)."""
+    gaps = plan.distances.shape[0] - plan.contacts.gap.size
+    return plan.contacts.gap[k - gaps] if k >= gaps else 0.0
+
+
+@compiled
+def distance_now(k: int, u: Floats, gap: Floats, plan: FastPlan) -> float:
+    """Distance k by the displacements (m); gaps are variables of their own."""
+    gaps = plan.distances.shape[0] - gap.size
+    if k >= gaps:
+        return float(gap[k - gaps])
+    return difference(u, plan.distances[k, 0], plan.distances[k, 1])
+
+
+@compiled
+def leader_of(k: int, distances: Ints) -> int:
+    """Distance with which distance k turns: of its body from the ground, or itself."""
+    first, second = distances[k, 0], distances[k, 1]
+    return k if min(first, second) >= 0 else max(first, second)
 
 
 @compiled
@@ -118,24 +138,20 @@ def shift(c: Floats, size: int, x: float) -> None:
 
 @compiled
 def inside_step(tau: float, order: int, run: FastRun) -> None:
-    """Turning points of displacements, elongations and gaps, within a step of length tau (s)."""
-    plan, state, series, at = run.plan, run.state, run.series, run.running.at
-    for b in range(plan.mass.size):
-        c = series.of_body[b]
-        h = plan.links.grounded[b]
-        # A spring to the ground that yields or unloads ends the step where it reverses.
-        if c >= 0 and (h < 0 or state.part[h] == CORE):
-            _pair(at.displacement + b, -1, c, state.u[b], tau, order, run)
-    # Springs to the ground and gaps to a barrier turn where the body does.
-    for a in range(plan.links.springs):
-        head, tail = series.ends[a, 0], series.ends[a, 1]
-        if plan.links.ends[a, 0] >= 0 and plan.links.ends[a, 1] >= 0:
-            _pair(at.elongation + a, head, tail, series.x[a], tau, order, run)
-    left, right = plan.contacts.left, plan.contacts.right
-    for j in range(plan.contacts.gap.size):
-        if not state.resting[j] and left[j] >= 0 and right[j] >= 0:
-            head, tail = series.of_body[left[j]], series.of_body[right[j]]
-            _pair(at.gap + j, head, tail, state.gap[j], tau, order, run)
+    """Turning points of distances within a step of length tau (s)."""
+    plan, state, of_body = run.plan, run.state, run.series.of_body
+    for k in range(plan.distances.shape[0]):
+        first, second = plan.distances[k, 0], plan.distances[k, 1]
+        if leader_of(k, plan.distances) != k:
+            continue
+        if first < 0:
+            # A spring to the ground that yields or unloads ends the step where it reverses.
+            h = plan.links.grounded[second]
+            if h >= 0 and state.part[h] != CORE:
+                continue
+        head, tail = of_body[first] if first >= 0 else -1, of_body[second]
+        value = distance_now(k, state.u, state.gap, plan)
+        _pair(run.running.at.displacement + k, head, tail, value, tau, order, run)
 
 
 @compiled
@@ -178,32 +194,27 @@ def take_turns(i: int, c: Floats, order: int, start: float, tau: float, run: Fas
 
     They are looked for from a time on (s) and within tau (s) of it; `series.d` is overwritten.
     """
-    plan, series, running, near = run.plan, run.series, run.running, flat_time(run.plan)
+    series = run.series
     for m in range(turning_times(series.d, order, tau, series.turns, series.work)):
         there, _ = value_and_slope(c[: order + 1], series.turns[m])
-        t = start + series.turns[m]
-        update_turning_point(i, there, t, near, running)
-        b = i - running.at.displacement
-        if 0 <= b < plan.mass.size:
-            followers(b, there, t, near, plan, running)
+        take_turn(i, there, start + series.turns[m], flat_time(run.plan), run.plan, run.running)
 
 
 @compiled
-def followers(b: int, u: float, t: float, near: float, plan: FastPlan, running: Running) -> None:
-    """Springs from a body to the ground and its gaps to barriers turn with it."""
-    at, ends = running.at, plan.links.ends
-    for a in range(plan.links.springs):
-        if ends[a, 0] < 0 and ends[a, 1] == b:
-            update_turning_point(at.elongation + a, u, t, near, running)
-        elif ends[a, 1] < 0 and ends[a, 0] == b:
-            update_turning_point(at.elongation + a, -u, t, near, running)
-    contacts = plan.contacts
-    for j in range(contacts.gap.size):
-        place = at.gap + j
-        if contacts.right[j] < 0 and contacts.left[j] == b:
-            update_turning_point(place, contacts.gap[j] - u, t, near, running)
-        elif contacts.left[j] < 0 and contacts.right[j] == b:
-            update_turning_point(place, contacts.gap[j] + u, t, near, running)
+def take_turn(
+    i: int, value: float, t: float, near: float, plan: FastPlan, running: Running
+) -> None:
+    """Take a turning point of quantity i into the extremes, and of the distances it leads.
+
+    A distance leads others only if it is a displacement; they stand behind it.
+    """
+    distances, at = plan.distances, running.at
+    update_turning_point(i, value, t, near, running)
+    b = i - at.displacement
+    for k in range(b + 1, at.acceleration - at.displacement):
+        if leader_of(k, distances) == b:
+            there = start_of(k, plan) + (value if distances[k, 1] == b else -value)
+            update_turning_point(at.displacement + k, there, t, near, running)
 
 
 @compiled

@@ -121,7 +121,7 @@ class Oscillator(NamedTuple):
 
 
 class FastPlan(NamedTuple):
-    """Constants of a run."""
+    """Constants of a run; distances (D, 2): of `eventpound.mechanics.monitored.distances_of`."""
 
     mass: Floats
     links: Links
@@ -131,6 +131,7 @@ class FastPlan(NamedTuple):
     limits: Limits
     output_times: Floats
     oscillator: Oscillator
+    distances: Ints
 
 
 class FastProgress(NamedNumbers):

@@ -14,7 +14,7 @@ from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.apart.between import A_HIGH, A_LOW, U_HIGH, U_LOW
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.extremes import flat_time, followers
+from eventpound.solvers.fast.extremes import flat_time, take_turn
 from eventpound.solvers.fast.links import turns_back
 from eventpound.solvers.fast.run import GOING_ON, Each, FastRun
 from eventpound.solvers.fast.search import motion
@@ -212,7 +212,7 @@ def take_own(b: int, run: FastRun) -> None:
         (own.minimum[i_own], own.time_of_minimum[i_own]),
     ):
         if u > running.maximum[i] or u < running.minimum[i]:
-            followers(b, u, t, near, run.plan, running)
+            take_turn(i, u, t, near, run.plan, running)
     for row in range(extremes.shape[0]):
         extremes[row, i] = each.extremes[b, row, i_own]
         extremes[row, at.acceleration + b] = each.extremes[b, row, own.at.acceleration]

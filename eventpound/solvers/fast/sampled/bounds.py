@@ -21,8 +21,8 @@ from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.extremes import stays_within
-from eventpound.solvers.fast.links import CORE, DOWN, UP, gap_of, place
+from eventpound.solvers.fast.extremes import leader_of, start_of, stays_within
+from eventpound.solvers.fast.links import CORE, DOWN, UP, elongation, gap_of, place
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.solvers.fast.search import bound_of_pair
@@ -170,40 +170,19 @@ def _covered(k: int, now: float, then: float, spread: float, running: Running) -
 
 @compiled
 def places_unseen(h: float, tables: SampleTables, run: FastRun) -> bool:
-    """Whether displacements, elongations and gaps cannot exceed their extremes inside the step.
-
-    What is joined to the ground turns with its body.
-    """
-    plan, state, running = run.plan, run.state, run.running
-    bodies, along, links, at = tables.bodies, tables.along, plan.links, running.at
-    for b in range(state.u.size):
-        v, v_1 = state.v[b], bodies.next_v[b]
-        if not _covered(
-            at.displacement + b, state.u[b], bodies.next_u[b], bodies.sag[b], running
-        ) and not pair_goes_one_way(h, -1, b, v, v_1, plan, tables):
-            return False
-    for a in range(links.springs):
-        first, second = links.ends[a, 0], links.ends[a, 1]
-        if first < 0 or second < 0:
+    """Whether no distance can exceed its extremes inside the step; some turn with others."""
+    plan, state, bodies = run.plan, run.state, tables.bodies
+    for k in range(plan.distances.shape[0]):
+        if leader_of(k, plan.distances) != k:
             continue
-        sag = bound_of_pair(first, second, tables.bodies.sag)
-        if not _covered(
-            at.elongation + a, along.x[a], along.next_x[a], sag, running
-        ) and not pair_goes_one_way(
-            h, first, second, along.x_rate[a], along.next_x_rate[a], plan, tables
+        first, second, start = plan.distances[k, 0], plan.distances[k, 1], start_of(k, plan)
+        x, rate = elongation(first, second, state.u, state.v)
+        x_1, rate_1 = elongation(first, second, bodies.next_u, bodies.next_v)
+        i, sag = run.running.at.displacement + k, bound_of_pair(first, second, bodies.sag)
+        if not (
+            _covered(i, start + x, start + x_1, sag, run.running)
+            or pair_goes_one_way(h, first, second, rate, rate_1, plan, tables)
         ):
-            return False
-    contacts = plan.contacts
-    for j in range(contacts.gap.size):
-        left, right = contacts.left[j], contacts.right[j]
-        if left < 0 or right < 0:
-            continue
-        sag = bound_of_pair(left, right, tables.bodies.sag)
-        gap, rate = gap_of(j, contacts, state.u, state.v)
-        gap_1, rate_1 = gap_of(j, contacts, bodies.next_u, bodies.next_v)
-        if _covered(at.gap + j, gap, gap_1, sag, running):
-            continue
-        if not pair_goes_one_way(h, left, right, rate, rate_1, plan, tables):
             return False
     return True
 

@@ -17,7 +17,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from eventpound.contact.cascade import is_fleeting
-from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.polynomial import only_root
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import look
@@ -248,7 +247,6 @@ def _is_clear(step: ProposedStep, line: GroundLine, run: FastRun) -> bool:
         series.ground[0], series.ground[1] = line.g, line.slope
         set_travel(order, h, n, series)
     if not unseen:
-        copy_numbers(tables.along.x, series.x)
         inside_step(h, order, run)
     if not covered:
         forces_inside_step(h, order, a, run)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.extremes import start_of
 from eventpound.solvers.fast.links import CORE, ends_of_line
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.exact import SampleTables
@@ -22,25 +23,22 @@ from eventpound.tolerances import OWN_GAP
 def set_room(tables: SampleTables, run: FastRun) -> None:
     """Bounds of all distances: those of the pair (b, c), b < c, of ``u_c - u_b``; (b, b): u_b."""
     plan, state, running = run.plan, run.state, run.running
-    room, links, contacts, at = tables.room, plan.links, plan.contacts, running.at
+    room, links, contacts, distances = tables.room, plan.links, plan.contacts, plan.distances
     n = plan.mass.size
     for b in range(n):
-        for c in range(b + 1, n):
+        for c in range(b, n):
             room.low[b, c], room.high[b, c], room.way[b, c] = -np.inf, np.inf, 0.0
-        i = at.displacement + b
-        room.low[b, b], room.high[b, b] = running.minimum[i], running.maximum[i]
-        room.way[b, b] = 0.0
+    for k in range(distances.shape[0]):
+        i, start = running.at.displacement + k, start_of(k, plan)
+        low, high = running.minimum[i] - start, running.maximum[i] - start
+        _narrow(distances[k, 0], distances[k, 1], low, high, 0.0, tables)
     for a in range(links.offset.size):
         low, high, way = _room_of_link(a, plan, state)
-        if a < links.springs:
-            i = at.elongation + a
-            low, high = max(low, running.minimum[i]), min(high, running.maximum[i])
         _narrow(links.ends[a, 0], links.ends[a, 1], low, high, way, tables)
     least = OWN_GAP * plan.limits.length
     for j in range(contacts.gap.size):
-        low = max(least, running.minimum[at.gap + j]) - contacts.gap[j]
-        high = running.maximum[at.gap + j] - contacts.gap[j]
-        _narrow(contacts.left[j], contacts.right[j], low, high, 0.0, tables)
+        low = least - contacts.gap[j]
+        _narrow(contacts.left[j], contacts.right[j], low, np.inf, 0.0, tables)
 
 
 @compiled

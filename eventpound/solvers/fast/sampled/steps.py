@@ -200,4 +200,4 @@ def _accept(step: ProposedStep, t: float, run: FastRun) -> None:
         state.gap[step.which] = 0.0
     elif step.what == NOTHING:
         end_if_over(run)
-    take_all(state.u, bodies.acceleration, along.x, state.gap, shear, t, run.running)
+    take_all(state.u, bodies.acceleration, state.gap, shear, t, run)

@@ -11,14 +11,14 @@ from __future__ import annotations
 from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.monitored import (
     Running,
-    update_beyond,
     update_extreme,
+    update_settled,
     update_turning_point,
 )
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.extremes import followers, stays_within, turning_times
+from eventpound.solvers.fast.extremes import stays_within, take_turn, turning_times
 from eventpound.solvers.fast.record import is_due, takes_rows
 from eventpound.solvers.fast.search import motion
 from eventpound.solvers.fast.single.body import (
@@ -29,7 +29,6 @@ from eventpound.solvers.fast.single.body import (
     spring_state,
 )
 from eventpound.solvers.fast.single.series import swing
-from eventpound.tolerances import SETTLED
 
 
 @compiled_apart
@@ -126,10 +125,7 @@ def _take_forces(t: float, a: float, shear: float, run: SingleRun) -> None:
 def _take_turn(t: float, u: float, a: float, run: SingleRun) -> None:
     """Take a turning point, or the end of a stretch, at t (s) into the extremes."""
     running, near = run.running, run.body.flat_time
-    update_turning_point(running.at.displacement, u, t, near, running)
-    # Elsewhere than in a scene of one body elongations and gaps are taken by others.
-    if running.at.acceleration > running.at.elongation:
-        followers(0, u, t, near, run.plan, running)
+    take_turn(running.at.displacement, u, t, near, run.plan, running)
     _take_forces(t, a, -run.body.mass * a, run)
 
 
@@ -144,27 +140,20 @@ def take_if_new(t: float, u: float, a: float, run: SingleRun) -> None:
         _take_turn(t, u, a, run)
 
 
-@compiled
-def _take_place(i: int, value: float, t: float, running: Running) -> None:
-    """Take quantity i, just put on its constraint."""
-    update_beyond(i, value, t, SETTLED * running.rounding[i], running)
-
-
 @compiled_apart
 def take_settled(t: float, a: float, run: SingleRun) -> None:
     """Take a settled instant: places just put on their constraints, and what jumps in it.
 
     `a` is the absolute acceleration (m/s²): that of the ground where the body rests.
     """
-    body, running, at, o = run.body, run.running, run.running.at, run.plan.oscillator
-    _take_place(at.displacement, body.u, t, running)
-    for s in range(run.plan.links.springs):
-        x = body.u if run.plan.links.ends[s, 1] >= 0 else -body.u
-        _take_place(at.elongation + s, x, t, running)
+    body, at, o, distances = run.body, run.running.at, run.plan.oscillator, run.plan.distances
+    for i in range(at.displacement, at.gap):
+        there = body.u if distances[i - at.displacement, 1] >= 0 else -body.u
+        update_settled(i, there, t, run.running)
     if o.right >= 0:
-        _take_place(at.gap + o.right, body.right, t, running)
+        update_settled(at.gap + o.right, body.right, t, run.running)
     if o.left >= 0:
-        _take_place(at.gap + o.left, body.left, t, running)
+        update_settled(at.gap + o.left, body.left, t, run.running)
     _take_forces(t, a, -body.mass * body.a, run)
     take_contact_forces(t, run)
 
