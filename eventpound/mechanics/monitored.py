@@ -88,39 +88,39 @@ def contact_pressed(i: int, at: Places) -> int:
 
 
 @scalar_kernel
-def value_of(i: int, at: Places, seen: Observed) -> float:
+def value_of(i: int, at: Places, observed: Observed) -> float:
     """Quantity i (SI)."""
     if i < at.elongation:
-        return seen.u[i - at.displacement]
+        return observed.u[i - at.displacement]
     if i < at.gap:
-        return seen.elongation[0, i - at.elongation]
+        return observed.elongation[0, i - at.elongation]
     if i < at.acceleration:
-        return seen.gap[0, i - at.gap]
+        return observed.gap[0, i - at.gap]
     if i < at.base_shear:
-        return seen.acceleration[0, i - at.acceleration]
+        return observed.acceleration[0, i - at.acceleration]
     if i < at.contact_force:
-        return seen.shear[0]
-    return seen.contact_force[0, i - at.contact_force]
+        return observed.shear[0]
+    return observed.contact_force[0, i - at.contact_force]
 
 
 @scalar_kernel
-def motion_of(i: int, at: Places, seen: Observed) -> tuple[float, float, float]:
+def motion_of(i: int, at: Places, observed: Observed) -> tuple[float, float, float]:
     """Quantity i with its first two rates (SI); the second is 0 where it `is_motion` not."""
     if i < at.elongation:
         b = i - at.displacement
-        return seen.u[b], seen.v[b], seen.a[b]
+        return observed.u[b], observed.v[b], observed.a[b]
     if i < at.gap:
-        x, s = seen.elongation, i - at.elongation
+        x, s = observed.elongation, i - at.elongation
         return x[0, s], x[1, s], x[2, s]
     if i < at.acceleration:
-        x, j = seen.gap, i - at.gap
+        x, j = observed.gap, i - at.gap
         return x[0, j], x[1, j], x[2, j]
     if i < at.base_shear:
-        x, b = seen.acceleration, i - at.acceleration
+        x, b = observed.acceleration, i - at.acceleration
         return x[0, b], x[1, b], 0.0
     if i < at.contact_force:
-        return seen.shear[0], seen.shear[1], 0.0
-    x, j = seen.contact_force, i - at.contact_force
+        return observed.shear[0], observed.shear[1], 0.0
+    x, j = observed.contact_force, i - at.contact_force
     return x[0, j], x[1, j], 0.0
 
 
@@ -235,7 +235,7 @@ def update_turning_point(i: int, value: float, t: float, near: float, running: R
 
 
 @scalar_kernel
-def update_extremes(seen: Observed, t: float, running: Running) -> None:
+def update_extremes(observed: Observed, t: float, running: Running) -> None:
     """Take all values of one instant into the extremes."""
     for i in range(running.at.displacement, running.at.end):
-        update_extreme(i, value_of(i, running.at, seen), t, running)
+        update_extreme(i, value_of(i, running.at, observed), t, running)

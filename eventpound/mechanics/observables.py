@@ -87,7 +87,7 @@ class Observed(NamedTuple):
     pull: Floats
 
 
-def view(
+def bodies_of(
     model: Model,
     clusters: Clusters,
     system: Reduced,
@@ -132,7 +132,7 @@ def view(
     )
 
 
-def blank(bodies: int, links: int, contacts: int, hysteretic: int) -> Observed:
+def blank_observed(bodies: int, links: int, contacts: int, hysteretic: int) -> Observed:
     """Empty arrays for `observe` to fill."""
     return Observed(
         np.zeros(bodies),

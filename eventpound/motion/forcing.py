@@ -178,30 +178,30 @@ def _next_corner_of_any(coefficients: Floats, t: float, stop: float) -> float:
 
 
 @scalar_kernel
-def time_to_look(piece: Formula, t: float) -> float:
+def longest_safe_step(piece: Formula, t: float) -> float:
     """Longest step from t (s) that misses nothing of what comes, inf where nothing can be missed.
 
     What an integrator knows of a step are its ends: after a rest, when steps are as long as can be,
     a whole pulse or a record behind its leading zeros may lie between them.
     """
     if piece.family == _LOADED:
-        return _time_to_look_at_any(piece.coefficients, t)
-    return _time_to_look_at(piece.family, piece.coefficients, t)
+        return _safe_step_of_loaded(piece.coefficients, t)
+    return _safe_step_of_signal(piece.family, piece.coefficients, t)
 
 
 @deferred_kernel
-def _time_to_look_at_any(coefficients: Floats, t: float) -> float:
-    """`time_to_look` of a LOADED piece."""
+def _safe_step_of_loaded(coefficients: Floats, t: float) -> float:
+    """`longest_safe_step` of a LOADED piece."""
     shortest = math.inf
     for row in range(int(coefficients[0]) + 1):
         family, low, _, _, _ = places_of(row, coefficients)
-        shortest = min(shortest, _time_to_look_at(family, coefficients[low:], t))
+        shortest = min(shortest, _safe_step_of_signal(family, coefficients[low:], t))
     return shortest
 
 
 @scalar_kernel
-def _time_to_look_at(family: int, coefficients: Floats, t: float) -> float:
-    """`time_to_look` of one signal."""
+def _safe_step_of_signal(family: int, coefficients: Floats, t: float) -> float:
+    """`longest_safe_step` of one signal."""
     if family == _SAMPLES:
         return _SAMPLES_AT_ONCE * coefficients[1]
     if family != _GAUSSIAN or coefficients[1] <= 0.0:

@@ -106,7 +106,7 @@ class Program:
         )
         calls = [ctypes.cast(getattr(sundials, name), ctypes.c_void_p).value for name in CALLS]
         memory = self._memory
-        self._integrator = _Integrator(*calls, memory.address, memory.vector, memory.look)
+        self._integrator = _Integrator(*calls, memory.address, memory.vector, memory.interpolated)
         self._data.integrator = ctypes.pointer(self._integrator)
         s = self._stretches
         self._run = _Run(

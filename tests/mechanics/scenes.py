@@ -8,7 +8,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.model import Model, assemble
-from eventpound.mechanics.observables import Bodies, Observed, view
+from eventpound.mechanics.observables import Bodies, Observed, bodies_of
 from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce
 from eventpound.motion.base import Family
 from eventpound.scene import (
@@ -136,7 +136,7 @@ def instant(scene: Scene, resting: list[int], rng: np.random.Generator, *, ledge
     x = model.elongations(u)
     stiffness, preload = model.elastic.on_side(np.where(x < model.elastic.offset, -1, 1))
     system = reduced(model, clusters, stiffness, preload, ledger=ledger)
-    bodies = view(model, clusters, system, stiffness, preload, model.z0.copy())
+    bodies = bodies_of(model, clusters, system, stiffness, preload, model.z0.copy())
     return Instant(
         scene,
         model,
@@ -151,15 +151,15 @@ def instant(scene: Scene, resting: list[int], rng: np.random.Generator, *, ledge
     )
 
 
-def assert_contacts(seen: Observed, at: Instant, expected: Answer, squeezed: bool) -> np.ndarray:
+def assert_contacts(observed: Observed, at: Instant, answer: Answer, squeezed: bool) -> np.ndarray:
     """What is observed of contacts is what full matrices give; their forces (N) are returned."""
     force = np.zeros(at.model.contacts)
-    force[at.resting] = expected.contact_force
+    force[at.resting] = answer.contact_force
     # In a squeezed row they are unique but for a constant; those expected have the mean 0.
-    told = seen.contact_force[0] - (seen.contact_force[0].mean() if squeezed else 0.0)
+    told = observed.contact_force[0] - (observed.contact_force[0].mean() if squeezed else 0.0)
     np.testing.assert_allclose(told, force, atol=1e-10)
     for j, contact in enumerate(at.scene.contacts):
         W = direction(at.scene, contact.left, contact.right)
-        gaps = (contact.gap + W @ at.u, W @ at.v, W @ expected.acceleration)
-        np.testing.assert_allclose(seen.gap[:, j], gaps, atol=1e-11)
+        gaps = (contact.gap + W @ at.u, W @ at.v, W @ answer.acceleration)
+        np.testing.assert_allclose(observed.gap[:, j], gaps, atol=1e-11)
     return force

@@ -16,7 +16,7 @@ from eventpound.mechanics.descriptor_motion import (
 )
 from eventpound.mechanics.descriptor_observation import observe_descriptor
 from eventpound.mechanics.ground_frame import NO_FRAME, frame_motion
-from eventpound.mechanics.observables import Observed, blank
+from eventpound.mechanics.observables import Observed, blank_observed
 from eventpound.motion.forcing import ground_acceleration
 from tests.mechanics.dense import rates
 from tests.mechanics.scenes import LEDGER, Instant, assert_contacts, random_instant
@@ -36,12 +36,12 @@ def _descriptor(at: Instant) -> Descriptor:
 
 def _consistent(at: Instant, d: Descriptor) -> tuple[np.ndarray, np.ndarray, Observed]:
     """Unknowns and rates that satisfy the equations at the start of the segment."""
-    y, rate, seen = np.zeros(d.size), np.zeros(d.size), blank(*at.model.counts)
+    y, rate, observed = np.zeros(d.size), np.zeros(d.size), blank_observed(*at.model.counts)
     y[: 2 * at.u.size + at.z.size] = np.concatenate((at.u, at.v, at.z))
     problem = DescriptorProblem(d, at.forcing, NO_FRAME)
     solve_contact_forces(0.0, y, problem)
-    observe_descriptor(0.0, y, problem, rate, seen)
-    return y, rate, seen
+    observe_descriptor(0.0, y, problem, rate, observed)
+    return y, rate, observed
 
 
 @pytest.mark.parametrize("squeezed", [False, True])
@@ -50,16 +50,16 @@ def test_observed_values(squeezed: bool) -> None:
     for _ in range(40):
         at = random_instant(rng, squeezed=squeezed)
         d = _descriptor(at)
-        _, rate, seen = _consistent(at, d)
+        _, rate, observed = _consistent(at, d)
         ground = ground_acceleration(at.forcing, at.forcing.start)
         expected = rates(at.scene, at.resting, ground, at.u, at.v, at.z)
-        np.testing.assert_allclose(seen.a, expected.acceleration, atol=TOLERANCE)
+        np.testing.assert_allclose(observed.a, expected.acceleration, atol=TOLERANCE)
         np.testing.assert_allclose(
-            seen.acceleration[0], expected.acceleration + ground, atol=TOLERANCE
+            observed.acceleration[0], expected.acceleration + ground, atol=TOLERANCE
         )
-        np.testing.assert_allclose(seen.z[1], expected.z_rate, atol=TOLERANCE)
+        np.testing.assert_allclose(observed.z[1], expected.z_rate, atol=TOLERANCE)
         np.testing.assert_allclose(rate[d.ledger :], expected.ledger, atol=TOLERANCE)
-        assert_contacts(seen, at, expected, squeezed)
+        assert_contacts(observed, at, expected, squeezed)
 
 
 @pytest.mark.parametrize("squeezed", [False, True])
@@ -70,18 +70,18 @@ def test_observed_rates_by_central_differences(squeezed: bool) -> None:
     for _ in range(30):
         at = random_instant(rng, squeezed=squeezed)
         d = _descriptor(at)
-        y, rate, seen = _consistent(at, d)
+        y, rate, observed = _consistent(at, d)
         sides = []
         for tau in (-h, h):
-            moved, other = y + tau * rate, blank(*at.model.counts)
+            moved, other = y + tau * rate, blank_observed(*at.model.counts)
             # Positions need the second order: their own rates are differenced too.
-            moved[: at.u.size] += 0.5 * tau**2 * seen.a
+            moved[: at.u.size] += 0.5 * tau**2 * observed.a
             problem = DescriptorProblem(d, at.forcing, NO_FRAME)
             solve_contact_forces(tau, moved, problem)
             observe_descriptor(tau, moved, problem, np.zeros(d.size), other)
             sides.append(other)
         for name in ("force", "acceleration", "contact_force", "z", "shear"):
-            low, high, slope = (getattr(s, name) for s in (*sides, seen))
+            low, high, slope = (getattr(s, name) for s in (*sides, observed))
             if name == "acceleration" and at.clusters.count == 0:
                 continue
             difference = (high[0] - low[0]) / (2.0 * h)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.mechanics.observables import Observed, blank, observe
+from eventpound.mechanics.observables import Observed, blank_observed, observe
 from eventpound.mechanics.reduced import motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_acceleration
@@ -16,7 +16,7 @@ from tests.mechanics.scenes import Instant, assert_contacts, random_instant
 def _observe(at: Instant, tau: float, y: np.ndarray) -> Observed:
     rate = np.empty(y.size)
     motion_rate(tau, y, rate, at.system, at.forcing)
-    out = blank(*at.model.counts)
+    out = blank_observed(*at.model.counts)
     observe(tau, y, rate, at.system, at.bodies, at.forcing, out)
     return out
 
@@ -26,15 +26,17 @@ def test_values(squeezed: bool) -> None:
     rng = np.random.default_rng(71)
     for _ in range(40):
         at = random_instant(rng, squeezed=squeezed)
-        seen = _observe(at, 0.0, at.y)
+        observed = _observe(at, 0.0, at.y)
         ground = ground_acceleration(at.forcing, at.forcing.start)
         expected = rates(at.scene, at.resting, ground, at.u, at.v, at.z)
-        np.testing.assert_allclose(seen.u, at.u, atol=1e-14)
-        np.testing.assert_allclose(seen.v, at.v, atol=1e-14)
-        np.testing.assert_allclose(seen.z[0], at.z, atol=1e-15)
-        np.testing.assert_allclose(seen.acceleration[0], expected.acceleration + ground, atol=1e-11)
-        force = assert_contacts(seen, at, expected, squeezed)
-        assert not seen.gap[:, at.resting].any()
+        np.testing.assert_allclose(observed.u, at.u, atol=1e-14)
+        np.testing.assert_allclose(observed.v, at.v, atol=1e-14)
+        np.testing.assert_allclose(observed.z[0], at.z, atol=1e-15)
+        np.testing.assert_allclose(
+            observed.acceleration[0], expected.acceleration + ground, atol=1e-11
+        )
+        force = assert_contacts(observed, at, expected, squeezed)
+        assert not observed.gap[:, at.resting].any()
         # The ground takes what the bodies and their inertia do not: Newton's third law.
         barrier = sum(
             force[j] * ((c.left == "barrier") * 1.0 - (c.right == "barrier") * 1.0)
@@ -42,24 +44,24 @@ def test_values(squeezed: bool) -> None:
         )
         mass = np.array([b.mass for b in at.scene.bodies])
         inertia = mass @ (expected.acceleration + ground)
-        assert inertia == pytest.approx(barrier - seen.shear[0], abs=1e-10)
+        assert inertia == pytest.approx(barrier - observed.shear[0], abs=1e-10)
 
 
-def _rows_with_rates(seen: Observed) -> np.ndarray:
+def _rows_with_rates(observed: Observed) -> np.ndarray:
     """Every quantity that is observed together with its rate, values then rates."""
-    pairs = (seen.z, seen.force, seen.acceleration, seen.contact_force)
+    pairs = (observed.z, observed.force, observed.acceleration, observed.contact_force)
     rows = [
-        np.concatenate([pair[i] for pair in pairs] + [[seen.shear[i], seen.ground[i]]])
+        np.concatenate([pair[i] for pair in pairs] + [[observed.shear[i], observed.ground[i]]])
         for i in (0, 1)
     ]
-    for chain in (seen.gap, seen.elongation):
+    for chain in (observed.gap, observed.elongation):
         rows = [
             np.concatenate((rows[0], chain[0], chain[1])),
             np.concatenate((rows[1], chain[1], chain[2])),
         ]
     rows = [
-        np.concatenate((rows[0], seen.u, seen.v)),
-        np.concatenate((rows[1], seen.v, seen.a)),
+        np.concatenate((rows[0], observed.u, observed.v)),
+        np.concatenate((rows[1], observed.v, observed.a)),
     ]
     return np.array(rows)
 

@@ -21,7 +21,7 @@ from eventpound.solvers.fast.constants import (
     plan_of,
     zero_state,
 )
-from eventpound.solvers.fast.evaluate import blank_seen
+from eventpound.solvers.fast.evaluate import blank_fast_observed
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.run import FastPlan, FastRecord, FastRun, FastSeries, FastState
 from eventpound.solvers.fast.sampled.forces import begin
@@ -68,7 +68,7 @@ def stepper_of(scene: Scene, z: Floats, rtol: float, dt: float = 1.0) -> Stepper
     table = blank_extremes(at, scales)
     room = np.zeros((9, EVENT_WIDTH)), np.zeros((9, row_width(model)))
     record = FastRecord(*room, table, np.ones(model.contacts, bool))
-    series, happened, seen = blank_series(plan), blank_happened(plan), blank_seen(plan)
-    run = FastRun(plan, state, series, happened, record, seen, Running(*table, at))
+    series, happened, observed = blank_series(plan), blank_happened(plan), blank_fast_observed(plan)
+    run = FastRun(plan, state, series, happened, record, observed, Running(*table, at))
     start(run)
     return Stepper(run, model, begin(dt, run))

@@ -8,7 +8,7 @@ import pytest
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.monitored import places_in
-from eventpound.mechanics.observables import Observed, blank
+from eventpound.mechanics.observables import Observed, blank_observed
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Energy
 from eventpound.solvers.events.event_bounds import Watched
@@ -33,30 +33,30 @@ def _watched(*, rests: bool) -> Watched:
     return Watched(*marks, False, *forces, -none, none, turns, FORCE_NOISE, at)
 
 
-def _check(t: float, seen: Observed, watched: Watched) -> None:
-    j = broken_contact(seen, watched, LENGTH_NOISE)
+def _check(t: float, observed: Observed, watched: Watched) -> None:
+    j = broken_contact(observed, watched, LENGTH_NOISE)
     if j >= 0:
-        raise contact_error(t, j, seen, watched, ["joint"])
+        raise contact_error(t, j, observed, watched, ["joint"])
 
 
 def test_penetration_names_the_contact_and_the_depth():
-    seen = blank(*assemble(SCENE).counts)
-    seen.gap[0, 0] = -1e-6
+    observed = blank_observed(*assemble(SCENE).counts)
+    observed.gap[0, 0] = -1e-6
     with pytest.raises(ComputationError, match=r"t = 2 s: contact 'joint' penetrates by 1e-06 m"):
-        _check(2.0, seen, _watched(rests=False))
+        _check(2.0, observed, _watched(rests=False))
 
 
 def test_rounding_is_not_penetration():
-    seen = blank(*assemble(SCENE).counts)
-    seen.gap[0, 0] = -1e-16
-    _check(2.0, seen, _watched(rests=False))
+    observed = blank_observed(*assemble(SCENE).counts)
+    observed.gap[0, 0] = -1e-16
+    _check(2.0, observed, _watched(rests=False))
 
 
 def test_a_resting_contact_does_not_pull():
-    seen = blank(*assemble(SCENE).counts)
-    seen.contact_force[0, 0] = -1e-3
+    observed = blank_observed(*assemble(SCENE).counts)
+    observed.contact_force[0, 0] = -1e-3
     with pytest.raises(ComputationError, match=r"'joint' pulls with 0.001 N"):
-        _check(2.0, seen, _watched(rests=True))
+        _check(2.0, observed, _watched(rests=True))
 
 
 @pytest.mark.parametrize("closure", [1e-2, -1e-2, np.nan])

@@ -20,7 +20,7 @@ from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import solver as fast
 from eventpound.solvers.fast.constants import order_for, plan_of
-from eventpound.solvers.fast.evaluate import look
+from eventpound.solvers.fast.evaluate import observe_at
 from eventpound.solvers.fast.expansion import begin_series, expand
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.run import NOT_FINITE, piece_of
@@ -74,13 +74,13 @@ def _by_equal_steps(order: int, count: int) -> np.ndarray:
     fast.put_start(plan, 0.0, model, scales, moving)
     given = fast.run_of(plan, moving, model)
     state = given.state
-    h, piece, seen = end / count, piece_of(0, given.plan.ground), given.seen
+    h, piece, seen = end / count, piece_of(0, given.plan.ground), given.observed
     with by_python():
         start(given)
         for i in range(count):
             begin_series(i * h, piece, given)
             expand(h, order, given)
-            look(h, order, 0.0, given)
+            observe_at(h, order, 0.0, given)
             state.u[:], state.v[:] = seen.u, seen.v
     return np.concatenate((state.u, state.v))
 

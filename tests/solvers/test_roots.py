@@ -34,8 +34,8 @@ from eventpound.solvers.events.instant_loop import make_ready
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.loop import EventLoop, Segment
 from eventpound.solvers.events.roots import on_the_root, root_functions
-from eventpound.solvers.events.second_look import INTEGRATOR
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED, Examination
+from eventpound.solvers.events.step_search import INTEGRATOR
 from eventpound.solvers.sundials import library
 from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
 from tests.hard.outcome import Outcome, verdict

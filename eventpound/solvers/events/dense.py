@@ -49,12 +49,12 @@ class Dense(NamedTuple):
 
 
 class DenseStep(NamedTuple):
-    """A step of motion in one mode that can be looked at anywhere; seen: what was seen last."""
+    """A step of motion in one mode that can be observed anywhere; observed: the last of it."""
 
     dense: Dense
     dynamics: Dynamics
     forcing: Forcing
-    seen: Observed
+    observed: Observed
 
 
 @kernel
@@ -73,20 +73,20 @@ def state_at(tau: float, step: DenseStep) -> Floats:
 
 
 @kernel
-def look(tau: float, step: DenseStep) -> None:
-    """Everything observed at `tau` (s), into `step.seen`."""
-    dense, mode, seen = step.dense, step.dynamics, step.seen
+def observe_at(tau: float, step: DenseStep) -> None:
+    """Everything observed at `tau` (s), into `step.observed`."""
+    dense, mode, observed = step.dense, step.dynamics, step.observed
     if dense.own:
         y, rate = evaluate_series(dense.Y, tau)
     else:
         y = state_at(tau, step)
         rate = np.empty(y.size)
         motion_rate(tau, y, rate, mode.system, step.forcing)
-    observe(tau, y, rate, mode.system, mode.bodies, step.forcing, seen)
+    observe(tau, y, rate, mode.system, mode.bodies, step.forcing, observed)
     if dense.own:
-        for j in range(seen.gap.shape[1]):
+        for j in range(observed.gap.shape[1]):
             if mode.watched.open_contacts[j]:
-                seen.gap[0, j], seen.gap[1, j] = value_and_slope(dense.gaps[j], tau)
+                observed.gap[0, j], observed.gap[1, j] = value_and_slope(dense.gaps[j], tau)
 
 
 def from_values(values: Floats, start: float, end: float, frame: Floats) -> Dense:

@@ -3,8 +3,8 @@
 Every monitored quantity is known at both ends of the step with its
 derivatives (`eventpound.mechanics.observables`). The Bernstein coefficients
 of the Hermite polynomial through them bound it on the whole step, so that a
-gap that closes and opens again inside is seen as well as a change of sign.
-What the bounds cannot exclude is marked, and looked at on the integrator's
+gap that closes and opens again inside is found as well as a change of sign.
+What the bounds cannot exclude is marked, and searched for on the integrator's
 own interpolant by `eventpound.solvers.events.location`.
 """
 
@@ -30,8 +30,8 @@ class Watched(NamedTuple):
     """What the present mode has to watch.
 
     open_contacts (K,): gaps that may close. unlocked (K,): resting contacts
-    that may detach. follows: whether a contact element is closed: then every step is looked at
-    again, for what it does in it. force_low, force_high (K,): forces between which a contact stays
+    that may detach. follows: whether a contact element is closed: then every step is searched,
+    for what it does. force_low, force_high (K,): forces between which a contact stays
     at rest (N). kink_low, kink_high (L,): elongations at which a link
     changes branch, of those that `turns` (L,) marks rates of elongation. force_noise: contact
     forces below which the sign means nothing (N). at: columns of the extremes.

@@ -18,10 +18,10 @@ from eventpound.contact.instant import any_may_rest, decide_rests, settle_impact
 from eventpound.contact.kinks import lacks_branch, pass_kinks
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
-from eventpound.motion.forcing import CurrentPiece, next_corner, time_to_look
+from eventpound.motion.forcing import CurrentPiece, longest_safe_step, next_corner
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.dense import Dense, DenseStep, look
+from eventpound.solvers.events.dense import Dense, DenseStep, observe_at
 from eventpound.solvers.events.law_contacts import gather, turn_elements
 from eventpound.solvers.events.location import anything, forget
 from eventpound.solvers.events.present import (
@@ -35,16 +35,16 @@ from eventpound.solvers.events.present import (
 )
 from eventpound.solvers.events.recorder import PASSED, WRITTEN, is_due
 from eventpound.solvers.events.run import Dynamics, Run
-from eventpound.solvers.events.second_look import BROKEN, end_of_look, look_again, look_between
 from eventpound.solvers.events.short_series import local_series
 from eventpound.solvers.events.step_check import broken_contact
+from eventpound.solvers.events.step_search import BROKEN, record_inside, search_between, search_step
 
 MOST_KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
 DUTIES, RESTS, ARRIVAL, FLIGHT = range(4)
 """Where an instant goes on: impacts; who rests; the instant into the history; a short step."""
-SETTLE, AGAIN, TAKE, READY, LAST = range(5)
-"""What `proceed` is asked for: all that an instant demands; to look again at a step of an
+SETTLE, SEARCH, TAKE, READY, LAST = range(5)
+"""What `proceed` is asked for: all that an instant demands; to search a step of an
 integrator; to make the state vector of the run the present state; to make the present instant
 ready for a step; to put it, the last, into the history."""
 (OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, IN_PYTHON) = range(20, 25)
@@ -61,16 +61,16 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     rules, state, record, happened = run.rules, run.state, run.record, run.happened
     now, progress = state.now[0], state.progress[0]
     t = now.t
-    stop = min(next_corner(piece, t, piece.stop), t + time_to_look(piece, t))
+    stop = min(next_corner(piece, t, piece.stop), t + longest_safe_step(piece, t))
     forcing = lend(forcing_now(piece, t))
     series = local_series(run, forcing, mode, stop - t)
     if not series.finite:
         return NOT_FINITE
     # The arrays of `series` are kept alive by its use at the end.
-    step = lend(DenseStep(series.dense, mode, forcing, run.looks[2]))
+    step = lend(DenseStep(series.dense, mode, forcing, run.observations[2]))
     tau = series.dense.end
-    look(tau, lend(DenseStep(series.dense, mode, forcing, run.looks[1])))
-    located, marked = look_between(tau, run, mode, step)
+    observe_at(tau, lend(DenseStep(series.dense, mode, forcing, run.observations[1])))
+    located, marked = search_between(tau, run, mode, step)
     if located < np.inf:
         tau = located
     else:
@@ -82,18 +82,18 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     # Where a mode is none no time passes either.
     end = t if fleeting else t + tau
     if marked or is_due(end, record.journal):
-        end_of_look(tau, marked, run, step)
+        record_inside(tau, marked, run, step)
     if run.laws.contact.size > 0:
         gather(tau, run, step)
-    look(tau, step)
-    seen = step.seen
+    observe_at(tau, step)
+    observed = step.observed
     if fleeting:
         forget_held(record)
     elif any_event:
-        put_instant(end, seen, record)
+        put_instant(end, observed, record)
     else:
-        update_extremes(seen, end, record.running)
-    if broken_contact(seen, mode.watched, rules.length_noise) >= 0:
+        update_extremes(observed, end, record.running)
+    if broken_contact(observed, mode.watched, rules.length_noise) >= 0:
         now.t = end
         return BROKEN
     since = now.since_impact
@@ -105,7 +105,7 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         if state.gap[j] == np.inf:
             continue
         closes = happened.closing[j]
-        state.gap[j], state.gap_rate[j] = 0.0 if closes else seen.gap[0, j], seen.gap[1, j]
+        state.gap[j], state.gap_rate[j] = 0.0 if closes else observed.gap[0, j], observed.gap[1, j]
     progress.knots = 0 if any_event else progress.knots + series.knot
     progress.steps += 1
     progress.short_steps += 1
@@ -141,7 +141,7 @@ def proceed(
     piece : CurrentPiece
         The ground motion.
     dense : Dense
-        The step to be looked at AGAIN; at its end the state vector is to TAKE.
+        The step to SEARCH; at its end the state vector is to TAKE.
 
     Returns
     -------
@@ -150,8 +150,8 @@ def proceed(
     """
     if wanted == SETTLE:
         return _settle(most, run, mode, piece)
-    if wanted == AGAIN:
-        return look_again(run, mode, piece, dense)
+    if wanted == SEARCH:
+        return search_step(run, mode, piece, dense)
     if wanted == TAKE:
         t = dense.end
         take(run.y[: mode.system.size], t, mode, lend(forcing_now(piece, t)), run.state)

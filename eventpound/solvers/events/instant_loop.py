@@ -17,7 +17,6 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import by_python, in_python
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.instant import (
-    AGAIN,
     ARRIVAL,
     DUTIES,
     FIRST_BRANCHES,
@@ -29,6 +28,7 @@ from eventpound.solvers.events.instant import (
     PAUSED,
     READY,
     RESTS,
+    SEARCH,
     SETTLE,
     TAKE,
     UNENDING,
@@ -37,7 +37,7 @@ from eventpound.solvers.events.instant import (
 from eventpound.solvers.events.law_contacts import turn_elements
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.present import forcing_now
-from eventpound.solvers.events.second_look import BROKEN, EVENT
+from eventpound.solvers.events.step_search import BROKEN, EVENT
 from eventpound.solvers.events.underway import Underway
 
 NOWHERE = Dense(np.zeros((1, 1)), 0.0, 0.0, 0.0, NO_FRAME, False, NO_GAPS)
@@ -94,8 +94,8 @@ def _settle_in_python(now: Underway, piece: CurrentPiece) -> int:
     with by_python():
         if progress.phase == DUTIES:
             if slides:
-                # The last look is at the event.
-                force = run.looks[2].contact_force[0]
+                # The last observation is at the event.
+                force = run.observations[2].contact_force[0]
                 ended = settle_beside_sliders(force, run.happened.kinked, at, model)
             else:
                 ended = settle_at_points(at, model)
@@ -143,9 +143,9 @@ def _choose_branches(now: Underway, piece: CurrentPiece) -> None:
     now.take_closing_speeds(mode)
     make_ready(now, mode, piece)
     now.state.progress["phase"][0] = RESTS
-    seen = now.run.looks[0]
+    observed = now.run.observations[0]
     onset = ground_onset(piece, now.t, ORDER, np.empty(ORDER))
-    in_python(choose_branches)(seen.a, 0.0, onset, now.run.instant)
+    in_python(choose_branches)(observed.a, 0.0, onset, now.run.instant)
     state.now["stale"][0] = True
 
 
@@ -165,7 +165,7 @@ def put_last_instant(now: Underway, piece: CurrentPiece) -> None:
     proceed(LAST, 0, now.run, now.mode.dynamics, piece, NOWHERE)
 
 
-def look_again(now: Underway, piece: CurrentPiece, dense: Dense) -> bool:
+def search_step(now: Underway, piece: CurrentPiece, dense: Dense) -> bool:
     """Look for events in a step of an integrator; whether there is one, now the present state.
 
     Raises
@@ -173,7 +173,7 @@ def look_again(now: Underway, piece: CurrentPiece, dense: Dense) -> bool:
     ComputationError
         Where a contact penetrates or pulls.
     """
-    found = proceed(AGAIN, 0, now.run, now.mode.dynamics, piece, dense)
+    found = proceed(SEARCH, 0, now.run, now.mode.dynamics, piece, dense)
     if found == BROKEN:
         raise now.broken_contact(now.t)
     return found == EVENT

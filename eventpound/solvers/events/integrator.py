@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
-from eventpound.motion.forcing import next_corner, time_to_look
+from eventpound.motion.forcing import longest_safe_step, next_corner
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.solvers.events.dense import Dense
@@ -48,7 +48,7 @@ class Bounds(NamedTuple):
 def last_time(start: float, bounds: Bounds, forcing: Forcing) -> float:
     """Local time (s) beyond which a step from `start` (s) may not go."""
     origin = forcing.start
-    longest = min(bounds.longest, time_to_look(forcing, origin + start))
+    longest = min(bounds.longest, longest_safe_step(forcing, origin + start))
     stop = min(bounds.stop, start + longest)
     return (
         next_corner(forcing, origin + start, origin + stop) - origin if bounds.at_samples else stop

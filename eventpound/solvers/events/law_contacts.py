@@ -19,7 +19,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Event, EventKind, LawRecording
-from eventpound.solvers.events.dense import DenseStep, look
+from eventpound.solvers.events.dense import DenseStep, observe_at
 from eventpound.solvers.events.recorder import extremes_of
 from eventpound.solvers.events.run import Laws, Run
 from eventpound.tolerances import CLOSING_PLACE
@@ -117,12 +117,12 @@ def gather(end: float, run: Run, step: DenseStep) -> None:
     if not (laws.touch[CLOSED] != 0.0).any():
         return
     half = 0.5 * (end - step.dense.start)
-    seen = step.seen
+    observed = step.observed
     for i in range(NODES.size):
-        look(step.dense.start + half * (1.0 + NODES[i]), step)
+        observe_at(step.dense.start + half * (1.0 + NODES[i]), step)
         for p in range(laws.contact.size):
             j = laws.contact[p]
-            add_share(p, half * WEIGHTS[i], seen.contact_force[0, j], seen.gap[1, j], laws)
+            add_share(p, half * WEIGHTS[i], observed.contact_force[0, j], observed.gap[1, j], laws)
 
 
 _NO_LAWS = Laws(

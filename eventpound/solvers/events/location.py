@@ -1,6 +1,6 @@
 """When within a step something happens, and to whom, on the dense output of the step.
 
-A *quantity* is a value and its rate. Between two looks the Bernstein coefficients of
+A *quantity* is a value and its rate. Between two samples the Bernstein coefficients of
 the Hermite cubic bound it; while they leave room for a crossing the stretch is halved,
 so that a dip that begins and ends inside a step is found, and one that misses by more
 than the interpolant's own error is not reported.
@@ -24,7 +24,7 @@ from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein
-from eventpound.solvers.events.dense import DenseStep, look
+from eventpound.solvers.events.dense import DenseStep, observe_at
 from eventpound.solvers.events.event_bounds import (
     Found,
     Watched,
@@ -73,17 +73,17 @@ class Sample(NamedTuple):
 @kernel
 def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
     """The quantity at `tau` (s)."""
-    look(tau, step)
-    seen, i = step.seen, sought.index
+    observe_at(tau, step)
+    observed, i = step.observed, sought.index
     if sought.kind == _GAP:
-        return Sample(tau, seen.gap[0, i], seen.gap[1, i])
+        return Sample(tau, observed.gap[0, i], observed.gap[1, i])
     if sought.kind == _FORCE:
-        force, rate = room_at_rest(i, step.dynamics.watched, seen.contact_force)
+        force, rate = room_at_rest(i, step.dynamics.watched, observed.contact_force)
         return Sample(tau, force - sought.level, rate)
     if sought.kind == _MONITORED:
-        value, rate, _ = motion_of(i, step.dynamics.watched.at, seen)
+        value, rate, _ = motion_of(i, step.dynamics.watched.at, observed)
         return Sample(tau, value, rate)
-    room, rate = room_on_branch(i, step.dynamics.watched, seen.elongation)
+    room, rate = room_on_branch(i, step.dynamics.watched, observed.elongation)
     return Sample(tau, room - sought.level, rate)
 
 
@@ -266,8 +266,8 @@ def first_event(
                 happened.kinked[i] = True
     if not any_event:
         return np.inf
-    look(first, step)
-    add_vanished(step.seen, watched, rules, happened)
+    observe_at(first, step)
+    add_vanished(step.observed, watched, rules, happened)
     return first
 
 
@@ -304,7 +304,7 @@ def anything(happened: Happened) -> bool:
 
 
 @kernel
-def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happened) -> None:
+def add_vanished(observed: Observed, watched: Watched, rules: Rules, happened: Happened) -> None:
     """What happens in the instant in which a contact force vanishes.
 
     Of links that pass their kink in it, what follows is told by the other branch.
@@ -315,11 +315,11 @@ def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happe
     if not released:
         return
     for j in range(happened.released.size):
-        force, rate = room_at_rest(j, watched, seen.contact_force)
+        force, rate = room_at_rest(j, watched, observed.contact_force)
         if watched.unlocked[j] and force_vanishes(force, rate, watched.force_noise, rules.time):
             happened.released[j] = True
     for a in range(happened.kinked.size):
-        room, rate = room_on_branch(a, watched, seen.elongation)
+        room, rate = room_on_branch(a, watched, observed.elongation)
         # A speed that vanishes is a length in the scene's own time.
         unit = rules.time if watched.turns[a] else 1.0
         if passes_kink(unit * room, -unit * rate, rules.length, rules.time):
@@ -349,19 +349,19 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
     if not marked:
         return
     start = step.dense.start
-    times, seen = np.empty(PARTS + 1), np.empty((2, PARTS + 1, peak.size))
+    times, samples = np.empty(PARTS + 1), np.empty((2, PARTS + 1, peak.size))
     for i in range(PARTS + 1):
         times[i] = start + (end - start) * i / PARTS if i < PARTS else end
-        look(times[i], step)
+        observe_at(times[i], step)
         for k in range(running.at.displacement, running.at.end):
-            seen[0, i, k], seen[1, i, k], _ = motion_of(k, running.at, step.seen)
+            samples[0, i, k], samples[1, i, k], _ = motion_of(k, running.at, step.observed)
     for k in range(running.at.displacement, running.at.end):
         if not peak[k]:
             continue
         sought = Sought(_MONITORED, k, running.rounding[k], 0.0)
-        a = Sample(times[0], seen[0, 0, k], seen[1, 0, k])
+        a = Sample(times[0], samples[0, 0, k], samples[1, 0, k])
         for i in range(1, PARTS + 1):
-            b = Sample(times[i], seen[0, i, k], seen[1, i, k])
+            b = Sample(times[i], samples[0, i, k], samples[1, i, k])
             if a.rate * b.rate < 0.0:
                 _take_turn(a, b, near, sought, running, step)
             else:

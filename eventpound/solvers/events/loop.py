@@ -21,8 +21,8 @@ from eventpound.numerics.compiling import Stopwatch
 from eventpound.numerics.lending import fields_of, on_loan
 from eventpound.solvers.base import Energy, Recording, Task, Work
 from eventpound.solvers.events.instant_loop import (
-    look_again,
     put_last_instant,
+    search_step,
     settle_instant,
     take_state,
 )
@@ -33,7 +33,6 @@ from eventpound.solvers.events.recorder import (
     kept,
     own_recording,
 )
-from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     HAPPENED,
@@ -42,6 +41,7 @@ from eventpound.solvers.events.step_check import (
     Examination,
     check_energy,
 )
+from eventpound.solvers.events.step_search import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.solvers.events.underway import Underway
 from eventpound.tolerances import FRAMED, STOP_AT_SAMPLES
 
@@ -55,7 +55,7 @@ SINUSOID_STEP = 1.0
 """Longest step while contacts rest, in radians of a sinusoid: contact forces follow the
 ground and loads that may move no body, which no error of a step shows. Hermite's cubic through its
 ends is off by h^4/384 of a fourth derivative, by 3e-3 of the load at most. Of a pulse
-`eventpound.motion.forcing.time_to_look` misses nothing."""
+`eventpound.motion.forcing.longest_safe_step` misses nothing."""
 
 
 class Segment:
@@ -99,7 +99,7 @@ class Segment:
                 self.mode.unwatched if integrator.finds_events else self.mode.dynamics,
                 self.forcing,
                 frame,
-                now.step_looks,
+                now.step_observations,
                 np.zeros((2, size)),
                 np.zeros((2, size)),
                 now.record,
@@ -110,8 +110,9 @@ class Segment:
         )
         # The instant was made ready where it was settled.
         e.y[0], e.rate[0] = now.run.y[:size], now.run.rate[:size]
-        for seen, values in zip(*map(fields_of, (e.looks[0], now.run.looks[0])), strict=True):
-            seen[...] = values
+        both = e.observations[0], now.run.observations[0]
+        for observed, values in zip(*map(fields_of, both), strict=True):
+            observed[...] = values
         self.atol = now.run.atol[:size].copy()
         self._start = Start(self.mode, self.forcing, frame, e.y[0].copy(), self.atol)
         integrator.start(self._start)
@@ -131,7 +132,7 @@ class Segment:
                 now.go_on(self.origin + self.end)
                 if self._advance():
                     step = self.integrator.dense(self.start, self.end)
-                    if look_again(now, self.piece, step):
+                    if search_step(now, self.piece, step):
                         return True
             except ComputationError:
                 y = self._examined.y[self._reached_row]

@@ -17,7 +17,7 @@ from eventpound.mechanics.elements import branch_ends, has_branches, memory_on_b
 from eventpound.mechanics.link_law import STRENGTH, YIELDING
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_in
-from eventpound.mechanics.observables import Bodies, view
+from eventpound.mechanics.observables import Bodies, bodies_of
 from eventpound.mechanics.points import with_points
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -146,7 +146,7 @@ class ModeTable:
         if projection is not None:
             system = system._replace(projection=projection)
         frozen = np.zeros(model.hysteretic.size)
-        bodies = on_loan(view(model, clusters, system, *branches, frozen))
+        bodies = on_loan(bodies_of(model, clusters, system, *branches, frozen))
         system = on_loan(system)
         if model.sliders.size > 0 and not clusters.tree:
             clusters = clusters._replace(locked=locked_beside_sliders(model, ordinary, clusters))

@@ -102,17 +102,17 @@ def close_marked(run: Run) -> None:
 
 
 @kernel
-def put_instant(t: float, seen: Observed, record: RunRecord) -> None:
+def put_instant(t: float, observed: Observed, record: RunRecord) -> None:
     """Put one side of an event into the history and the extremes."""
-    write_row(t, seen, record.journal)
-    update_extremes(seen, t, record.running)
+    write_row(t, observed, record.journal)
+    update_extremes(observed, t, record.running)
 
 
 @kernel
 def make_ready(run: Run, mode: Dynamics, piece: CurrentPiece) -> None:
-    """Leave the present instant as a step begins with it: `y`, `rate`, `atol` and the first look.
+    """Leave the present instant as a step begins with it: `y`, `rate`, `atol`, what is observed.
 
-    The look has the gaps by their own variables.
+    The gaps observed are their own variables.
     """
     system, bodies, state = mode.system, mode.bodies, run.state
     rate = run.rate[: system.size]
@@ -121,11 +121,11 @@ def make_ready(run: Run, mode: Dynamics, piece: CurrentPiece) -> None:
     y = state_vector(bodies, system, bodies.mass, state.u, state.v, state.z, state.ledger)
     copy_numbers(y, run.y)
     copy_numbers(tolerances_of_state(run.rules, system, bodies), run.atol)
-    seen = run.looks[0]
-    observe_motion(0.0, y, rate, system, bodies, forcing, seen)
+    observed = run.observations[0]
+    observe_motion(0.0, y, rate, system, bodies, forcing, observed)
     for j in range(state.gap.size):
         if state.gap[j] < np.inf:
-            seen.gap[0, j], seen.gap[1, j] = state.gap[j], state.gap_rate[j]
+            observed.gap[0, j], observed.gap[1, j] = state.gap[j], state.gap_rate[j]
 
 
 @kernel
@@ -135,12 +135,12 @@ def put_present(run: Run, settled: bool) -> None:
     The bodies of a `settled` one are on their constraints.
     """
     record, t = run.record, run.state.now[0].t
-    seen = run.looks[0]
+    observed = run.observations[0]
     if settled:
         at = record.running.at
         for i in range(at.displacement, at.acceleration):
-            update_settled(i, value_of(i, at, seen), t, record.running)
-    put_instant(t, seen, record)
+            update_settled(i, value_of(i, at, observed), t, record.running)
+    put_instant(t, observed, record)
 
 
 @kernel

@@ -107,20 +107,20 @@ def put_line(t: float, ground: float, parts: tuple[Floats, ...], row: Floats) ->
 
 
 @scalar_kernel
-def write_row(t: float, seen: Observed, journal: Journal) -> None:
+def write_row(t: float, observed: Observed, journal: Journal) -> None:
     """Add the line of one instant; a spring's force is without the dashpot beside it."""
     row, springs = journal.rows[journal.cursor[WRITTEN]], journal.damping.size
     journal.cursor[WRITTEN] += 1
-    motion = seen.u, seen.v, seen.acceleration[0], seen.z[0]
+    motion = observed.u, observed.v, observed.acceleration[0], observed.z[0]
     put_line(
         t,
-        seen.ground[0],
-        (*motion, seen.force[0][:springs], seen.gap[0], seen.contact_force[0]),
+        observed.ground[0],
+        (*motion, observed.force[0][:springs], observed.gap[0], observed.contact_force[0]),
         row,
     )
-    force = line_of(seen.u.size, seen.z.shape[1], springs, seen.gap.shape[1]).force
+    force = line_of(observed.u.size, observed.z.shape[1], springs, observed.gap.shape[1]).force
     for s in range(springs):
-        row[force + s] -= journal.damping[s] * seen.elongation[1, s]
+        row[force + s] -= journal.damping[s] * observed.elongation[1, s]
 
 
 @kernel

@@ -53,19 +53,19 @@ def sundials_finds(settings: Settings, default: str) -> bool:
 
 
 @scalar_kernel
-def values_and_rates(seen: Observed, watched: Watched, pairs: Floats) -> None:
+def values_and_rates(observed: Observed, watched: Watched, pairs: Floats) -> None:
     """Fill `pairs` (n, 2), a value and its rate each, in the order of `owners`."""
     place = 0
-    for j in range(seen.gap.shape[1]):
+    for j in range(observed.gap.shape[1]):
         if watched.open_contacts[j]:
-            pairs[place, 0], pairs[place, 1] = seen.gap[0, j], seen.gap[1, j]
+            pairs[place, 0], pairs[place, 1] = observed.gap[0, j], observed.gap[1, j]
             place += 1
         elif watched.unlocked[j]:
-            pairs[place, 0], pairs[place, 1] = room_at_rest(j, watched, seen.contact_force)
+            pairs[place, 0], pairs[place, 1] = room_at_rest(j, watched, observed.contact_force)
             place += 1
-    for i in range(seen.elongation.shape[1]):
+    for i in range(observed.elongation.shape[1]):
         if watched.kink_low[i] > -np.inf or watched.kink_high[i] < np.inf:
-            pairs[place, 0], pairs[place, 1] = room_on_branch(i, watched, seen.elongation)
+            pairs[place, 0], pairs[place, 1] = room_on_branch(i, watched, observed.elongation)
             place += 1
 
 

@@ -26,7 +26,7 @@ class LoopProgress(NamedNumbers):
     knots: int  # reversals followed without an event
     short_steps: int  # short steps of this cascade
     phase: int  # where an instant goes on, as of `eventpound.solvers.events.instant`
-    finder: int  # who finds events in a step, as of `eventpound.solvers.events.second_look`
+    finder: int  # who finds events in a step, as of `eventpound.solvers.events.step_search`
 
 
 class Rules(NamedTuple):
@@ -113,7 +113,7 @@ class Run(NamedTuple):
     """All of it, as compiled functions hand it to each other, lent.
 
     instant: what the rules of an instant work on, arrays of the others; on loan, as record and
-    marks are. looks: three, as scratch. y, rate, atol: state vector, its
+    marks are. observations: three, as scratch. y, rate, atol: state vector, its
     rate and its absolute tolerances, as an integrator begins with them; long enough for any mode.
     """
 
@@ -123,7 +123,7 @@ class Run(NamedTuple):
     record: RunRecord
     happened: Happened
     marks: Found
-    looks: tuple[Observed, ...]
+    observations: tuple[Observed, ...]
     y: Floats
     rate: Floats
     atol: Floats

@@ -1,7 +1,7 @@
 """One compiled call after every step: observe, audit, inspect, keep the extremes.
 
 Most steps hold no event, so this is all that they cost; only where the
-inspection leaves a mark is the step looked at again, on the integrator's own
+inspection leaves a mark is the step searched, on the integrator's own
 interpolant. A step over samples of a record is inspected from sample to
 sample, on the Hermite polynomial of the smooth motion in the moving frame
 (`eventpound.mechanics.ground_frame`).
@@ -39,14 +39,14 @@ class Examination(NamedTuple):
     """What an examination works on, kept from step to step of a segment; on loan.
 
     dynamics, record, found: the mode, what the run leaves and marks, on loan themselves. frame:
-    the moving frame. looks: both ends, two instants between, and any other. y, rate (2, size):
+    the moving frame. observations: both ends, two between, and any other. y, rate (2, size):
     both ends. z_bound (H,); z_allowed: by how much a |z| may exceed it at the end of any step.
     """
 
     dynamics: Dynamics
     forcing: Forcing
     frame: Floats
-    looks: tuple[Observed, ...]
+    observations: tuple[Observed, ...]
     y: Floats
     rate: Floats
     record: RunRecord
@@ -106,7 +106,7 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
     forcing, mode = e.forcing, e.dynamics
     origin, dt = forcing.coefficients[0] - forcing.start, forcing.coefficients[1]
     rate = np.empty(mode.system.size)
-    low, before = tau_0, e.looks[first]
+    low, before = tau_0, e.observations[first]
     row = 2
     k = int(np.floor((tau_0 - origin) / dt)) + 1
     while origin + k * dt < tau_1 - SAME_SAMPLE * dt:
@@ -115,23 +115,23 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
         if tau <= low + SAME_SAMPLE * dt:
             continue
         y = _between(tau, tau_0, tau_1, first, e)
-        middle = e.looks[row]
+        middle = e.observations[row]
         observe_motion(tau, y, rate, mode.system, mode.bodies, forcing, middle)
         if inspect_step(before, middle, tau - low, mode.watched, e.record.running, e.found):
             return True
         low, before, row = tau, middle, 5 - row
-    after = e.looks[1 - first]
+    after = e.observations[1 - first]
     return inspect_step(before, after, tau_1 - low, mode.watched, e.record.running, e.found)
 
 
 @kernel
 def audit(
-    y: Floats, rate: Floats, seen: Observed, z_allowed: float, e: Examination
+    y: Floats, rate: Floats, observed: Observed, z_allowed: float, e: Examination
 ) -> tuple[int, float]:
     """Whether a state and its rate are numbers, and its |z| within their bounds; as `examine`."""
     excess = -1.0
     for h in range(e.z_bound.size):
-        excess = max(excess, abs(seen.z[0, h]) - e.z_bound[h])
+        excess = max(excess, abs(observed.z[0, h]) - e.z_bound[h])
     for i in range(y.size):
         if not np.isfinite(y[i]) or not np.isfinite(rate[i]):
             return NOT_FINITE, excess
@@ -149,7 +149,7 @@ def examine(
     tau_0, tau_1 : float
         Both ends (s, local).
     first : int
-        Row of `looks`, `y` and `rate` that holds the start; the other holds
+        Row of `observations`, `y` and `rate` that holds the start; the other holds
         the state at the end, and receives what is observed there.
     z_allowed : float
         By how much a |z| may exceed its bound.
@@ -164,14 +164,14 @@ def examine(
         Largest |z| less its bound, -1 where there is none.
     """
     mode, last = e.dynamics, 1 - first
-    after = e.looks[last]
+    after = e.observations[last]
     y, rate = e.y[last], e.rate[last]
     observe_motion(tau_1, y, rate, mode.system, mode.bodies, e.forcing, after)
     verdict, excess = audit(y, rate, after, z_allowed, e)
     if verdict != CLEAR:
         return verdict, excess
     if e.frame.shape[1] == 0:
-        before = e.looks[first]
+        before = e.observations[first]
         marked = inspect_step(before, after, tau_1 - tau_0, mode.watched, e.record.running, e.found)
     else:
         marked = _inspect_between_samples(tau_0, tau_1, first, e)
@@ -182,32 +182,32 @@ def examine(
 
 
 @scalar_kernel
-def broken_contact(seen: Observed, watched: Watched, length_noise: float) -> int:
+def broken_contact(observed: Observed, watched: Watched, length_noise: float) -> int:
     """The first contact that penetrates or pulls although no event was found, or -1.
 
     `length_noise`: gaps below this have no sign (m).
     """
-    for j in range(seen.gap.shape[1]):
-        if watched.open_contacts[j] and seen.gap[0, j] < -GAP_NOISE * length_noise:
+    for j in range(observed.gap.shape[1]):
+        if watched.open_contacts[j] and observed.gap[0, j] < -GAP_NOISE * length_noise:
             return j
-    for j in range(seen.gap.shape[1]):
-        room = room_at_rest(j, watched, seen.contact_force)[0]
+    for j in range(observed.gap.shape[1]):
+        room = room_at_rest(j, watched, observed.contact_force)[0]
         if watched.unlocked[j] and room < -PULLED * watched.force_noise:
             return j
     return -1
 
 
 def contact_error(
-    t: float, j: int, seen: Observed, watched: Watched, names: Sequence[str]
+    t: float, j: int, observed: Observed, watched: Watched, names: Sequence[str]
 ) -> ComputationError:
     """What to raise of contact j, which `broken_contact` names, those of sliders included."""
     name = names[j]
     if watched.open_contacts[j]:
-        depth = -float(seen.gap[0, j])
+        depth = -float(observed.gap[0, j])
         return ComputationError(
             f"contact {name!r} penetrates by {depth:.3g} m; try a smaller rtol", t
         )
-    pull = -float(in_python(room_at_rest)(j, watched, seen.contact_force)[0])
+    pull = -float(in_python(room_at_rest)(j, watched, observed.contact_force)[0])
     if watched.force_low[j] < 0.0 or watched.force_high[j] < np.inf:
         return ComputationError(
             f"slider {name!r} sticks with {pull:.3g} N more than it can; try a smaller rtol", t

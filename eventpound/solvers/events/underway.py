@@ -15,7 +15,7 @@ from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.elements import branch_within
 from eventpound.mechanics.model import Model, assemble, with_elements, with_sliders
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
-from eventpound.mechanics.observables import Observed, blank, initial_gaps
+from eventpound.mechanics.observables import Observed, blank_observed, initial_gaps
 from eventpound.mechanics.points import unique_forces_of
 from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.motion.base import Piece
@@ -107,7 +107,7 @@ class Underway:
         What compiled code works on, on loan.
     rules, state, record : Rules, State, RunRecord
         Parts of it.
-    step_looks : tuple of Observed
+    step_observations : tuple of Observed
         Those of `eventpound.solvers.events.step_check.Examination`, the same for every segment.
     mode : Mode
         The present one; `enter_mode` brings it up to date.
@@ -126,7 +126,7 @@ class Underway:
         self.record = _record_of(task, model, self.scales)
         self.run = _run_of(self.rules, self.state, self.record, model)
         # What lies between the ends of a step is looked at anew whenever it is asked for.
-        self.step_looks = looks_of(model, 2) + self.run.looks
+        self.step_observations = blank_observations(model, 2) + self.run.observations
         self.enter_mode()
 
     @property
@@ -243,15 +243,15 @@ class Underway:
         return most if limit is None else min(most, limit - self.steps)
 
     def broken_contact(self, t: float) -> ComputationError:
-        """What to raise where the last of the looks shows a contact that penetrates or pulls."""
-        seen, watched = self.run.looks[2], self.mode.watched
-        j = in_python(broken_contact)(seen, watched, self.rules.length_noise)
-        return contact_error(t, j, seen, watched, self.names)
+        """What to raise where the last observation has a contact that penetrates or pulls."""
+        observed, watched = self.run.observations[2], self.mode.watched
+        j = in_python(broken_contact)(observed, watched, self.rules.length_noise)
+        return contact_error(t, j, observed, watched, self.names)
 
 
-def looks_of(model: Model, count: int) -> tuple[Observed, ...]:
-    """Room for so many looks at a scene, each on loan."""
-    return tuple(on_loan(blank(*model.counts)) for _ in range(count))
+def blank_observations(model: Model, count: int) -> tuple[Observed, ...]:
+    """Empty observations of a scene, so many, each on loan."""
+    return tuple(on_loan(blank_observed(*model.counts)) for _ in range(count))
 
 
 def _rules_of(task: Task, scales: SceneScales) -> Rules:
@@ -379,7 +379,7 @@ def _run_of(rules: Rules, state: State, record: RunRecord, model: Model) -> Run:
             record=record,
             happened=happened,
             marks=on_loan(marks),
-            looks=looks_of(model, 3),
+            observations=blank_observations(model, 3),
             y=y,
             rate=rate,
             atol=atol,

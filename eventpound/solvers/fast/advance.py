@@ -17,8 +17,8 @@ from eventpound.motion.forcing import CurrentPiece, ground_acceleration, ground_
 from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.apart.steps import go_apart, may_go_apart
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
-from eventpound.solvers.fast.evaluate import look_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline, compiled_whole
+from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.extremes import distance_now, take_instant
 from eventpound.solvers.fast.followed import follows, put_on_branches
 from eventpound.solvers.fast.instant import instant_of, settle, start
@@ -33,7 +33,7 @@ from eventpound.tolerances import LENGTH
 _SAMPLES = int(Family.SAMPLES)
 
 
-@compiled_apart
+@compiled_noinline
 def advance(budget: int, run: FastRun) -> int:
     """Carry a run on by at most `budget` steps.
 
@@ -95,7 +95,7 @@ def carry_on(budget: int, run: FastRun) -> int:
     return GOING_ON
 
 
-@compiled_apart
+@compiled_noinline
 def _put_supports(piece: CurrentPiece, run: FastRun) -> None:
     """Put supports where they are now, and with them what they carry.
 
@@ -131,10 +131,10 @@ def _goes_with(b: int, s: int, run: FastRun) -> bool:
     return b == s or (b >= 0 and of_body[b] == of_body[s] >= 0 and not is_support(b, run.plan.mass))
 
 
-@compiled_apart
+@compiled_noinline
 def _settle_instant(run: FastRun) -> int:
     """Do the duties of the present instant and write down what follows it."""
-    plan, state, series, seen = run.plan, run.state, run.series, run.seen
+    plan, state, series, observed = run.plan, run.state, run.series, run.observed
     ground, progress = plan.ground, state.progress[0]
     t, order = state.now[0].t, plan.limits.order
     while progress.due == 1 and ground.ends[progress.piece] <= t:
@@ -144,18 +144,18 @@ def _settle_instant(run: FastRun) -> int:
     if progress.due == 1:
         forcing = lend(Forcing(piece.family, piece.coefficients, piece.samples, t))
         at = lend(instant_of(run))
-        pass_kinks(run.happened.kinked, seen.z, at)
+        pass_kinks(run.happened.kinked, observed.z, at)
         if lacks_branch(at):
             choose_clear_branches(at)
             if follows(run):
                 put_on_branches(run)
-            look_apart(0.0, order, g, run)
+            observe_at_noinline(0.0, order, g, run)
             onset = ground_onset(piece, t, order, series.ground)
-            choose_branches(seen.a, g, onset, at)
+            choose_branches(observed.a, g, onset, at)
         if any_slider(run):
             return IN_PYTHON
         run.happened.kinked[:] = False
-        ended = settle(forcing, seen.z, at, run)
+        ended = settle(forcing, observed.z, at, run)
         if ended != DONE:
             return ended
         progress.due = SETTLED
@@ -163,10 +163,10 @@ def _settle_instant(run: FastRun) -> int:
         progress.due = 0
         hold(run)
         run.happened.released[:] = False
-    look_apart(0.0, order, g, run)
+    observe_at_noinline(0.0, order, g, run)
     write_row(t, run)
     for k in range(plan.distances.shape[0]):
-        there = distance_now(k, seen.u, seen.gap, plan)
+        there = distance_now(k, observed.u, observed.gap, plan)
         update_settled(run.running.at.displacement + k, there, t, run.running)
     take_instant(t, run)
     return DONE

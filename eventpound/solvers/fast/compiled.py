@@ -20,13 +20,13 @@ def compiled_stepwise(function: F) -> F:
     return compile_with(function, counted=False, inlined=True)
 
 
-def compiled_apart(function: F) -> F:
+def compiled_noinline(function: F) -> F:
     """Compile what few steps need, which makes no arrays either, as a function of its own."""
     return compile_with(function, counted=False, fused=True, recipe=EVERY_STEP)
 
 
 def compiled_deferred(function: F) -> F:
-    """As `compiled_apart`, for what only some scenes need: compiled when one comes there."""
+    """As `compiled_noinline`, for what only some scenes need: compiled when one comes there."""
     return compile_with(function, counted=False, fused=True, recipe=EVERY_STEP, deferred=True)
 
 

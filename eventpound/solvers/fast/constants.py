@@ -24,7 +24,7 @@ from eventpound.numerics.latest import Keep, made_anew
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
-from eventpound.solvers.fast.compiled import compiled_apart
+from eventpound.solvers.fast.compiled import compiled_noinline
 from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.run import (
     MORE_TERMS,
@@ -32,6 +32,7 @@ from eventpound.solvers.fast.run import (
     Contacts,
     Each,
     FastMarks,
+    FastObserved,
     FastPlan,
     FastProgress,
     FastSeries,
@@ -40,7 +41,6 @@ from eventpound.solvers.fast.run import (
     Ground,
     Limits,
     Links,
-    Seen,
     Single,
 )
 from eventpound.solvers.fast.sampled.exact import blank_tables
@@ -320,11 +320,11 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
     )
 
 
-@compiled_apart
-def clear_scratch(series: FastSeries, happened: FastMarks, seen: Seen) -> None:
+@compiled_noinline
+def clear_scratch(series: FastSeries, happened: FastMarks, observed: FastObserved) -> None:
     """Leave nothing of the run before, which may have ended with numbers that are not finite."""
     series.block[:] = 0
     series.tables.step[:] = 0.0
     clear(happened)
     happened.vanished[:] = False
-    seen.contact_force[:] = 0.0
+    observed.contact_force[:] = 0.0

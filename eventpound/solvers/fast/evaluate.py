@@ -8,38 +8,38 @@ from eventpound.mechanics.clusters import is_support
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.lending import lend
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.followed import follows, see_followed
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
+from eventpound.solvers.fast.followed import follows, observe_followed
 from eventpound.solvers.fast.links import add_pull, elongation, gap_of, link_force
-from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries, FastState, Seen, piece_of
+from eventpound.solvers.fast.run import FastObserved, FastPlan, FastRun, piece_of
 from eventpound.solvers.fast.search import gap_polynomial, motion
-from eventpound.solvers.fast.sliding import any_slider, see_friction
+from eventpound.solvers.fast.sliding import any_slider, observe_slider_forces
 from eventpound.tolerances import OWN_GAP
 
 
-def blank_seen(plan: FastPlan) -> Seen:
+def blank_fast_observed(plan: FastPlan) -> FastObserved:
     """Empty arrays to fill."""
     bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
     hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
     sizes = (*(bodies,) * 3, hysteretic, links, bodies, *(contacts,) * 3, 2)
-    return Seen(*(np.zeros(size) for size in sizes))
+    return FastObserved(*(np.zeros(size) for size in sizes))
 
 
 @compiled
-def look(tau: float, order: int, ground: float, run: FastRun) -> None:
-    """Fill `seen` at the local time tau (s), the ground acceleration given (m/s²)."""
-    plan, state, series, seen = run.plan, run.state, run.series, run.seen
+def observe_at(tau: float, order: int, ground: float, run: FastRun) -> None:
+    """Fill `observed` at the local time tau (s), the ground acceleration given (m/s²)."""
+    plan, state, series, observed = run.plan, run.state, run.series, run.observed
     for b in range(plan.mass.size):
         c = series.of_body[b]
-        seen.u[b], seen.v[b] = state.u[b], state.v[b]
+        observed.u[b], observed.v[b] = state.u[b], state.v[b]
         if c < 0:
-            seen.v[b] = 0.0
+            observed.v[b] = 0.0
         elif tau > 0.0:
-            change, seen.v[b], series.expected[c] = motion(tau, order, series.X[c])
-            seen.u[b] += change
-    see_forces(ground, run)
+            change, observed.v[b], series.expected[c] = motion(tau, order, series.X[c])
+            observed.u[b] += change
+    observe_forces(ground, run)
     if tau > 0.0 and follows(run):
-        see_followed(tau, order, run)
+        observe_followed(tau, order, run)
     if series.load.shape[0] > 0:
         _add_loads(tau, run)
     _accelerations(run)
@@ -47,71 +47,71 @@ def look(tau: float, order: int, ground: float, run: FastRun) -> None:
     if state.progress[0].resting > 0:
         _contact_forces(run)
         if any_slider(run):
-            see_friction(run)
+            observe_slider_forces(run)
     else:
-        seen.contact_force[:] = 0.0
+        observed.contact_force[:] = 0.0
 
 
 @compiled
-def see_forces(ground: float, run: FastRun) -> None:
-    """Fill `seen` with z and the forces of the links at its displacements and velocities."""
-    plan, seen = run.plan, run.seen
-    seen.base[0] = ground
+def observe_forces(ground: float, run: FastRun) -> None:
+    """Fill `observed` with z and the forces of the links at its displacements and velocities."""
+    plan, observed = run.plan, run.observed
+    observed.base[0] = ground
     links, law = plan.links, plan.links.law
-    seen.body_force[:] = 0.0
-    seen.base[1] = 0.0
+    observed.body_force[:] = 0.0
+    observed.base[1] = 0.0
     for a in range(links.ends.shape[0]):
-        x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], seen.u, seen.v)
+        x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], observed.u, observed.v)
         force, z = link_force(a, x, run)
         if links.z_of_link[a] >= 0:
-            seen.z[links.z_of_link[a]] = z
-        seen.force[a] = force
-        add_pull(a, force + law.damping[a] * x_rate, links.ends, seen)
+            observed.z[links.z_of_link[a]] = z
+        observed.force[a] = force
+        add_pull(a, force + law.damping[a] * x_rate, links.ends, observed)
 
 
 @compiled_deferred
 def _add_loads(tau: float, run: FastRun) -> None:
     """Add the loads of the present piece to `body_force`; those of supports are their `a`."""
     piece = lend(piece_of(run.state.progress[0].piece, run.plan.ground))
-    add_body_loads(piece, run.state.now[0].t + tau, run.seen.body_force, run.seen.a)
+    add_body_loads(piece, run.state.now[0].t + tau, run.observed.body_force, run.observed.a)
 
 
 @compiled
 def _accelerations(run: FastRun) -> None:
-    plan, state, series, seen = run.plan, run.state, run.series, run.seen
+    plan, state, series, observed = run.plan, run.state, run.series, run.observed
     if state.progress[0].resting == 0:
         for b in range(plan.mass.size):
             if not is_support(b, plan.mass):
-                seen.a[b] = seen.body_force[b] / plan.mass[b]
+                observed.a[b] = observed.body_force[b] / plan.mass[b]
         return
     total = series.force
     total[:] = 0.0
     for b in range(plan.mass.size):
         c = series.of_body[b]
         if c >= 0:
-            total[c] += seen.body_force[b] * series.inverse_mass[c]
+            total[c] += observed.body_force[b] * series.inverse_mass[c]
     for b in range(plan.mass.size - 1, -1, -1):
         c = series.of_body[b]
         if c >= 0 and is_support(b, plan.mass):
-            total[c] = seen.a[b]
+            total[c] = observed.a[b]
     for b in range(plan.mass.size):
         c = series.of_body[b]
-        seen.a[b] = total[c] if c >= 0 else seen.base[0]
+        observed.a[b] = total[c] if c >= 0 else observed.base[0]
 
 
 @compiled
 def _gaps(tau: float, order: int, run: FastRun) -> None:
     """Gaps by their own variables where they are small, else by the displacements."""
-    plan, state, series, seen = run.plan, run.state, run.series, run.seen
+    plan, state, series, observed = run.plan, run.state, run.series, run.observed
     contacts = plan.contacts
     for j in range(contacts.gap.size):
         if state.resting[j]:
-            seen.gap[j] = seen.gap_rate[j] = 0.0
+            observed.gap[j] = observed.gap_rate[j] = 0.0
             continue
         if tau == 0.0 or state.gap[j] == np.inf:
-            seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]
+            observed.gap[j], observed.gap_rate[j] = state.gap[j], state.gap_rate[j]
             continue
-        gap, rate = gap_of(j, contacts, seen.u, seen.v)
+        gap, rate = gap_of(j, contacts, observed.u, observed.v)
         if gap < OWN_GAP * plan.limits.length:
             gap_polynomial(j, order, run)
             c = series.c
@@ -119,42 +119,42 @@ def _gaps(tau: float, order: int, run: FastRun) -> None:
             for k in range(order - 1, -1, -1):
                 rate = rate * tau + gap
                 gap = gap * tau + c[k]
-        seen.gap[j], seen.gap_rate[j] = gap, rate
+        observed.gap[j], observed.gap_rate[j] = gap, rate
 
 
 @compiled
 def _contact_forces(run: FastRun) -> None:
     """λ of the resting contacts from ``W λ = m (u'' + a_g) - f``, in which supports are roots."""
-    plan, state, series, seen = run.plan, run.state, run.series, run.seen
-    seen.contact_force[:] = 0.0
+    plan, series, observed = run.plan, run.series, run.observed
+    observed.contact_force[:] = 0.0
     for b in range(plan.mass.size):
         series.force[b] = 0.0
         if not is_support(b, plan.mass):
-            series.force[b] = plan.mass[b] * seen.a[b] - seen.body_force[b]
-    spread_forces(state, series, seen.contact_force)
+            series.force[b] = plan.mass[b] * observed.a[b] - observed.body_force[b]
+    spread_forces(observed.contact_force, run)
 
 
 @compiled
-def spread_forces(state: FastState, series: FastSeries, out: Floats) -> None:
+def spread_forces(out: Floats, run: FastRun) -> None:
     """Contact forces that put `series.force` (N,) on the bodies; it is overwritten."""
-    residual = series.force
-    for i in range(state.progress[0].edges):
+    series, residual = run.series, run.series.force
+    for i in range(run.state.progress[0].edges):
         b, parent = series.elimination[i, 0], series.elimination[i, 2]
         out[series.elimination[i, 1]] = series.elimination[i, 3] * residual[b]
         if parent >= 0:
             residual[parent] += residual[b]
 
 
-@compiled_apart
-def look_apart(tau: float, order: int, ground: float, run: FastRun) -> None:
-    """As `look`, where it is not part of every step."""
-    look(tau, order, ground, run)
+@compiled_noinline
+def observe_at_noinline(tau: float, order: int, ground: float, run: FastRun) -> None:
+    """As `observe_at`, where it is not part of every step."""
+    observe_at(tau, order, ground, run)
 
 
 @compiled_deferred
 def contact_force_series(order: int, run: FastRun) -> None:
     """Taylor coefficients of the forces of resting contacts."""
-    plan, state, series = run.plan, run.state, run.series
+    plan, series = run.plan, run.series
     mass, ends, residual = plan.mass, plan.links.ends, series.force
     for k in range(order - 1):
         for b in range(mass.size):
@@ -171,4 +171,4 @@ def contact_force_series(order: int, run: FastRun) -> None:
                 residual[ends[a, 1]] += series.F[a, k]
         for b in range(mass.size if series.load.shape[0] > 0 else 0):
             residual[b] = 0.0 if is_support(b, mass) else residual[b] - series.load[k, b]
-        spread_forces(state, series, series.contact_force[:, k])
+        spread_forces(series.contact_force[:, k], run)

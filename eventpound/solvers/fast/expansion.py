@@ -21,7 +21,7 @@ from eventpound.mechanics.elements import INVERSE, begin_curve, next_z, pull_per
 from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece, ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.followed import follow, follows, last_of_followed
 from eventpound.solvers.fast.links import (
     CORE,
@@ -71,7 +71,7 @@ def _add_loads(k: int, mass: Floats, series: FastSeries) -> None:
             series.force[series.of_body[b]] += series.load[k, b]
 
 
-@compiled_apart
+@compiled_noinline
 def drive_clusters(k: int, mass: Floats, series: FastSeries) -> None:
     """Coefficient k + 2 of the displacements of clusters with a support, which is the first."""
     for b in range(mass.size - 1, -1, -1):
@@ -150,7 +150,7 @@ def last_terms(order: int, power: float, over: float, clusters: int, series: Fas
     return worst
 
 
-@compiled_apart
+@compiled_noinline
 def _last_of_others(order: int, power: float, over: float, run: FastRun) -> float:
     """The same of z that are followed, and of what contacts at rest balance.
 

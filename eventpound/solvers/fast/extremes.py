@@ -16,8 +16,8 @@ from eventpound.mechanics.monitored import (
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.polynomial import first_root, only_root, value_and_slope
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.evaluate import look_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline
+from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries
 from eventpound.solvers.fast.search import (
@@ -33,9 +33,9 @@ from eventpound.tolerances import FLAT_WITHIN
 @compiled
 def take_instant(t: float, run: FastRun) -> None:
     """Take everything known at one time (s) into the extremes."""
-    seen, running = run.seen, run.running
-    take_all(seen.u, seen.a, seen.gap, seen.base[1], t, run)
-    update_all(running.at.contact_force, seen.contact_force, t, running)
+    observed, running = run.observed, run.running
+    take_all(observed.u, observed.a, observed.gap, observed.base[1], t, run)
+    update_all(running.at.contact_force, observed.contact_force, t, running)
 
 
 @compiled
@@ -78,7 +78,7 @@ def stays_within(i: int, low: float, high: float, running: Running) -> bool:
     return high <= running.maximum[i] + same and low >= running.minimum[i] - same
 
 
-@compiled_apart
+@compiled_noinline
 def turning_times(c: Floats, size: int, tau: float, turns: Floats, work: Floats) -> int:
     """Local times in (0, tau) at which a polynomial with the rate `c` turns, into `turns`.
 
@@ -225,7 +225,7 @@ def flat_time(plan: FastPlan) -> float:
 
 @compiled
 def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bool:
-    """Turning points within a step of length tau (s); whether `seen` was overwritten.
+    """Turning points within a step of length tau (s); whether `observed` was overwritten.
 
     `last` (N,) has the absolute accelerations at its end (m/s²). A quantity whose rate changes by
     no more than b all in all goes one way if its rate at the start is larger, and strays from the
@@ -237,7 +237,7 @@ def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bo
     # Where nothing rests on a barrier or is pushed, all links to the ground together pull at all
     # bodies.
     held = state.progress[0].resting > 0 or series.load.shape[0] > 0
-    looked = False
+    overwritten = False
     for b in range(bodies):
         c, m = series.of_body[b], plan.mass[b]
         if c < 0:
@@ -248,21 +248,21 @@ def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bo
         if _may_turn(at.acceleration + b, value, last[b], its_rate, series.bend[c], tau, running):
             series.d[:] = 0.0
             _add_acceleration_rate(c, 1.0, order, series)
-            looked = _turns(c, tau, order, run) or looked
+            overwritten = _turns(c, tau, order, run) or overwritten
     if held:
         value = _base_shear(order, plan, series)
         if any_slider(run):
             value += add_held_shear(order, run)
         if not _settled(at.base_shear, value, tau, order, series, running):
-            looked = _turns(-1, tau, order, run) or looked
+            overwritten = _turns(-1, tau, order, run) or overwritten
     elif _may_turn(at.base_shear, shear, end, rate, bend, tau, running):
         series.d[:] = 0.0
         for b in range(bodies):
             _add_acceleration_rate(series.of_body[b], -plan.mass[b], order, series)
-        looked = _turns(-1, tau, order, run) or looked
+        overwritten = _turns(-1, tau, order, run) or overwritten
     if state.progress[0].resting > 0:
         _at_rest(tau, order, run)
-    return looked
+    return overwritten
 
 
 @compiled
@@ -294,21 +294,21 @@ def _turns(c: int, tau: float, order: int, run: FastRun) -> bool:
 
     The rate is `series.d`; returned is whether it vanishes within the step.
     """
-    plan, state, series, seen, running = run.plan, run.state, run.series, run.seen, run.running
+    plan, series, observed, running = run.plan, run.series, run.observed, run.running
     turns = turning_times(series.d, order - 2, tau, series.turns, series.work)
     for m in range(turns):
         # No acceleration of the ground is needed there, but by what sticks to it.
         ground = 0.0
         if any_slider(run):
             ground, _ = value_and_slope(series.ground[: order + 1], series.turns[m])
-        look_apart(series.turns[m], order, ground, run)
-        t, near = state.now[0].t + series.turns[m], flat_time(plan)
+        observe_at_noinline(series.turns[m], order, ground, run)
+        t, near = run.state.now[0].t + series.turns[m], flat_time(plan)
         if c < 0:
-            update_turning_point(running.at.base_shear, seen.base[1], t, near, running)
+            update_turning_point(running.at.base_shear, observed.base[1], t, near, running)
             continue
         for b in range(plan.mass.size):
             if series.of_body[b] == c:
-                update_turning_point(running.at.acceleration + b, seen.a[b], t, near, running)
+                update_turning_point(running.at.acceleration + b, observed.a[b], t, near, running)
     return turns > 0
 
 

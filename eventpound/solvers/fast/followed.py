@@ -26,8 +26,8 @@ from eventpound.mechanics.elements import (
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import (
     compiled,
-    compiled_apart,
     compiled_deferred,
+    compiled_noinline,
     compiled_with_arrays,
 )
 from eventpound.solvers.fast.links import add_pull, elongation
@@ -67,7 +67,7 @@ def _put_on_branches(own: Floats, branch: Ints, out: Floats) -> None:
     out[:] = memory_on_branches(own, branch)
 
 
-@compiled_apart
+@compiled_noinline
 def _begin(run: FastRun) -> None:
     """Make ready what `follow` needs; the start of every link is known."""
     plan, state, series = run.plan, run.state, run.series
@@ -131,9 +131,9 @@ def last_of_followed(order: int, power: float, over: float, run: FastRun) -> flo
 
 
 @compiled_deferred
-def see_followed(tau: float, order: int, run: FastRun) -> None:
-    """Add to what is `seen` what z have changed by after tau (s); how well they hold there."""
-    plan, series, seen = run.plan, run.series, run.seen
+def observe_followed(tau: float, order: int, run: FastRun) -> None:
+    """Add to what is `observed` what z have changed by after tau (s); how well they hold there."""
+    plan, series, observed = run.plan, run.series, run.observed
     links, of = plan.links, run.series.followed
     for i in range(of.sigma.size):
         h = plan.hysteresis.followed[i]
@@ -141,27 +141,27 @@ def see_followed(tau: float, order: int, run: FastRun) -> None:
         if series.ends[a, 0] == series.ends[a, 1]:
             continue
         change, _, _ = motion(tau, order - 1, series.z[h])
-        seen.z[h] += change
+        observed.z[h] += change
         force = pull_per_z(a, series.memory) * change
-        seen.force[a] += force
-        add_pull(a, force, links.ends, seen)
+        observed.force[a] += force
+        add_pull(a, force, links.ends, observed)
     of.defect[0] = 0.0
     for i in range(of.sigma.size):
         of.defect[0] = max(of.defect[0], _defect(i, tau, order, run))
 
 
-@compiled_apart
+@compiled_noinline
 def _defect(i: int, tau: float, order: int, run: FastRun) -> float:
     """What the defect of z' after tau (s) leaves in z, in units of its tolerance."""
-    plan, series, seen, of = run.plan, run.series, run.seen, run.series.followed
+    plan, series, observed, of = run.plan, run.series, run.observed, run.series.followed
     h = plan.hysteresis.followed[i]
     a = plan.hysteresis.link[h]
     if series.ends[a, 0] == series.ends[a, 1]:
         return 0.0
-    _, x_rate = elongation(plan.links.ends[a, 0], plan.links.ends[a, 1], seen.u, seen.v)
-    beside = seen.z[plan.links.z_of_link[number_beside(a, series.memory)]]
+    _, x_rate = elongation(plan.links.ends[a, 0], plan.links.ends[a, 1], observed.u, observed.v)
+    beside = observed.z[plan.links.z_of_link[number_beside(a, series.memory)]]
     _, slope, _ = motion(tau, order - 1, series.z[h])
-    rate = z_rate(a, series.memory, x_rate, of.sigma[i], seen.z[h], beside)
+    rate = z_rate(a, series.memory, x_rate, of.sigma[i], observed.z[h], beside)
     return abs(rate - slope) * tau / order * of.weight[i]
 
 
@@ -170,5 +170,5 @@ def keep_followed(ended: bool, run: FastRun) -> None:
     """Make z at the end of a step the present ones; exactly zero where one `ended` it there."""
     for h in run.plan.hysteresis.followed:
         at_zero = ended and run.happened.crossed[h]
-        run.state.xi_r[h] = 0.0 if at_zero else run.seen.z[h]
+        run.state.xi_r[h] = 0.0 if at_zero else run.observed.z[h]
         run.happened.crossed[h] = False

@@ -19,8 +19,8 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.fast.compiled import (
     compiled,
-    compiled_apart,
     compiled_deferred,
+    compiled_noinline,
     compiled_with_arrays,
 )
 from eventpound.solvers.fast.followed import find_branches, follows, put_on_branches
@@ -164,7 +164,7 @@ def settle(forcing: Forcing, z: Floats, at: Instant, run: FastRun) -> int:
     return ended
 
 
-@compiled_apart
+@compiled_noinline
 def start(run: FastRun) -> None:
     """The first mode of a run, and its hysteretic links on their curves."""
     plan, state, series = run.plan, run.state, run.series

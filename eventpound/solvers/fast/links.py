@@ -24,10 +24,10 @@ from eventpound.mechanics.observables import difference, gap_rounding
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import (
     compiled,
-    compiled_apart,
+    compiled_noinline,
     compiled_whole,
 )
-from eventpound.solvers.fast.run import Contacts, FastPlan, FastRun, FastState, Links, Seen
+from eventpound.solvers.fast.run import Contacts, FastObserved, FastPlan, FastRun, FastState, Links
 
 
 @compiled
@@ -106,17 +106,17 @@ def link_force(a: int, x: float, run: FastRun) -> tuple[float, float]:
 
 
 @compiled
-def add_pull(a: int, force: float, ends: Ints, seen: Seen) -> None:
-    """Add what a force (N) of link a puts on its bodies, and on the ground, to what is `seen`."""
+def add_pull(a: int, force: float, ends: Ints, observed: FastObserved) -> None:
+    """Add what a force (N) of link a puts on its bodies, and on the ground, to `observed`."""
     first, second = ends[a, 0], ends[a, 1]
     if first >= 0:
-        seen.body_force[first] += force
+        observed.body_force[first] += force
     else:
-        seen.base[1] += force
+        observed.base[1] += force
     if second >= 0:
-        seen.body_force[second] -= force
+        observed.body_force[second] -= force
     else:
-        seen.base[1] -= force
+        observed.base[1] -= force
 
 
 @compiled
@@ -172,7 +172,7 @@ def ends_of_line(part: int, sigma: float, middle: float, width: float) -> tuple[
     return (low, high) if part <= UNLOADING else (-np.inf, np.inf)
 
 
-@compiled_apart
+@compiled_noinline
 def set_curve(
     h: int, x: float, sigma: float, y: float, hysteresis: Hysteresis, state: FastState
 ) -> None:
@@ -193,7 +193,7 @@ def turns_back(part: int, sigma: float, rate: float, still: float) -> bool:
     return part != CORE and sigma * rate < -still
 
 
-@compiled_apart
+@compiled_noinline
 def reverse(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> None:
     """Turn a link round at the elongation x (m)."""
     sigma = state.sigma[h]
@@ -201,7 +201,7 @@ def reverse(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> None:
     set_curve(h, x, -sigma, -y, hysteresis, state)
 
 
-@compiled_apart
+@compiled_noinline
 def cross_border(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> None:
     """Move a link that has reached the border of its part to the next."""
     part = state.part[h]

@@ -23,7 +23,7 @@ from eventpound.mechanics.link_law import YIELDING
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.numerics.power_series import sign_after
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.followed import follows
 from eventpound.solvers.fast.links import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.run import FastMarks, FastPlan, FastRun, FastSeries, Limits, Links
@@ -190,7 +190,7 @@ def _leaves_branch(
     return _passes_end(order, limit, kept, head, tail, run.plan.limits, series)
 
 
-@compiled_apart
+@compiled_noinline
 def _passes_end(
     order: int, limit: float, kept: bool, head: int, tail: int, limits: Limits, series: FastSeries
 ) -> float:
@@ -238,7 +238,7 @@ def _of_followed(order: int, h: float, first: float, run: FastRun) -> float:
     return first
 
 
-@compiled_apart
+@compiled_noinline
 def _end_of_branch(order: int, h: float, limit: float, a: int, z: int, run: FastRun) -> float:
     """When a link comes to an end of its branch within h, up to `limit` (s), or inf."""
     links, series, branch = run.plan.links, run.series, run.state.branch[a]
@@ -272,7 +272,7 @@ def _bends(h: float, a: int, z: int, order: int, run: FastRun) -> bool:
     return bool(reversal_jump(a, memory, size, beside) * travel > plan.limits.hysteresis)
 
 
-@compiled_apart
+@compiled_noinline
 def _zero_of_z(order: int, limit: float, z: int, run: FastRun) -> float:
     """When a z passes zero up to `limit` (s), or inf."""
     c, sign = run.series.c, sign_after(run.series.z[z], order, NO_Z)
@@ -324,7 +324,7 @@ def _has_end(end: int, order: int, run: FastRun) -> bool:
     return slides or end % 2 == 0
 
 
-@compiled_apart
+@compiled_noinline
 def _drop_rounding(
     force: Floats, order: int, level: float, plan: FastPlan, series: FastSeries
 ) -> None:

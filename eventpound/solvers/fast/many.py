@@ -24,20 +24,20 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.advance import carry_on
 from eventpound.solvers.fast.columns import Motions, VariantArrays
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
+from eventpound.solvers.fast.compiled import compiled, compiled_loop, compiled_noinline
 from eventpound.solvers.fast.constants import blank_happened, blank_series, clear_scratch
-from eventpound.solvers.fast.evaluate import blank_seen
+from eventpound.solvers.fast.evaluate import blank_fast_observed
 from eventpound.solvers.fast.links import all_variables, elongations
 from eventpound.solvers.fast.run import (
     GOING_ON,
     FastMarks,
+    FastObserved,
     FastPlan,
     FastRecord,
     FastRun,
     FastSeries,
     FastState,
     Ground,
-    Seen,
 )
 from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
@@ -137,7 +137,7 @@ class Scratch(NamedTuple):
 
     series: FastSeries
     happened: FastMarks
-    seen: Seen
+    observed: FastObserved
     events: Floats
     no_lines: Floats
     unique: Bools
@@ -162,7 +162,7 @@ def run(rows: VariantArrays, events: bool = False) -> Kept:
     scratch = Scratch(
         blank_series(plan),
         blank_happened(plan),
-        blank_seen(plan),
+        blank_fast_observed(plan),
         np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
         np.zeros((0, 0)),
         np.ones(contacts, np.bool_),
@@ -189,10 +189,10 @@ def run(rows: VariantArrays, events: bool = False) -> Kept:
     return kept._replace(log=np.concatenate(logs))
 
 
-@compiled_apart
+@compiled_noinline
 def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kept: Kept) -> int:
     """Run rows from `begun` on that are not a single body's; returns where the log was full."""
-    series, happened, seen = scratch.series, scratch.happened, scratch.seen
+    series, happened, observed = scratch.series, scratch.happened, scratch.observed
     for i in range(begun, kept.ended.size):
         if _is_full(scratch.events, kept):
             return i
@@ -201,11 +201,11 @@ def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kep
             continue
         state = state_of_run(i, rows.state, rows.motions)
         record = FastRecord(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
-        clear_scratch(series, happened, seen)
+        clear_scratch(series, happened, observed)
         record.unique[:] = True
         at = places_of(plan.mass.size, plan.links.springs, plan.contacts.gap.size)
         running = running_of(record.extremes, at)
-        one = lend(FastRun(plan, state, series, happened, record, seen, running))
+        one = lend(FastRun(plan, state, series, happened, record, observed, running))
         ended = GOING_ON
         while ended == GOING_ON:
             ended = carry_on(budget, one)
@@ -262,7 +262,7 @@ def _is_full(events: Floats, kept: Kept) -> bool:
     return 0 < kept.log.shape[0] < kept.logged[0] + events.shape[0]
 
 
-@compiled_apart
+@compiled_noinline
 def _count_events(
     t: float, count: int, events: Floats, since: Floats, impacts: Floats, resting_time: Floats
 ) -> None:

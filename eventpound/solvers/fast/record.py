@@ -27,10 +27,10 @@ from eventpound.motion.loads import (
 )
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.recorder import put_line
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.evaluate import look_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
+from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.run import FastProgress, FastRun
-from eventpound.solvers.fast.sliding import any_slider, see_z_of_sliders
+from eventpound.solvers.fast.sliding import any_slider, observe_slider_z
 
 
 @compiled
@@ -92,37 +92,37 @@ def end_if_over(run: FastRun) -> None:
         end_cascade(state.resting, now, run.record.events)
 
 
-@compiled_apart
+@compiled_noinline
 def write_row(t: float, run: FastRun) -> None:
     """Add a line to the history, where one is kept."""
-    plan, state, record, seen = run.plan, run.state, run.record, run.seen
+    plan, state, record, observed = run.plan, run.state, run.record, run.observed
     if not takes_rows(record.rows):
         return
     if any_slider(run):
-        see_z_of_sliders(run)
+        observe_slider_z(run)
     progress = state.progress[0]
     row = record.rows[progress.rows]
     progress.rows += 1
-    force = seen.force[: plan.links.springs]
-    parts = seen.u, seen.v, seen.a, seen.z, force, seen.gap, seen.contact_force
-    put_line(t, seen.base[0], parts, row)
+    gap, force = observed.gap, observed.force[: plan.links.springs]
+    parts = observed.u, observed.v, observed.a, observed.z, force, gap, observed.contact_force
+    put_line(t, observed.base[0], parts, row)
 
 
-@compiled_apart
+@compiled_noinline
 def sample_step(t: float, t_end: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
-    """History at the output times of a step; `seen` is overwritten."""
+    """History at the output times of a step; `observed` is overwritten."""
     plan, state = run.plan, run.state
     times, progress = plan.output_times, state.progress[0]
     while is_due(t_end, times, progress):
         at = times[progress.output]
         if at >= t:
             g = ground_acceleration(piece, at)
-            look_apart(at - t, order, g, run)
+            observe_at_noinline(at - t, order, g, run)
             write_row(at, run)
         progress.output += 1
 
 
-@compiled_apart
+@compiled_noinline
 def hold(run: FastRun) -> None:
     """Remember history and extremes as they are before a mode that may be none."""
     plan, state, series, record = run.plan, run.state, run.series, run.record
@@ -133,7 +133,7 @@ def hold(run: FastRun) -> None:
     copy_extremes(record.extremes, series.held)
 
 
-@compiled_apart
+@compiled_noinline
 def forget(run: FastRun) -> None:
     """Take back what has come into history and extremes since `hold`, and the time that passed.
 
@@ -153,45 +153,45 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 @compiled_deferred
 def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
-    """Add input, viscous and hysteretic work of a step (J) to the ledger; `seen` is overwritten."""
-    plan, state, seen = run.plan, run.state, run.seen
-    links, law = plan.links, plan.links.law
+    """Add input, viscous and hysteretic work of a step (J) to the ledger; overwrites `observed`."""
+    plan, state, observed = run.plan, run.state, run.observed
+    links, law, memory = plan.links, plan.links.law, run.series.memory
     for i in range(NODES.size):
         at = 0.5 * tau * (1.0 + NODES[i])
         weight = 0.5 * tau * WEIGHTS[i]
         g = ground_acceleration(piece, state.now[0].t + at)
-        look_apart(at, order, g, run)
+        observe_at_noinline(at, order, g, run)
         if piece.family == LOADED:
             _add_loaded(state.now[0].t + at, weight, piece, run)
         for b in range(plan.mass.size):
             if not is_support(b, plan.mass):
-                state.ledger[0] -= weight * plan.mass[b] * seen.v[b] * g
+                state.ledger[0] -= weight * plan.mass[b] * observed.v[b] * g
         for a in range(links.ends.shape[0]):
             first, second = links.ends[a, 0], links.ends[a, 1]
-            x_rate = seen.v[second] if second >= 0 else 0.0
-            x_rate -= seen.v[first] if first >= 0 else 0.0
+            x_rate = observed.v[second] if second >= 0 else 0.0
+            x_rate -= observed.v[first] if first >= 0 else 0.0
             state.ledger[1] += weight * law.damping[a] * x_rate * x_rate
             h = links.z_of_link[a]
             if h >= 0:
-                state.ledger[2] += weight * pull_per_z(a, run.series.memory) * seen.z[h] * x_rate
+                state.ledger[2] += weight * pull_per_z(a, memory) * observed.z[h] * x_rate
 
 
-@compiled_apart
+@compiled_noinline
 def _add_loaded(t: float, weight: float, piece: CurrentPiece, run: FastRun) -> None:
-    """Add `weight` (s) times the powers at the time t (s) that is `seen` (W) to the ledger.
+    """Add `weight` (s) times the powers at the time t (s) that is `observed` (W) to the ledger.
 
     Of forces; and of supports, each of which gives what moves with it what that
     takes, less what links and forces give.
     """
-    plan, series, seen, ledger = run.plan, run.series, run.seen, run.state.ledger
+    plan, series, observed, ledger = run.plan, run.series, run.observed, run.state.ledger
     coefficients = piece.coefficients
     for row in range(1, rows_of(coefficients) + 1):
         b = body_of(row, coefficients)
         if not is_driven(row, coefficients):
-            ledger[0] += weight * seen.v[b] * load_value(row, piece, t)
+            ledger[0] += weight * observed.v[b] * load_value(row, piece, t)
     for k in range(ledger.size - WORK_OF_SUPPORTS):
-        c, taken = series.of_body[k], -seen.body_force[k]
+        c, taken = series.of_body[k], -observed.body_force[k]
         for b in range(plan.mass.size):
             if series.of_body[b] == c and not is_support(b, plan.mass):
-                taken += plan.mass[b] * seen.a[b] - seen.body_force[b]
-        ledger[WORK_OF_SUPPORTS + k] += weight * seen.v[k] * taken
+                taken += plan.mass[b] * observed.a[b] - observed.body_force[b]
+        ledger[WORK_OF_SUPPORTS + k] += weight * observed.v[k] * taken

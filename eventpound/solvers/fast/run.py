@@ -300,7 +300,7 @@ class FastRecord(NamedTuple):
     unique: Bools
 
 
-class Seen(NamedTuple):
+class FastObserved(NamedTuple):
     """u, v (N,), absolute acceleration a (N,), z (H,), force (L,) without dashpots.
 
     body_force (N,): what the links put on a body. gap, gap_rate, contact_force
@@ -330,7 +330,7 @@ class FastRun(NamedTuple):
     series: FastSeries
     happened: FastMarks
     record: FastRecord
-    seen: Seen
+    observed: FastObserved
     running: Running
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from eventpound.contact.rest import acceleration_noise, is_none
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.run import FastRun, FastSeries, Limits
 from eventpound.tolerances import ACCELERATION, FORCE, GAP_COEFFICIENT
 
@@ -155,7 +155,7 @@ def gap_polynomial(j: int, order: int, run: FastRun) -> None:
         c[k] = 0.0
 
 
-@compiled_apart
+@compiled_noinline
 def first_fall(
     c: Floats, size: int, limit: float, level: float, slope_level: float, work: Floats
 ) -> float:
@@ -178,7 +178,7 @@ def first_fall(
     return first_root(c, size, limit, work)
 
 
-@compiled_apart
+@compiled_noinline
 def fall_beyond(c: Floats, size: int, limit: float, level: float, work: Floats) -> float:
     """When a polynomial has fallen past zero by more than rounding, or inf.
 
@@ -192,7 +192,7 @@ def fall_beyond(c: Floats, size: int, limit: float, level: float, work: Floats) 
     return tau
 
 
-@compiled_apart
+@compiled_noinline
 def release_time(
     c: Floats, size: int, h: float, limit: float, level: float, kept: bool, work: Floats
 ) -> float:

@@ -22,7 +22,7 @@ from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.compiled import by_python
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.followed import put_on_branches
 from eventpound.solvers.fast.instant import choose_directions, enter_mode, instant_of
 from eventpound.solvers.fast.links import all_variables
@@ -83,7 +83,7 @@ def set_room(j: int, end: int, order: int, run: FastRun) -> None:
     d[0] += -low if end == 0 else high
 
 
-@compiled_apart
+@compiled_noinline
 def end_of_slip(order: int, h: float, limit: float, a: int, side: float, run: FastRun) -> float:
     """When the slip of link a to a side ends within h, up to `limit` (s), or inf.
 
@@ -111,23 +111,23 @@ def end_of_slip(order: int, h: float, limit: float, a: int, side: float, run: Fa
 
 
 @compiled_deferred
-def see_friction(run: FastRun) -> None:
-    """Take the forces of the contacts of sliders from those of slips that are `seen`."""
-    links, seen = run.plan.links, run.seen
-    for j in range(seen.gap.size - links.sliders.size, seen.gap.size):
+def observe_slider_forces(run: FastRun) -> None:
+    """Take the forces of the contacts of sliders from those of slips that are `observed`."""
+    links, observed = run.plan.links, run.observed
+    for j in range(observed.gap.size - links.sliders.size, observed.gap.size):
         a = _link_of(j, run)
-        seen.force[a] -= seen.contact_force[j]
-        seen.base[1] -= _to_ground(a, run) * seen.contact_force[j]
+        observed.force[a] -= observed.contact_force[j]
+        observed.base[1] -= _to_ground(a, run) * observed.contact_force[j]
 
 
 @compiled_deferred
-def see_z_of_sliders(run: FastRun) -> None:
-    """Put friction over that of a slip into the z that are `seen`, for a line of the history."""
-    links, seen = run.plan.links, run.seen
-    for j in range(seen.gap.size - links.sliders.size, seen.gap.size):
+def observe_slider_z(run: FastRun) -> None:
+    """Put friction over that of a slip into the z of `observed`, for a line of the history."""
+    links, observed = run.plan.links, run.observed
+    for j in range(observed.gap.size - links.sliders.size, observed.gap.size):
         slip = _slip_force(j, run)
         z = links.z_of_link[_link_of(j, run)]
-        seen.z[z] = (slip - seen.contact_force[j]) / abs(slip)
+        observed.z[z] = (slip - observed.contact_force[j]) / abs(slip)
 
 
 @compiled
@@ -164,17 +164,17 @@ def settle_sliders(noise: float, run: FastRun, model: Model) -> int:
     model : Model
         The scene, its sliders with contacts of their own.
     """
-    state, seen = run.state, run.seen
+    state, observed = run.state, run.observed
     with by_python():
         at, piece = instant_of(run), piece_of(state.progress[0].piece, run.plan.ground)
-        ended = settle_beside_sliders(seen.contact_force, run.happened.kinked, at, model)
+        ended = settle_beside_sliders(observed.contact_force, run.happened.kinked, at, model)
         run.happened.kinked[:] = False
         if ended != DONE:
             return ended
         choose_directions(run)
-        all_variables(run.series.x, run.plan.hysteresis, state, seen.z)
+        all_variables(run.series.x, run.plan.hysteresis, state, observed.z)
         forcing = Forcing(piece.family, piece.coefficients, piece.samples, float(state.now[0].t))
-        ended = decide_sticks(seen.z, forcing, noise, at, model)
+        ended = decide_sticks(observed.z, forcing, noise, at, model)
         if ended == DONE:
             put_on_branches(run)
             enter_mode(run)

@@ -59,7 +59,7 @@ from eventpound.solvers.fast.constants import (
     plan_of,
     zero_state,
 )
-from eventpound.solvers.fast.evaluate import blank_seen
+from eventpound.solvers.fast.evaluate import blank_fast_observed
 from eventpound.solvers.fast.followed import follow
 from eventpound.solvers.fast.links import all_variables
 from eventpound.solvers.fast.record import rows_wanted
@@ -234,7 +234,7 @@ class Arrays:
         if plan is not run.plan:
             change_first(run, plan)
         if not plan.oscillator.alone:
-            in_python(clear_scratch)(run.series, run.happened, run.seen)
+            in_python(clear_scratch)(run.series, run.happened, run.observed)
         return run
 
     def _left(
@@ -364,7 +364,7 @@ def run_of(plan: FastPlan, moving: JoinedArrays, model: Model) -> FastRun:
         series=blank_series(plan, model.loads > 0),
         happened=blank_happened(plan),
         record=record,
-        seen=blank_seen(plan),
+        observed=blank_fast_observed(plan),
         running=in_python(running_of)(extremes, places_in(model)),
     )
 

@@ -14,8 +14,8 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.polynomial import value_and_slope
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.evaluate import contact_force_series, look, look_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline
+from eventpound.solvers.fast.evaluate import contact_force_series, observe_at, observe_at_noinline
 from eventpound.solvers.fast.expansion import (
     begin_series,
     choose_length,
@@ -48,9 +48,9 @@ from eventpound.solvers.fast.run import (
     PENETRATION,
     PULL,
     STUCK,
+    FastObserved,
     FastRun,
     FastState,
-    Seen,
 )
 from eventpound.solvers.fast.search import force_level, set_travel
 from eventpound.solvers.fast.sliding import room_at_rest
@@ -64,7 +64,7 @@ SOONER = 0.2
 @compiled
 def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     """One step, to `stop` (s) at most; DONE, or why not."""
-    plan, state, series, seen = run.plan, run.state, run.series, run.seen
+    plan, state, series, observed = run.plan, run.state, run.series, run.observed
     now, progress = state.now[0], state.progress[0]
     t = now.t
     order, h = _expansion(stop - t, piece, run)
@@ -75,8 +75,8 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     for _again in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
         g_end = ground_acceleration(piece, t_end)
-        look(tau, order, g_end, run)
-        error = defect_error(tau, order, g_end, seen.a, series)
+        observe_at(tau, order, g_end, run)
+        error = defect_error(tau, order, g_end, observed.a, series)
         pulls = _pulls(first <= tau, run)
         if progress.resting > 0:
             error = max(error, 2.0 if pulls else 0.0, _contact_force_error(tau, order, run))
@@ -93,9 +93,9 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     if fleeting:
         t_end = t
     if _record_inside(tau, t_end, order, piece, run):
-        look_apart(tau, order, g_end, run)
+        observe_at_noinline(tau, order, g_end, run)
     take_instant(t_end, run)
-    _move(state, seen)
+    _move(state, observed)
     pass_time(tau, t_end, 1, now, progress)
     if follows(run):
         keep_followed(first <= tau, run)
@@ -132,11 +132,11 @@ def _expansion(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[int, fl
 
 @compiled
 def _record_inside(tau: float, t_end: float, order: int, piece: CurrentPiece, run: FastRun) -> bool:
-    """Extremes, energy and rows inside a step; whether `seen` was overwritten."""
+    """Extremes, energy and rows inside a step; whether `observed` was overwritten."""
     plan, state = run.plan, run.state
     inside_step(tau, order, run)
     # Where a force turns is looked at, too.
-    copy_numbers(run.seen.a, run.series.end)
+    copy_numbers(run.observed.a, run.series.end)
     again = forces_inside_step(tau, order, run.series.end, run)
     if plan.limits.ledger:
         add_work(tau, order, piece, run)
@@ -150,12 +150,12 @@ def _record_inside(tau: float, t_end: float, order: int, piece: CurrentPiece, ru
 @compiled
 def _still_pressed(tau: float, run: FastRun) -> bool:
     """Whether truncation of the series released a contact too soon; the next step finds it."""
-    plan, state, series, happened, seen = run.plan, run.state, run.series, run.happened, run.seen
+    plan, state, happened, observed = run.plan, run.state, run.happened, run.observed
     if tau <= RELEASED_AT * plan.limits.time:
         return False
-    weak = force_level(state.progress[0].clusters, plan.limits, series)
-    for j in range(seen.gap.size):
-        if happened.released[j] and room_at_rest(j, seen.contact_force[j], run) > weak:
+    weak = force_level(state.progress[0].clusters, plan.limits, run.series)
+    for j in range(observed.gap.size):
+        if happened.released[j] and room_at_rest(j, observed.contact_force[j], run) > weak:
             return True
     return False
 
@@ -167,26 +167,26 @@ def audit(error: float, run: FastRun) -> int:
     None may penetrate, and one with variables of its own must stay the difference of the
     displacements that it is.
     """
-    plan, seen = run.plan, run.seen
+    plan, observed = run.plan, run.observed
     if not error <= 1.0:
         return NO_STEP
     length, contacts = plan.limits.length, plan.contacts
     largest = length
     for b in range(plan.mass.size):
-        if not (abs(seen.u[b]) < np.inf and abs(seen.v[b]) < np.inf):
+        if not (abs(observed.u[b]) < np.inf and abs(observed.v[b]) < np.inf):
             return NOT_FINITE
-        largest = max(largest, abs(seen.u[b]))
-    for j in range(seen.gap.size):
-        gap, _ = gap_of(j, contacts, seen.u, seen.v)
-        if not seen.gap[j] >= -PENETRATED * length:
+        largest = max(largest, abs(observed.u[b]))
+    for j in range(observed.gap.size):
+        gap, _ = gap_of(j, contacts, observed.u, observed.v)
+        if not observed.gap[j] >= -PENETRATED * length:
             return PENETRATION
         # One of a slider that slips is inf.
-        if not (abs(gap - seen.gap[j]) <= DRIFTED * largest or seen.gap[j] == np.inf):
+        if not (abs(gap - observed.gap[j]) <= DRIFTED * largest or observed.gap[j] == np.inf):
             return DRIFT
     return DONE
 
 
-@compiled_apart
+@compiled_noinline
 def _contact_force_error(tau: float, order: int, run: FastRun) -> float:
     """Error of the series of contact forces over a step in units of its tolerance, from its end.
 
@@ -202,7 +202,7 @@ def _contact_force_error(tau: float, order: int, run: FastRun) -> float:
     for j in range(forces.shape[0]):
         if not run.state.unlocked[j]:
             continue
-        force, left, right = run.seen.contact_force[j], contacts.left[j], contacts.right[j]
+        force, left, right = run.observed.contact_force[j], contacts.left[j], contacts.right[j]
         lighter = min(mass[left] if left >= 0 else np.inf, mass[right] if right >= 0 else np.inf)
         scale = lighter * limits.length / limits.time**2
         allowed = LOCAL_SHARE * limits.rtol * (scale + abs(force))
@@ -218,24 +218,24 @@ def _pulls(ends: bool, run: FastRun) -> bool:
     It has then passed the instant that lets it go. `ends`: whether what is to happen at the end
     does.
     """
-    state, seen, happened = run.state, run.seen, run.happened
+    state, observed, happened = run.state, run.observed, run.happened
     if state.progress[0].resting == 0:
         return False
     level = PULLED * force_level(state.progress[0].clusters, run.plan.limits, run.series)
-    for j in range(seen.gap.size):
+    for j in range(observed.gap.size):
         held = state.unlocked[j] and not (ends and happened.released[j])
-        if held and not room_at_rest(j, seen.contact_force[j], run) >= -level:
+        if held and not room_at_rest(j, observed.contact_force[j], run) >= -level:
             return True
     return False
 
 
 @compiled
-def _move(state: FastState, seen: Seen) -> None:
+def _move(state: FastState, observed: FastObserved) -> None:
     """Make the end of the step the present state."""
-    copy_numbers(seen.u, state.u)
-    copy_numbers(seen.v, state.v)
-    for j in range(seen.gap.size):
-        state.gap[j], state.gap_rate[j] = seen.gap[j], seen.gap_rate[j]
+    copy_numbers(observed.u, state.u)
+    copy_numbers(observed.v, state.v)
+    for j in range(observed.gap.size):
+        state.gap[j], state.gap_rate[j] = observed.gap[j], observed.gap_rate[j]
 
 
 @compiled

@@ -16,7 +16,7 @@ from numba import types
 
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_of
-from eventpound.mechanics.observables import Observed, blank
+from eventpound.mechanics.observables import Observed, blank_observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import callback, in_python, kernel
 from eventpound.numerics.lending import change_loan, on_loan, type_of_loan
@@ -38,7 +38,7 @@ class Roots(NamedTuple):
 
     fresh (1,): whether they are still to be asked for the first time. forces: whether contact
     forces or rates of x' are among them. watched: of the `Mode`. noise, lifted (n,), pairs (n, 2):
-    as `eventpound.solvers.events.roots` has them. seen: scratch, on loan.
+    as `eventpound.solvers.events.roots` has them. observed: scratch, on loan.
     """
 
     fresh: Bools
@@ -47,7 +47,7 @@ class Roots(NamedTuple):
     noise: Floats
     lifted: Floats
     pairs: Floats
-    seen: Observed
+    observed: Observed
 
 
 _CALLBACKS: dict[tuple[Any, Any], Any] = {}
@@ -88,7 +88,7 @@ def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int
             np.zeros(0),
             np.zeros(0),
             np.zeros((0, 2)),
-            on_loan(blank(bodies, links, contacts, hysteretic)),
+            on_loan(blank_observed(bodies, links, contacts, hysteretic)),
         )
     )
 
@@ -133,11 +133,11 @@ class RootFunctions:
     def point_to(self, mode: Mode) -> None:
         """Be the functions of a mode, from a start on."""
         watched, noise = mode.watched, noise_of(mode.watched, self._length, self._time)
-        self._mode, fresh, seen = mode, self.loan.fresh, self.loan.seen
+        self._mode, fresh, observed = mode, self.loan.fresh, self.loan.observed
         fresh[0] = True
         forces = bool(watched.unlocked.any() or watched.turns.any())
         lifted, pairs = np.zeros(noise.size), np.zeros((noise.size, 2))
-        roots = Roots(fresh, forces, watched, noise, lifted, pairs, seen)
+        roots = Roots(fresh, forces, watched, noise, lifted, pairs, observed)
         change_loan(self.loan, roots)
 
     def marks(self) -> tuple[Bools, Bools, Bools]:
@@ -147,9 +147,9 @@ class RootFunctions:
 
 @kernel
 def evaluate(roots: Roots, out: Floats) -> None:
-    """The functions (2 n,) of what has been observed into `roots.seen`."""
+    """The functions (2 n,) of what has been observed into `roots.observed`."""
     pairs = out.reshape(roots.noise.size, 2)
-    values_and_rates(roots.seen, roots.watched, pairs)
+    values_and_rates(roots.observed, roots.watched, pairs)
     if roots.fresh[0]:
         lift(pairs, roots.noise, roots.lifted)
         roots.fresh[0] = False

@@ -72,14 +72,14 @@ class CvodeData(NamedTuple):
 class CvodeHandles(NamedTuple):
     """Addresses of a CVODE object and its state vector, and where times are put; on loan.
 
-    look: a vector for interpolated states. given: what its callbacks are handed. rtol: that of
+    interpolated: a vector for states. given: what its callbacks are handed. rtol: that of
     the motion. spent (1,): Jacobians since the last start or reversal that are counted.
     """
 
     memory: int
     vector: int
     reached: Floats
-    look: int
+    interpolated: int
     given: CvodeData
     rtol: float
     spent: Ints
@@ -158,8 +158,8 @@ def _shown(of: tuple[CvodeHandles, Examination], tau: float) -> Observed:
     system, y = e.dynamics.system, np.empty(e.dynamics.system.size)
     put_state(_put_inner, handles, tau, e, y)
     # Nothing in a line depends on rates: any will do.
-    observe(tau, y, e.rate[0], system, e.dynamics.bodies, e.forcing, e.looks[4])
-    return e.looks[4]
+    observe(tau, y, e.rate[0], system, e.dynamics.bodies, e.forcing, e.observations[4])
+    return e.observations[4]
 
 
 @kernel
@@ -200,8 +200,8 @@ def derivatives(handles: CvodeHandles, t: float) -> Floats:
 
 @kernel
 def _put_inner(handles: CvodeHandles, tau: float, k: int, y: Floats) -> None:
-    get_dky(handles.memory, tau, k, handles.look)
-    copy_numbers(array_at(array_pointer(handles.look), y.size, np.float64), y)
+    get_dky(handles.memory, tau, k, handles.interpolated)
+    copy_numbers(array_at(array_pointer(handles.interpolated), y.size, np.float64), y)
 
 
 @kernel
@@ -285,7 +285,7 @@ class DirectCvode(Direct):
         if plan.key not in self._memories:
             callback, data = address_of(right_hand_side, given, 2), given.address
             memory = CvodeMemory(self.library, self.method, plan, callback, data)
-            numbers = np.zeros(2), memory.look, given, self.rtol, np.zeros(1, np.int64)
+            numbers = np.zeros(2), memory.interpolated, given, self.rtol, np.zeros(1, np.int64)
             handles = on_loan(CvodeHandles(memory.address, memory.vector, *numbers))
             self._memories[plan.key] = memory, handles
         found: tuple[CvodeMemory, CvodeHandles] = self._memories[plan.key]

@@ -28,7 +28,7 @@ from eventpound.solvers.sundials.descriptor_steps import (
     begin_descriptor,
     examine_descriptor,
     from_clusters,
-    look_at_descriptor,
+    observe_interpolated,
     to_clusters,
 )
 from eventpound.solvers.sundials.integrators import Direct, InDescriptorForm
@@ -67,14 +67,14 @@ class IdaData(NamedTuple):
 class IdaHandles(NamedTuple):
     """Addresses of an IDA object and its vectors; where times and drifts are put; on loan.
 
-    look: a vector for interpolated unknowns. given: what its callbacks are handed. mode: the
+    interpolated: a vector for unknowns. given: what its callbacks are handed. mode: the
     loop's. reached (1,): where IDA is (s). followed: whose steps. time: the scene's own T (s).
     """
 
     memory: int
     vector: int
     rate_vector: int
-    look: int
+    interpolated: int
     given: IdaData
     mode: Dynamics
     reached: Floats
@@ -167,11 +167,11 @@ def _shown(of: tuple[IdaHandles, Examination], tau: float) -> Observed:
     """The motion at `tau` (s) of the last step, as it is observed."""
     handles, e = of
     problem = handles.given.problem
-    ida_get_dky(handles.memory, tau, 0, handles.look)
-    y = _unknowns(handles.look, handles)
+    ida_get_dky(handles.memory, tau, 0, handles.interpolated)
+    y = _unknowns(handles.interpolated, handles)
     to_moving_frame(problem, tau, -1.0, y)
-    look_at_descriptor(tau, y, problem, e.looks[4])
-    return e.looks[4]
+    observe_interpolated(tau, y, problem, e.observations[4])
+    return e.observations[4]
 
 
 @kernel
@@ -198,8 +198,8 @@ def derivatives(handles: IdaHandles, t: float) -> Floats:
 
 @kernel
 def _put_inner(handles: IdaHandles, tau: float, k: int, clusters: Floats) -> None:
-    ida_get_dky(handles.memory, tau, k, handles.look)
-    y, mode = _unknowns(handles.look, handles), handles.mode
+    ida_get_dky(handles.memory, tau, k, handles.interpolated)
+    y, mode = _unknowns(handles.interpolated, handles), handles.mode
     to_clusters(y, 1.0 if k == 0 else 0.0, mode.system, mode.bodies, clusters)
 
 
@@ -267,7 +267,7 @@ class DirectIda(InDescriptorForm, Direct):
                 memory.address,
                 memory.vector,
                 memory.rate_vector,
-                memory.look,
+                memory.interpolated,
                 self._given,
                 self._mode.dynamics,
                 np.zeros(1),

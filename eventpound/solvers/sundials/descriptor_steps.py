@@ -230,7 +230,7 @@ def examine_descriptor(
     """
     problem, drift = followed.problem, followed.drift
     forcing, mode, last = e.forcing, e.dynamics, 1 - first
-    after = e.looks[last]
+    after = e.observations[last]
     rate = np.zeros(y.size)
     observe_descriptor(tau_1, y, problem, rate, after)
     to_clusters(y, 1.0, mode.system, mode.bodies, e.y[last])
@@ -239,7 +239,7 @@ def examine_descriptor(
         return verdict, excess
     gap, gap_rate = constraint_errors(problem.d, y)
     drift[0], drift[1] = max(drift[0], gap), max(drift[1], gap_rate)
-    before, running = e.looks[first], e.record.running
+    before, running = e.observations[first], e.record.running
     if inspect_step(before, after, tau_1 - tau_0, mode.watched, running, e.found):
         return MARKED, excess
     update_extremes(after, forcing.start + tau_1, running)
@@ -249,7 +249,7 @@ def examine_descriptor(
 
 
 @kernel
-def look_at_descriptor(tau: float, y: Floats, problem: DescriptorProblem, out: Observed) -> None:
+def observe_interpolated(tau: float, y: Floats, problem: DescriptorProblem, out: Observed) -> None:
     """Observe an interpolated state: its contact forces from their equations.
 
     An interpolating polynomial of λ would carry the kinks of a record, and is

@@ -14,7 +14,7 @@ import numpy as np
 from eventpound.mechanics.descriptor_motion import DescriptorProblem
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.observables import blank
+from eventpound.mechanics.observables import blank_observed
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
@@ -190,7 +190,7 @@ class Wrapped(_Duties):
         self.jacobian_calls = 0
         self._present: Any = None
         self._time = 0.0
-        self._looked_back = False
+        self._has_interpolated = False
         self._spent = 0
         # Functions where the last step was left, and the end of SUNDIALS' whole step.
         self._left = np.empty(0)
@@ -203,7 +203,7 @@ class Wrapped(_Duties):
     def _begun_at(self, tau: float) -> None:
         """The present object has been started at the local time `tau` (s)."""
         self._time = tau
-        self._looked_back = False
+        self._has_interpolated = False
         self._spent = 0
         self._whole = -np.inf
 
@@ -223,7 +223,7 @@ class Wrapped(_Duties):
         While it interpolates within its last step it would look for roots there, too: nothing has
         changed then.
         """
-        if self._looked_back:
+        if self._has_interpolated:
             out[:] = self._left
             return
         self._values(tau, y.copy(), out)
@@ -231,13 +231,13 @@ class Wrapped(_Duties):
 
     def _interpolated(self, tau: float) -> Floats:
         """The unknowns at the local time `tau` (s) of the last step."""
-        self._looked_back = True
+        self._has_interpolated = True
         y: Floats = self._present.step(tau, "normal").y
         return y
 
     def _step(self, stop: float) -> tuple[int, float, Floats]:
         """One accepted step, not beyond `stop` (s): a flag, time reached and unknowns there."""
-        repeats, self._looked_back = self._looked_back, False
+        repeats, self._has_interpolated = self._has_interpolated, False
         result = self._present.step(stop, "onestep", stop)
         if repeats and result.success and result.t == self._time:
             # After interpolating, SUNDIALS first hands out the end of its last step again.
@@ -264,7 +264,7 @@ class Wrapped(_Duties):
     def _check(
         self, start: float, end: float, first: int, allowed: float, e: Examination
     ) -> tuple[int, float]:
-        """Of `carry_on`: a step with output times in it is left to a second look."""
+        """Of `carry_on`: a step with output times in it is left to a search."""
         verdict, excess = self._examine(start, end, first, allowed, e)
         due = in_python(is_due)(e.forcing.start + end, e.record.journal)
         return MARKED if verdict == CLEAR and due else verdict, excess
@@ -318,7 +318,7 @@ class InDescriptorForm(_Duties):
         super().__init__()
         self.scales, self.drift = modes.scales, np.zeros(2)
         self._modes = modes
-        self._scratch = on_loan(blank(*modes.model.counts))
+        self._scratch = on_loan(blank_observed(*modes.model.counts))
         self._own: DescriptorMode
         self._problem: DescriptorProblem
         self._followed: Followed

@@ -188,7 +188,7 @@ class CvodeMemory(_Memory):
 
     Attributes
     ----------
-    address, vector, look : int
+    address, vector, interpolated : int
         The object, the vector of its state, and another to interpolate into.
     """
 
@@ -203,7 +203,7 @@ class CvodeMemory(_Memory):
 
         size = layout.atol.size
         super().__init__(library, library, create, size, 3, layout.band)
-        self.vector, self.look, tolerances = self._vectors
+        self.vector, self.interpolated, tolerances = self._vectors
         self._values(self.vector, size)[:] = 0.0
         self._values(tolerances, size)[:] = layout.atol
         self._set_up(
@@ -235,7 +235,7 @@ class IdaMemory(_Memory):
 
     Attributes
     ----------
-    address, vector, rate_vector, look : int
+    address, vector, rate_vector, interpolated : int
         The object, the vectors of its unknowns and their rates, and another to
         interpolate into.
     """
@@ -255,7 +255,7 @@ class IdaMemory(_Memory):
         common, ida = library
         size = atol.size
         super().__init__(common, ida, ida.IDACreate, size, 5)
-        self.vector, self.rate_vector, self.look, tolerances, differential = self._vectors
+        self.vector, self.rate_vector, self.interpolated, tolerances, differential = self._vectors
         self._values(self.vector, size)[:] = self._values(self.rate_vector, size)[:] = 0.0
         self._values(tolerances, size)[:] = atol
         self._values(differential, size)[:] = np.where(algebraic, 0.0, 1.0)

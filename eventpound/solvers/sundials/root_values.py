@@ -15,7 +15,7 @@ from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.sundials.callback_data import Roots, evaluate
-from eventpound.solvers.sundials.descriptor_steps import look_at_descriptor
+from eventpound.solvers.sundials.descriptor_steps import observe_interpolated
 
 
 @kernel
@@ -29,7 +29,7 @@ def cluster_roots(
     out: Floats,
 ) -> None:
     """Fill `out` (2 n,) with the functions of a state of the clusters, relative to the ground."""
-    observe_motion(tau, state, np.empty(state.size), system, bodies, forcing, roots.seen)
+    observe_motion(tau, state, np.empty(state.size), system, bodies, forcing, roots.observed)
     evaluate(roots, out)
 
 
@@ -39,9 +39,9 @@ def descriptor_roots(
 ) -> None:
     """Fill `out` (2 n,) from unknowns relative to the ground, whose λ is overwritten."""
     if roots.forces:
-        look_at_descriptor(tau, y, problem, roots.seen)
+        observe_interpolated(tau, y, problem, roots.observed)
     else:
-        _observe_bodies(y, problem.d, roots.seen)
+        _observe_bodies(y, problem.d, roots.observed)
     evaluate(roots, out)
 
 

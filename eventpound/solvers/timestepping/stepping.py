@@ -177,7 +177,7 @@ class FixedStepProgress(NamedNumbers):
 class FixedStepRecord(NamedTuple):
     """Room for a run: events (e, EVENT_WIDTH), output times (n,), rows and the last two steps.
 
-    A row (w,) is that of `eventpound.solvers.events.recorder`; `seen` holds views of the last
+    A row (w,) is that of `eventpound.solvers.events.recorder`; `observed` holds views of the last
     one; `running` are the extremes. work (4,): energies (J). now (1,): a `Now`, of
     which the events count only; progress (1,).
     """
@@ -186,7 +186,7 @@ class FixedStepRecord(NamedTuple):
     times: Floats
     rows: Floats
     last: Floats
-    seen: Observed
+    observed: Observed
     running: Running
     work: Floats
     now: Records
@@ -221,13 +221,13 @@ def blank_record(model: Model, times: Floats, scales: Sizes, room: int) -> Fixed
     _, ground, u, v, a, z, force, gap, contact = columns_of(last[1:], model)
     elongation, shear = np.zeros((1, model.springs)), np.zeros(1)
     # Of motion, force and gap only: no second rates, and no pulls.
-    seen = u[0], v[0], np.zeros(0), z, force, a, contact, shear, gap, elongation, ground[0]
+    observed = u[0], v[0], np.zeros(0), z, force, a, contact, shear, gap, elongation, ground[0]
     return FixedStepRecord(
         np.zeros((room, EVENT_WIDTH)),
         times,
         np.zeros((times.size, width)),
         last,
-        Observed(*seen, np.zeros((0, 0))),
+        Observed(*observed, np.zeros((0, 0))),
         in_python(running_of)(blank_extremes(at, scales), at),
         np.zeros(4),
         np.zeros(1, Now.layout),
@@ -273,31 +273,31 @@ def gap_of(structure: Structure, j: int, u: Floats) -> float:
 
 
 @step_kernel
-def _look(
+def _observe_present(
     t: float, ground: float, structure: Structure, state: FixedStepState, record: FixedStepRecord
 ) -> None:
-    """Fill `seen`, and so the last row, from the present state."""
-    seen, acceleration = record.seen, record.seen.acceleration[0]
-    record.last[1, 0], seen.ground[0], seen.shear[0] = t, ground, 0.0
-    copy_values(state.u, seen.u)
-    copy_values(state.v, seen.v)
-    copy_values(state.z, seen.z[0])
+    """Fill `observed`, and so the last row, from the present state."""
+    observed, acceleration = record.observed, record.observed.acceleration[0]
+    record.last[1, 0], observed.ground[0], observed.shear[0] = t, ground, 0.0
+    copy_values(state.u, observed.u)
+    copy_values(state.v, observed.v)
+    copy_values(state.z, observed.z[0])
     copy_values(state.f, acceleration)
-    copy_values(state.contact, seen.contact_force[0])
+    copy_values(state.contact, observed.contact_force[0])
     for j in range(structure.gap.size):
-        seen.gap[0, j] = gap_of(structure, j, state.u)
+        observed.gap[0, j] = gap_of(structure, j, state.u)
         pull_together(acceleration, structure.left[j], structure.right[j], -state.contact[j])
     for b in range(structure.mass.size):
         acceleration[b] /= structure.mass[b]
     for link in range(structure.bound.size):
         first, second = structure.ends[link, 0], structure.ends[link, 1]
         if link < structure.springs:
-            seen.elongation[0, link] = difference(state.u, first, second)
-            seen.force[0, link] = state.link[link]
+            observed.elongation[0, link] = difference(state.u, first, second)
+            observed.force[0, link] = state.link[link]
         if first < 0 or second < 0:
             rate = difference(state.v, first, second)
             force = state.link[link] + structure.law.damping[link] * rate
-            seen.shear[0] += force if first < 0 else -force
+            observed.shear[0] += force if first < 0 else -force
 
 
 @step_kernel
@@ -316,8 +316,8 @@ def record_step(t: float, ground: float, run: Stepping) -> None:
     record = run.record
     before, now = record.last[0], record.last[1]
     copy_values(now, before)
-    _look(t, ground, run.structure, run.state, record)
-    update_extremes(record.seen, t, record.running)
+    _observe_present(t, ground, run.structure, run.state, record)
+    update_extremes(record.observed, t, record.running)
     i = record.progress[0].rows
     while i < record.times.size and record.times[i] <= t:
         share = 1.0

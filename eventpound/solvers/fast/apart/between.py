@@ -12,8 +12,8 @@ from eventpound.mechanics.monitored import update_extreme, update_turning_point
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.evaluate import see_forces
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline
+from eventpound.solvers.fast.evaluate import observe_forces
 from eventpound.solvers.fast.extremes import (
     flat_time,
     set_rate,
@@ -192,8 +192,8 @@ def take_shear(now: float, then: float, piece: CurrentPiece, run: FastRun) -> No
 @compiled
 def take_shear_at(t: float, run: FastRun) -> None:
     """Take the base shear at a time (s) that all series reach."""
-    _look(t, 0.0, run)
-    update_extreme(run.running.at.base_shear, run.seen.base[1], t, run.running)
+    _observe_at(t, 0.0, run)
+    update_extreme(run.running.at.base_shear, run.observed.base[1], t, run.running)
 
 
 @compiled
@@ -228,15 +228,15 @@ def _follow_shear(place: int, now: float, then: float, run: FastRun) -> None:
 
     The forces of the links tell how much it is.
     """
-    plan, series, seen, running = run.plan, run.series, run.seen, run.running
+    plan, series, observed, running = run.plan, run.series, run.observed, run.running
     c, d, order, near = series.c, series.d, 3, flat_time(run.plan)
     c[:] = 0.0
     for b in range(plan.mass.size):
         order = max(order, _add_acceleration(b, -plan.mass[b], now, run))
     set_rate(c, order, d)
     for m in range(turning_times(d, order, then - now, series.turns, series.work)):
-        _look(now + series.turns[m], 0.0, run)
-        update_turning_point(place, seen.base[1], now + series.turns[m], near, running)
+        _observe_at(now + series.turns[m], 0.0, run)
+        update_turning_point(place, observed.base[1], now + series.turns[m], near, running)
 
 
 @compiled
@@ -250,16 +250,16 @@ def _add_acceleration(b: int, factor: float, now: float, run: FastRun) -> int:
 
 
 @compiled
-def _look(t: float, ground: float, run: FastRun) -> None:
-    """Fill `seen` with motion and forces at a time (s) that all series reach."""
-    plan, seen, each = run.plan, run.seen, run.series.each
+def _observe_at(t: float, ground: float, run: FastRun) -> None:
+    """Fill `observed` with motion and forces at a time (s) that all series reach."""
+    plan, observed, each = run.plan, run.observed, run.series.each
     for b in range(plan.mass.size):
         body = each.body[b]
-        change, seen.v[b], _ = motion(t - each.now[b].t, each.order[b], body.x[:])
-        seen.u[b] = body.u + change
-    see_forces(ground, run)
+        change, observed.v[b], _ = motion(t - each.now[b].t, each.order[b], body.x[:])
+        observed.u[b] = body.u + change
+    observe_forces(ground, run)
     for b in range(plan.mass.size):
-        seen.a[b] = seen.body_force[b] / plan.mass[b]
+        observed.a[b] = observed.body_force[b] / plan.mass[b]
 
 
 @compiled
@@ -272,15 +272,15 @@ def write_rows(now: float, then: float, piece: CurrentPiece, run: FastRun) -> No
         progress.output += 1
 
 
-@compiled_apart
+@compiled_noinline
 def write_row_at(t: float, piece: CurrentPiece, run: FastRun) -> None:
     """A row of the history at a time (s) that all series reach."""
-    contacts, seen, state = run.plan.contacts, run.seen, run.state
-    _look(t, ground_acceleration(piece, t), run)
+    contacts, observed, state = run.plan.contacts, run.observed, run.state
+    _observe_at(t, ground_acceleration(piece, t), run)
     for j in range(contacts.gap.size):
-        seen.gap[j], seen.gap_rate[j] = gap_of(j, contacts, seen.u, seen.v)
+        observed.gap[j], observed.gap_rate[j] = gap_of(j, contacts, observed.u, observed.v)
         if t == state.now[0].t:
             # Where they set out there is a row already, which is to be the same.
-            seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]
-        seen.contact_force[j] = 0.0
+            observed.gap[j], observed.gap_rate[j] = state.gap[j], state.gap_rate[j]
+        observed.contact_force[j] = 0.0
     write_row(t, run)

@@ -13,7 +13,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece
 from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.apart.between import A_HIGH, A_LOW, U_HIGH, U_LOW
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.extremes import flat_time, take_turn
 from eventpound.solvers.fast.links import turns_back
 from eventpound.solvers.fast.run import GOING_ON, Each, FastRun
@@ -23,7 +23,7 @@ from eventpound.solvers.fast.single.body import (
     SingleRun,
     absolute_acceleration,
     leave_curve,
-    look,
+    observe_end,
     set_constants,
     spring_state,
     turn_round,
@@ -35,7 +35,7 @@ from eventpound.solvers.fast.single.record import (
     take_if_new,
 )
 from eventpound.solvers.fast.single.series import know_piece, pair_at
-from eventpound.solvers.fast.single.step import FREE, arrive, look_at_ground, propose
+from eventpound.solvers.fast.single.step import FREE, arrive, observe_ground, propose
 
 _GAUSSIAN = int(Family.GAUSSIAN)
 
@@ -64,7 +64,7 @@ def running_of_own(b: int, each: Each) -> Running:
     return running_of(each.extremes[b], places_of(1, 0, 0))
 
 
-@compiled_apart
+@compiled_noinline
 def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
     """Let a body do something at a time (s); whether its step, within the window, holds."""
     plan, each, h = run.plan, run.series.each, run.plan.links.grounded[b]
@@ -102,7 +102,7 @@ def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
     return holds
 
 
-@compiled_apart
+@compiled_noinline
 def _start(b: int, piece: CurrentPiece, one: SingleRun, run: FastRun) -> None:
     """Make the present state of a body that of its own run."""
     state, each, h, body = run.state, run.series.each, run.plan.links.grounded[b], one.body
@@ -124,7 +124,7 @@ def _start(b: int, piece: CurrentPiece, one: SingleRun, run: FastRun) -> None:
         each.extremes[b, row, own.acceleration] = extremes[row, at.acceleration + b]
 
 
-@compiled_apart
+@compiled_noinline
 def _take_up(b: int, what: int, now: float, window: Window, one: SingleRun, run: FastRun) -> None:
     """Begin a step at a time (s) where the body is, whose velocity an impact may have changed."""
     body, state = one.body, run.state
@@ -140,13 +140,13 @@ def _take_up(b: int, what: int, now: float, window: Window, one: SingleRun, run:
         body.even, body.odd = pair_at(now, window.piece, body)
 
 
-@compiled_apart
+@compiled_noinline
 def _show(b: int, window: Window, one: SingleRun, each: Each) -> None:
     """Series of a body in an exact step, which ends with the window."""
     body, dt, reach = one.body, window.end - window.start, 0.0
     order = show_line(body.v, body.a - body.even, dt, body)
     each.order[b], each.length[b], each.event[b], each.turned[b] = order, dt, FREE, False
-    look_at_ground(window.end, window.piece, body)
+    observe_ground(window.end, window.piece, body)
     body.next_z = spring_state(body.u + body.change, one)
     for k in range(order, 0, -1):
         reach = (reach + abs(body.x[k])) * dt
@@ -161,8 +161,8 @@ def _arrive(b: int, now: float, piece: CurrentPiece, one: SingleRun, each: Each)
         each.length[b], each.until[b] = now - begun, now
         each.event[b], each.turned[b] = FREE, False
         body.change, body.rate, body.bend = motion(now - begun, order, body.x[:])
-        look_at_ground(now, piece, body)
-        look(one)
+        observe_ground(now, piece, body)
+        observe_end(one)
     if body.damping > 0.0:
         damped_acceleration(begun, each.length[b], order, one)
     return arrive(each.length[b], now, each.turned[b], each.event[b], one) == GOING_ON

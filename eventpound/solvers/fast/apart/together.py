@@ -40,7 +40,7 @@ from eventpound.solvers.fast.apart.between import (
     write_rows,
 )
 from eventpound.solvers.fast.apart.own import GO_ON, REBOUND, SHOW, STAY, TAKE_UP, Window, go
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.instant import instant_of
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import end_if_over, has_room, is_due, pass_time, takes_rows
@@ -48,7 +48,7 @@ from eventpound.solvers.fast.run import FastRun
 from eventpound.tolerances import LISTED_SPEED, OWN_GAP, TOGETHER
 
 
-@compiled_apart
+@compiled_noinline
 def go_together(budget: int, window: Window, run: FastRun) -> int:
     """Take all bodies through a window, or as far as it goes; steps taken, at most `budget`.
 
@@ -116,7 +116,7 @@ def _watch_all_of(who: int, now: float, run: FastRun) -> None:
             each.closing[j] = time_of_closing(j, now, run)
 
 
-@compiled_apart
+@compiled_noinline
 def _show_all(window: Window, run: FastRun) -> bool:
     """Show the motion of all bodies; whether one was not before."""
     each = run.series.each
@@ -143,7 +143,7 @@ def _show(b: int, window: Window, run: FastRun) -> None:
     box[A_LOW, b], box[A_HIGH, b] = min(now, then) - stray, max(now, then) + stray
 
 
-@compiled_apart
+@compiled_noinline
 def _join(b: int, now: float, window: Window, run: FastRun) -> None:
     """Let a body that goes by an exact step take part from a time (s) on.
 
@@ -159,7 +159,7 @@ def _join(b: int, now: float, window: Window, run: FastRun) -> None:
             _watch(j, now, run)
 
 
-@compiled_apart
+@compiled_noinline
 def _impact(j: int, tau: float, window: Window, run: FastRun) -> bool:
     """An impact at contact j at a time (s); whether it is one of two bodies only, which part.
 

@@ -24,7 +24,7 @@ from eventpound.solvers.fast.apart.between import (
 )
 from eventpound.solvers.fast.apart.own import Window, running_of_own
 from eventpound.solvers.fast.apart.together import go_together
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import has_room
@@ -40,7 +40,7 @@ _ANY = 2**62
 """Steps of bodies in a window, which has an end."""
 
 
-@compiled_apart
+@compiled_noinline
 def windows_fit(dt: float, run: FastRun) -> bool:
     """Whether bounds of the motion of all bodies in a time dt (s) are good."""
     each = run.series.each

@@ -19,7 +19,7 @@ from typing import NamedTuple
 from eventpound.contact.cascade import is_fleeting
 from eventpound.numerics.polynomial import only_root
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.evaluate import look
+from eventpound.solvers.fast.evaluate import observe_at
 from eventpound.solvers.fast.expansion import defect_error
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
 from eventpound.solvers.fast.links import (
@@ -158,7 +158,7 @@ def do_event(what: int, which: int, g: float, run: FastRun) -> None:
         else:
             cross_border(h, x, plan.hysteresis, state)
         return
-    look(0.0, plan.limits.order, g, run)
+    observe_at(0.0, plan.limits.order, g, run)
     write_row(state.now[0].t, run)
     if what == KINK:
         write_row(state.now[0].t, run)

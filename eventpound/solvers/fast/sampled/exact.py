@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_stepwise
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline, compiled_stepwise
 from eventpound.tolerances import NO_TERM
 
 MOST_BODIES = 4
@@ -135,7 +135,7 @@ def _is_table(i: int, dt: float, tangents: Floats, tables: SampleTables) -> bool
     return bool(same)
 
 
-@compiled_apart
+@compiled_noinline
 def _make_table(
     dt: float, tangents: Floats, ends: Ints, damping: Floats, mass: Floats, tables: SampleTables
 ) -> int:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.borrowing import copy_numbers
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.extremes import take_all
 from eventpound.solvers.fast.links import elongations, gap_of, saturate
 from eventpound.solvers.fast.record import end_if_over, is_due, next_output, pass_time, sample_step
@@ -94,7 +94,7 @@ def set_gaps(plan: FastPlan, state: FastState) -> None:
         state.gap[j], state.gap_rate[j] = gap_of(j, contacts, state.u, state.v)
 
 
-@compiled_apart
+@compiled_noinline
 def write_line(i: int, slope: float, t_end: float, piece: CurrentPiece, run: FastRun) -> None:
     """Rows of the history before the end of a step by matrices (s)."""
     plan, state = run.plan, run.state

@@ -26,7 +26,7 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.records import NamedNumbers
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.links import (
     CORE,
     DOWN,
@@ -213,7 +213,7 @@ def set_tolerance(body: SingleBody) -> None:
 
 
 @compiled
-def look(run: SingleRun) -> None:
+def observe_end(run: SingleRun) -> None:
     """What the forces are at the end of the step."""
     body, u = run.body, run.body.u + run.body.change
     body.next_z = spring_state(u, run)
@@ -226,7 +226,7 @@ def absolute_acceleration(u: float, v: float, z: float, body: SingleBody) -> flo
     return body.pull - body.stiffness * u - body.damping * v - body.strength * z
 
 
-@compiled_apart
+@compiled_noinline
 def turn_round(u: float, run: SingleRun) -> None:
     """Put the link on the curve for the other direction at u (m); ``σ y`` stays."""
     body = run.body
@@ -237,7 +237,7 @@ def turn_round(u: float, run: SingleRun) -> None:
     body.part = part_at(body.xi_r, body.core_end, body.down_end, body.saturation)
 
 
-@compiled_apart
+@compiled_noinline
 def pass_border(u: float, body: SingleBody) -> None:
     """Move a link that has reached the border of its part to the next."""
     part = body.part

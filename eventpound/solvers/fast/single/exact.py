@@ -48,7 +48,7 @@ from eventpound.motion.forcing import (
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred_loop, compiled_noinline
 from eventpound.solvers.fast.extremes import stays_within, turning_times
 from eventpound.solvers.fast.links import (
     CORE,
@@ -68,7 +68,7 @@ from eventpound.solvers.fast.single.body import (
     SingleRun,
     absolute_acceleration,
     gap_to,
-    look,
+    observe_end,
     place_of,
     set_force,
     set_tolerance,
@@ -92,7 +92,7 @@ LONGEST_GAUSSIAN = 0.25
 _SAMPLES = int(Family.SAMPLES)
 
 
-@compiled_apart
+@compiled_noinline
 def rest_step(stop: float, piece: CurrentPiece, run: SingleRun) -> bool:
     """One step at rest, to `stop` (s) at most; False where the record has no room.
 
@@ -204,7 +204,7 @@ def _way(body: SingleBody) -> float:
     return math.copysign(1.0, body.v if body.v != 0.0 else body.a)
 
 
-@compiled_apart
+@compiled_noinline
 def swing_freely(stop: float, piece: CurrentPiece, run: SingleRun) -> int:
     """Go to the next turn or barrier, or to `stop` (s); GOING_ON, or why not.
 
@@ -234,7 +234,7 @@ def swing_freely(stop: float, piece: CurrentPiece, run: SingleRun) -> int:
     body.change, body.rate, body.bend = change, rate, -k * (y + change)
     body.next_odd = body.next_g = 0.0
     set_tolerance(body)
-    look(run)
+    observe_end(run)
     if not (tau > 0.0 and fits(tau, 1, body)):
         return NOT_FREE
     t_end = stop if tau == left else t + tau
@@ -248,7 +248,7 @@ ROW_ORDER = 16
 """Order of the series that gives rows between samples: 0.5^8 / 16! is far below rounding."""
 
 
-@compiled_apart
+@compiled_noinline
 def _fill_table(stiffness: float, dt: float, body: SingleBody, step: Floats) -> None:
     """Numbers of a step of length dt (s): dt, α, β."""
     step[0] = dt

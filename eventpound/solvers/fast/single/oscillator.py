@@ -35,10 +35,10 @@ from eventpound.motion.forcing import (
 from eventpound.numerics.lending import lend, whole
 from eventpound.solvers.fast.compiled import (
     compiled,
-    compiled_apart,
     compiled_deferred,
     compiled_deferred_loop,
     compiled_loop,
+    compiled_noinline,
 )
 from eventpound.solvers.fast.links import turns_back
 from eventpound.solvers.fast.record import has_room_for
@@ -78,7 +78,7 @@ from eventpound.solvers.fast.single.step import take_step
 from eventpound.tolerances import SAME_SAMPLE
 
 
-@compiled_apart
+@compiled_noinline
 def impact_at_barrier(side: float, j: int, run: SingleRun) -> None:
     """Newton's law at the barrier on one side, contact j, which the body has met."""
     body, limits, restitution = run.body, run.plan.limits, run.plan.contacts.restitution[j]
@@ -147,7 +147,7 @@ def _write_rest(rests: bool, j: int, rate: float, run: SingleRun) -> None:
     write_change(code, j, new_group(run.now), rate, run.now, run.events)
 
 
-@compiled_apart
+@compiled_noinline
 def oscillate_alone(budget: int, run: FastRun) -> int:
     """`oscillate` of a run, lent."""
     single = whole(run.series.single)

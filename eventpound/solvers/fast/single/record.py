@@ -17,7 +17,7 @@ from eventpound.mechanics.monitored import (
 )
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.solvers.events.recorder import line_of
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.extremes import stays_within, take_turn, turning_times
 from eventpound.solvers.fast.record import is_due, takes_rows
 from eventpound.solvers.fast.search import motion
@@ -31,7 +31,7 @@ from eventpound.solvers.fast.single.body import (
 from eventpound.solvers.fast.single.series import swing
 
 
-@compiled_apart
+@compiled_noinline
 def write_single_row(
     t: float, g: float, change: float, v: float, a: float, z: float, run: SingleRun
 ) -> None:
@@ -77,7 +77,7 @@ def write_present(t: float, g: float, run: SingleRun) -> None:
         write_single_row(t, g, 0.0, body.v, g if body.rests_on != 0.0 else body.a, body.z, run)
 
 
-@compiled_apart
+@compiled_noinline
 def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: SingleRun) -> bool:
     """History at the output times of a step; False where the record has no room.
 
@@ -121,7 +121,7 @@ def _take_forces(t: float, a: float, shear: float, run: SingleRun) -> None:
     update_extreme(run.running.at.base_shear, shear, t, run.running)
 
 
-@compiled_apart
+@compiled_noinline
 def _take_turn(t: float, u: float, a: float, run: SingleRun) -> None:
     """Take a turning point, or the end of a stretch, at t (s) into the extremes."""
     running, near = run.running, run.body.flat_time
@@ -140,7 +140,7 @@ def take_if_new(t: float, u: float, a: float, run: SingleRun) -> None:
         _take_turn(t, u, a, run)
 
 
-@compiled_apart
+@compiled_noinline
 def take_settled(t: float, a: float, run: SingleRun) -> None:
     """Take a settled instant: places just put on their constraints, and what jumps in it.
 

@@ -28,7 +28,7 @@ from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, only_root
 from eventpound.numerics.power_series import integer_power
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.search import stays_above
 from eventpound.solvers.fast.single.body import ROOM, SingleBody, tangent
 from eventpound.tolerances import RETRIED, SAME_SAMPLE
@@ -78,7 +78,7 @@ def linear_series(stiffness: float, most: int, body: SingleBody) -> tuple[int, b
     return order, good
 
 
-@compiled_apart
+@compiled_noinline
 def curved_series(kappa: float, most: int, body: SingleBody) -> int:
     """The same on a curved part, where ``z' = ξ' (1 - κ P)``, ``P = |z|^n``; z is ``σ y``.
 
@@ -170,7 +170,7 @@ def swing(tau: float, body: SingleBody) -> tuple[float, float]:
 _ZERO, _SINUSOIDS, _SAMPLES = int(Family.ZERO), int(Family.SINUSOIDS), int(Family.SAMPLES)
 
 
-@compiled_apart
+@compiled_noinline
 def know_piece(i: int, piece: CurrentPiece, body: SingleBody) -> None:
     """Fill g for a piece where it is the same throughout."""
     family, coefficients = piece.family, piece.coefficients
@@ -209,14 +209,14 @@ def pair_at(t: float, piece: CurrentPiece, body: SingleBody) -> tuple[float, flo
     return 0.0, 0.0
 
 
-@compiled_apart
+@compiled_noinline
 def expand_ground(t: float, order: int, piece: CurrentPiece, g: Floats) -> float:
     """Fill g at t (s) for the other motions, for which even and odd are 1; the acceleration."""
     ground_taylor(piece, t, order, g)
     return float(g[0])
 
 
-@compiled_apart
+@compiled_noinline
 def other_acceleration(t: float, piece: CurrentPiece) -> float:
     """Acceleration of the other motions (m/s²)."""
     return float(ground_acceleration(piece, t))
@@ -253,7 +253,7 @@ def first_turn(order: int, first: int, h: float, body: SingleBody, work: Floats)
     return _located_turn(sign, degree, first, h, body, work)
 
 
-@compiled_apart
+@compiled_noinline
 def _located_turn(
     sign: float, degree: int, first: int, h: float, body: SingleBody, work: Floats
 ) -> float:
@@ -304,7 +304,7 @@ def _put_distance(distance: float, sign: float, order: int, body: SingleBody) ->
         body.work[k] = -sign * body.x[k]
 
 
-@compiled_apart
+@compiled_noinline
 def crossing(distance: float, sign: float, order: int, h: float, body: SingleBody) -> float:
     """The same where the motion goes one way throughout, and further than that within h."""
     _put_distance(distance, sign, order, body)

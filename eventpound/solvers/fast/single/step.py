@@ -14,7 +14,7 @@ from eventpound.contact.cascade import end_flight, is_over
 from eventpound.contact.event_rows import list_all
 from eventpound.contact.impacts import FULL
 from eventpound.motion.forcing import CurrentPiece
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.expansion import shortened
 from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
@@ -35,7 +35,7 @@ from eventpound.solvers.fast.single.body import (
     SingleRun,
     acceleration_level,
     gap_to,
-    look,
+    observe_end,
     pass_border,
     place_of,
     set_tolerance,
@@ -118,7 +118,7 @@ def expand_step(a_g: float, run: SingleRun) -> tuple[int, int, float]:
     return order, first, h
 
 
-@compiled_apart
+@compiled_noinline
 def _leading(order: int, level: float, body: SingleBody) -> int:
     """First coefficient that differs from rounding, of a body that all but stands still.
 
@@ -274,8 +274,8 @@ def propose(
     tau, event, turn = first_event(h, order, first, run)
     for halving in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
-        look_at_ground(t_end, piece, body)
-        look(run)
+        observe_ground(t_end, piece, body)
+        observe_end(run)
         if fits(tau, order, body):
             break
         if halving == MOST_HALVINGS - 1:
@@ -329,7 +329,7 @@ def fits(tau: float, order: int, body: SingleBody) -> bool:
     return defect <= body.of_v * order and defect * tau <= body.of_u * order
 
 
-@compiled_apart
+@compiled_noinline
 def _shortened(tau: float, order: int, body: SingleBody) -> float:
     """Factor by which a step is to be shortened that does not fit."""
     defect = abs(body.next_a - body.next_g - body.bend) * tau
@@ -348,7 +348,7 @@ def audit(stalled: int, body: SingleBody) -> int:
 
 
 @compiled
-def look_at_ground(t: float, piece: CurrentPiece, body: SingleBody) -> None:
+def observe_ground(t: float, piece: CurrentPiece, body: SingleBody) -> None:
     """What the ground is at the end of a step, at t (s)."""
     if body.pair:
         body.next_g, body.next_odd = pair_at(t, piece, body)

@@ -1,4 +1,4 @@
-"""A step looked at again: what happens in it, its turning points, its rows of the history.
+"""The search of a step: its first event, its turning points, its rows of the history.
 
 Steps of an integrator that were marked, and short steps, are gone through on their dense output.
 """
@@ -13,7 +13,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, next_corner
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.dense import Dense, DenseStep, look, state_at
+from eventpound.solvers.events.dense import Dense, DenseStep, observe_at, state_at
 from eventpound.solvers.events.event_bounds import inspect_step
 from eventpound.solvers.events.law_contacts import gather
 from eventpound.solvers.events.location import add_vanished, first_event, update_peaks
@@ -23,7 +23,7 @@ from eventpound.solvers.events.run import Dynamics, Run
 from eventpound.solvers.events.step_check import broken_contact
 
 CLEAR, EVENT = 40, 41
-"""What a second look finds: nothing, or an event."""
+"""What a search finds: nothing, or an event."""
 BROKEN = 31
 """How it fails: a contact penetrates or pulls."""
 (OURSELVES, INTEGRATOR, FOUND_AT_END) = range(3)
@@ -33,14 +33,14 @@ _SAMPLES = int(Family.SAMPLES)
 
 
 @kernel
-def _seen_at(step: DenseStep, tau: float) -> Observed:
-    look(tau, step)
-    return step.seen
+def _observed_at(step: DenseStep, tau: float) -> Observed:
+    observe_at(tau, step)
+    return step.observed
 
 
 @kernel
-def look_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple[float, bool]:
-    """Look for events between the first two looks of a run, h (s) apart, on a step.
+def search_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple[float, bool]:
+    """Search a step for events between the first two observations of a run, h (s) apart.
 
     The end of the local series tells itself which gaps close there.
 
@@ -51,30 +51,30 @@ def look_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple[f
     marked : bool
         Whether anything was marked.
     """
-    rules, marks, watched = run.rules, run.marks, mode.watched
-    if not inspect_step(run.looks[0], run.looks[1], h, watched, run.record.running, marks):
+    marks, watched, (before, after, _) = run.marks, mode.watched, run.observations
+    if not inspect_step(before, after, h, watched, run.record.running, marks):
         return np.inf, False
     if not step.dense.own and run.state.progress[0].finder != OURSELVES:
         return np.inf, True
     if step.dense.own:
         for j in range(marks.closing.size):
             marks.closing[j] = False
-    return first_event(marks, watched, rules, run.happened, step), True
+    return first_event(marks, watched, run.rules, run.happened, step), True
 
 
 @kernel
-def end_of_look(end: float, marked: bool, run: Run, step: DenseStep) -> None:
+def record_inside(end: float, marked: bool, run: Run, step: DenseStep) -> None:
     """Take the turning points of a step up to `end` (s), where marked, and what is due there."""
     record, origin = run.record, step.forcing.start
     if marked:
         update_peaks(run.marks.peak, end, run.rules.near, record.running, step)
     if is_due(origin + end, record.journal):
-        write_samples(_seen_at, step, origin, step.dense.start, end, record.journal)
+        write_samples(_observed_at, step, origin, step.dense.start, end, record.journal)
 
 
 @kernel
-def look_again(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> int:
-    """Look for events in a step of an integrator that was marked, from sample to sample.
+def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> int:
+    """Search a step of an integrator that was marked for events, from sample to sample.
 
     The step is recorded up to the first of them, whose state becomes the present one.
 
@@ -88,12 +88,12 @@ def look_again(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> i
     Returns
     -------
     int
-        CLEAR, EVENT or BROKEN; of a broken contact the last of `run.looks` tells.
+        CLEAR, EVENT or BROKEN; of a broken contact the last of `run.observations` tells.
     """
     rules, state, record = run.rules, run.state, run.record
     origin = state.now[0].t
     forcing = lend(forcing_now(piece, origin))
-    looks, watched = run.looks, mode.watched
+    observations, watched = run.observations, mode.watched
     low, high = dense.start, dense.start
     while high < dense.end:
         low, high = high, dense.end
@@ -101,27 +101,27 @@ def look_again(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> i
             following = next_corner(piece, origin + low, origin + high)
             high = high if following >= origin + high else following - origin
         part = Dense(dense.Y, dense.center, low, high, dense.frame, dense.own, dense.gaps)
-        look(low, lend(DenseStep(part, mode, forcing, looks[0])))
-        look(high, lend(DenseStep(part, mode, forcing, looks[1])))
-        step = lend(DenseStep(part, mode, forcing, looks[2]))
-        tau, marked = look_between(high - low, run, mode, step)
+        observe_at(low, lend(DenseStep(part, mode, forcing, observations[0])))
+        observe_at(high, lend(DenseStep(part, mode, forcing, observations[1])))
+        step = lend(DenseStep(part, mode, forcing, observations[2]))
+        tau, marked = search_between(high - low, run, mode, step)
         if high == dense.end and state.progress[0].finder == FOUND_AT_END:
             tau = high
-            look(tau, step)
-            add_vanished(step.seen, watched, rules, run.happened)
+            observe_at(tau, step)
+            add_vanished(step.observed, watched, rules, run.happened)
         end = min(high, tau)
-        end_of_look(end, marked, run, step)
+        record_inside(end, marked, run, step)
         if run.laws.contact.size > 0:
             gather(end, run, step)
         if tau < np.inf:
-            look(tau, step)
-            put_instant(origin + tau, step.seen, record)
+            observe_at(tau, step)
+            put_instant(origin + tau, step.observed, record)
             take(state_at(tau, step), origin + tau, mode, forcing, state)
             close_marked(run)
             return EVENT
-        after = looks[1]
+        after = observations[1]
         if broken_contact(after, watched, rules.length_noise) >= 0:
-            look(high, step)
+            observe_at(high, step)
             state.now[0].t = origin + end
             return BROKEN
         update_extremes(after, origin + end, record.running)
