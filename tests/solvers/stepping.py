@@ -16,7 +16,7 @@ from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.constants import (
     begin_state,
-    blank_happened,
+    blank_located,
     blank_series,
     plan_of,
     zero_state,
@@ -68,7 +68,7 @@ def stepper_of(scene: Scene, z: Floats, rtol: float, dt: float = 1.0) -> Stepper
     table = blank_extremes(at, scales)
     room = np.zeros((9, EVENT_WIDTH)), np.zeros((9, row_width(model)))
     record = FastRecord(*room, table, np.ones(model.contacts, bool))
-    series, happened, observed = blank_series(plan), blank_happened(plan), blank_fast_observed(plan)
-    run = FastRun(plan, state, series, happened, record, observed, Running(*table, at))
+    series, located, observed = blank_series(plan), blank_located(plan), blank_fast_observed(plan)
+    run = FastRun(plan, state, series, located, record, observed, Running(*table, at))
     start(run)
     return Stepper(run, model, begin(dt, run))

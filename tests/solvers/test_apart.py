@@ -143,5 +143,5 @@ def test_a_run_among_many_takes_no_acceleration_over() -> None:
     """That of a run that ended with numbers that are not finite would come into the next defect."""
     at = stepper_of(ROW, np.zeros(3), 1e-9)
     at.series.expected[:] = np.nan
-    clear_scratch(at.series, at.run.happened, at.run.observed)
+    clear_scratch(at.series, at.run.located, at.run.observed)
     assert (at.series.expected == 0.0).all()

@@ -34,7 +34,7 @@ from eventpound.solvers.events.instant_loop import make_ready
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.loop import EventLoop, Segment
 from eventpound.solvers.events.roots import on_the_root, root_functions
-from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED, Examination
+from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, EVENT_FOUND, Examination
 from eventpound.solvers.events.step_search import INTEGRATOR
 from eventpound.solvers.sundials import library
 from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
@@ -352,7 +352,7 @@ def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str) -> None:
     tau, verdict, end = said[0]
     assert verdict == BEYOND_BOUND
     assert end > tau
-    assert said[-1][1] == HAPPENED
+    assert said[-1][1] == EVENT_FOUND
     assert recording.work.restarts == wanted.work.restarts + 1
     times = [[event.t for event in run.events] for run in (recording, wanted)]
     np.testing.assert_allclose(*times, rtol=allowed(1.0, 1e-9))

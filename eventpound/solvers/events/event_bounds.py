@@ -49,8 +49,8 @@ class Watched(NamedTuple):
     at: Places
 
 
-class Found(NamedTuple):
-    """Marks left by an inspection: what the bounds could not exclude."""
+class Marks(NamedTuple):
+    """What the bounds of an inspection could not exclude."""
 
     closing: Bools
     detaching: Bools
@@ -93,29 +93,29 @@ def _may_peak(i: int, a: Observed, b: Observed, h: float, running: Running) -> b
 
 
 @kernel
-def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> None:
+def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, marks: Marks) -> None:
     at = watched.at
     for j in range(a.gap.shape[1]):
-        found.closing[j] = False
-        found.detaching[j] = False
+        marks.closing[j] = False
+        marks.detaching[j] = False
         if watched.open_contacts[j]:
             i = at.gap + j
             low, high = _bounds(motion_of(i, at, a), motion_of(i, at, b), h, True)
-            found.closing[j] = low <= DOUBT * (high - low)
+            marks.closing[j] = low <= DOUBT * (high - low)
         elif watched.unlocked[j]:
             i = at.contact_force + j
             low, high = _bounds(motion_of(i, at, a), motion_of(i, at, b), h, False)
             doubt = DOUBT * (high - low)
-            found.detaching[j] = (
+            marks.detaching[j] = (
                 low - doubt < watched.force_low[j] - watched.force_noise
                 or high + doubt > watched.force_high[j] + watched.force_noise
             )
 
 
 @kernel
-def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> None:
-    for link in range(found.kink.size):
-        found.kink[link] = False
+def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, marks: Marks) -> None:
+    for link in range(marks.kink.size):
+        marks.kink[link] = False
         if watched.kink_low[link] == -np.inf and watched.kink_high[link] == np.inf:
             continue
         # Of contact elements, which are links too, no extremes are kept.
@@ -125,8 +125,8 @@ def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: 
         else:
             low, high = _bounds((x0[0], x0[1], x0[2]), (x1[0], x1[1], x1[2]), h, True)
         doubt = DOUBT * (high - low)
-        found.kink[link] = low - doubt < watched.kink_low[link]
-        found.kink[link] = found.kink[link] or high + doubt > watched.kink_high[link]
+        marks.kink[link] = low - doubt < watched.kink_low[link]
+        marks.kink[link] = marks.kink[link] or high + doubt > watched.kink_high[link]
 
 
 @scalar_kernel
@@ -164,7 +164,7 @@ def noise_on_branch(link: int, watched: Watched, length: float, time: float) -> 
 
 @kernel
 def inspect_step(
-    a: Observed, b: Observed, h: float, watched: Watched, running: Running, found: Found
+    a: Observed, b: Observed, h: float, watched: Watched, running: Running, marks: Marks
 ) -> bool:
     """Mark what may have happened between two instants.
 
@@ -178,7 +178,7 @@ def inspect_step(
         What to look for.
     running : Running
         Extremes known so far; a peak is marked only where it may exceed them.
-    found : Found
+    marks : Marks
         Overwritten.
 
     Returns
@@ -186,11 +186,11 @@ def inspect_step(
     bool
         Whether anything is marked.
     """
-    _inspect_contacts(a, b, h, watched, found)
-    _inspect_kinks(a, b, h, watched, found)
+    _inspect_contacts(a, b, h, watched, marks)
+    _inspect_kinks(a, b, h, watched, marks)
     at = running.at
     for i in range(at.displacement, at.end):
         j = contact_pressed(i, at)
-        found.peak[i] = not (j >= 0 and watched.open_contacts[j]) and _may_peak(i, a, b, h, running)
-    some = found.closing.any() or found.detaching.any() or found.kink.any() or found.peak.any()
+        marks.peak[i] = not (j >= 0 and watched.open_contacts[j]) and _may_peak(i, a, b, h, running)
+    some = marks.closing.any() or marks.detaching.any() or marks.kink.any() or marks.peak.any()
     return bool(some or watched.follows)

@@ -23,7 +23,7 @@ from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, observe_at
 from eventpound.solvers.events.law_contacts import gather, turn_elements
-from eventpound.solvers.events.location import anything, forget
+from eventpound.solvers.events.location import any_located, clear_located
 from eventpound.solvers.events.present import (
     forcing_now,
     forget_held,
@@ -58,7 +58,7 @@ NOT_FINITE, UNENDING = 30, 32
 @kernel
 def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
-    rules, state, record, happened = run.rules, run.state, run.record, run.happened
+    rules, state, record, located = run.rules, run.state, run.record, run.located
     now, progress = state.now[0], state.progress[0]
     t = now.t
     stop = min(next_corner(piece, t, piece.stop), t + longest_safe_step(piece, t))
@@ -70,14 +70,14 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     step = lend(DenseStep(series.dense, mode, forcing, run.observations[2]))
     tau = series.dense.end
     observe_at(tau, lend(DenseStep(series.dense, mode, forcing, run.observations[1])))
-    located, marked = search_between(tau, run, mode, step)
-    if located < np.inf:
-        tau = located
+    first, marked = search_between(tau, run, mode, step)
+    if first < np.inf:
+        tau = first
     else:
-        forget(happened)
+        clear_located(located)
         for j in range(series.closing.size):
-            happened.closing[j] = series.closing[j]
-    any_event = anything(happened)
+            located.closing[j] = series.closing[j]
+    any_event = any_located(located)
     fleeting = any_event and is_fleeting(tau, now, rules.time)
     # Where a mode is none no time passes either.
     end = t if fleeting else t + tau
@@ -98,13 +98,13 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         return BROKEN
     since = now.since_impact
     take(evaluate_series(series.dense.Y, tau)[0], end, mode, forcing, state)
-    pass_kinks(happened.kinked, state.z, run.instant)
+    pass_kinks(located.kinked, state.z, run.instant)
     # The differences of times are none where intervals are short.
     now.since_impact = since + tau
     for j in range(state.gap.size):
         if state.gap[j] == np.inf:
             continue
-        closes = happened.closing[j]
+        closes = located.closing[j]
         state.gap[j], state.gap_rate[j] = 0.0 if closes else observed.gap[0, j], observed.gap[1, j]
     progress.knots = 0 if any_event else progress.knots + series.knot
     progress.steps += 1

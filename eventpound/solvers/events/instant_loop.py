@@ -52,7 +52,7 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
     Parameters
     ----------
     now : Underway
-        The run; `happened` tells whose contact force has just reached zero.
+        The run; `located` tells whose contact force has just reached zero.
     piece : CurrentPiece
         The ground motion; its end is not passed.
 
@@ -96,7 +96,7 @@ def _settle_in_python(now: Underway, piece: CurrentPiece) -> int:
             if slides:
                 # The last observation is at the event.
                 force = run.observations[2].contact_force[0]
-                ended = settle_beside_sliders(force, run.happened.kinked, at, model)
+                ended = settle_beside_sliders(force, run.located.kinked, at, model)
             else:
                 ended = settle_at_points(at, model)
             if ended != DONE:

@@ -106,7 +106,7 @@ class Integrator(Protocol):
     5. `find_events(model, length, time)`: find events itself, for the whole run, in a scene of the
        own `length` (m); an InputError where it cannot. `finds_events`:
        whether it does. Then the examination of a step looks for extremes only, and where an
-       event happens `advance` ends with the verdict HAPPENED and the step at it. `happened`:
+       event happens `advance` ends with the verdict EVENT_FOUND and the step at it. `located`:
        closing (K,), released (K,) and kinked (L,) there.
     """
 
@@ -122,7 +122,7 @@ class Integrator(Protocol):
         ...
 
     @property
-    def happened(self) -> tuple[Bools, Bools, Bools] | None:
+    def located(self) -> tuple[Bools, Bools, Bools] | None:
         """Part of duty 5."""
         ...
 

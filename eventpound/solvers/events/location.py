@@ -1,4 +1,4 @@
-"""When within a step something happens, and to whom, on the dense output of the step.
+"""The first event within a step, and who has part in it, on the dense output of the step.
 
 A *quantity* is a value and its rate. Between two samples the Bernstein coefficients of
 the Hermite cubic bound it; while they leave room for a crossing the stretch is halved,
@@ -26,13 +26,13 @@ from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein
 from eventpound.solvers.events.dense import DenseStep, observe_at
 from eventpound.solvers.events.event_bounds import (
-    Found,
+    Marks,
     Watched,
     noise_on_branch,
     room_at_rest,
     room_on_branch,
 )
-from eventpound.solvers.events.run import Happened, Rules
+from eventpound.solvers.events.run import Located, Rules
 from eventpound.tolerances import EPS
 
 DEPTH = 12
@@ -213,19 +213,19 @@ def _rate_at(tau: float, of: tuple[Sought, DenseStep]) -> float:
 
 @kernel
 def first_event(
-    found: Found, watched: Watched, rules: Rules, happened: Happened, step: DenseStep
+    marks: Marks, watched: Watched, rules: Rules, located: Located, step: DenseStep
 ) -> float:
     """The earliest closing, release or change of branch among what an inspection marked.
 
     Parameters
     ----------
-    found : Found
-        Marks of the inspection.
+    marks : Marks
+        Of the inspection.
     watched : Watched
         What was inspected.
     rules : Rules
         Constants of the run: which sizes mean nothing.
-    happened : Happened
+    located : Located
         Overwritten: who has part in it.
     step : DenseStep
         The step.
@@ -233,18 +233,18 @@ def first_event(
     Returns
     -------
     float
-        When (s, local); inf where nothing happens.
+        When (s, local); inf where there is none.
     """
-    released, kinked = happened.released.copy(), happened.kinked.copy()
-    forget(happened)
+    released, kinked = located.released.copy(), located.kinked.copy()
+    clear_located(located)
     first = step.dense.end
     any_event = False
     for kind in range(3):
-        marks = found.closing if kind == _GAP else found.detaching
+        of_kind = marks.closing if kind == _GAP else marks.detaching
         if kind == _KINK:
-            marks = found.kink
-        for i in range(marks.size):
-            if not marks[i]:
+            of_kind = marks.kink
+        for i in range(of_kind.size):
+            if not of_kind[i]:
                 continue
             noise = watched.force_noise if kind == _FORCE else rules.length_noise
             if kind == _KINK:
@@ -256,18 +256,18 @@ def first_event(
             if tau == np.inf:
                 continue
             if tau < first:
-                forget(happened)
+                clear_located(located)
             first, any_event = tau, True
             if kind == _GAP:
-                happened.closing[i] = True
+                located.closing[i] = True
             elif kind == _FORCE:
-                happened.released[i] = True
+                located.released[i] = True
             else:
-                happened.kinked[i] = True
+                located.kinked[i] = True
     if not any_event:
         return np.inf
     observe_at(first, step)
-    add_vanished(step.observed, watched, rules, happened)
+    add_vanished(step.observed, watched, rules, located)
     return first
 
 
@@ -283,47 +283,47 @@ def _level_of_kept(sought: Sought, step: DenseStep) -> float:
 
 
 @scalar_kernel
-def forget(happened: Happened) -> None:
-    """Nothing happens."""
-    for j in range(happened.closing.size):
-        happened.closing[j] = False
-        happened.released[j] = False
-    for a in range(happened.kinked.size):
-        happened.kinked[a] = False
+def clear_located(located: Located) -> None:
+    """Nothing is located."""
+    for j in range(located.closing.size):
+        located.closing[j] = False
+        located.released[j] = False
+    for a in range(located.kinked.size):
+        located.kinked[a] = False
 
 
 @scalar_kernel
-def anything(happened: Happened) -> bool:
-    """Whether something happens."""
+def any_located(located: Located) -> bool:
+    """Whether an event is located."""
     some = False
-    for j in range(happened.closing.size):
-        some = some or happened.closing[j] or happened.released[j]
-    for a in range(happened.kinked.size):
-        some = some or happened.kinked[a]
+    for j in range(located.closing.size):
+        some = some or located.closing[j] or located.released[j]
+    for a in range(located.kinked.size):
+        some = some or located.kinked[a]
     return some
 
 
 @kernel
-def add_vanished(observed: Observed, watched: Watched, rules: Rules, happened: Happened) -> None:
-    """What happens in the instant in which a contact force vanishes.
+def add_vanished(observed: Observed, watched: Watched, rules: Rules, located: Located) -> None:
+    """Add what happens in the instant in which a contact force vanishes.
 
     Of links that pass their kink in it, what follows is told by the other branch.
     """
     released = False
-    for j in range(happened.released.size):
-        released = released or happened.released[j]
+    for j in range(located.released.size):
+        released = released or located.released[j]
     if not released:
         return
-    for j in range(happened.released.size):
+    for j in range(located.released.size):
         force, rate = room_at_rest(j, watched, observed.contact_force)
         if watched.unlocked[j] and force_vanishes(force, rate, watched.force_noise, rules.time):
-            happened.released[j] = True
-    for a in range(happened.kinked.size):
+            located.released[j] = True
+    for a in range(located.kinked.size):
         room, rate = room_on_branch(a, watched, observed.elongation)
         # A speed that vanishes is a length in the scene's own time.
         unit = rules.time if watched.turns[a] else 1.0
         if passes_kink(unit * room, -unit * rate, rules.length, rules.time):
-            happened.kinked[a] = True
+            located.kinked[a] = True
 
 
 @kernel

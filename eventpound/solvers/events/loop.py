@@ -35,7 +35,7 @@ from eventpound.solvers.events.recorder import (
 )
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
-    HAPPENED,
+    EVENT_FOUND,
     MARKED,
     NOT_FINITE,
     Examination,
@@ -178,10 +178,10 @@ class Segment:
                 )
             if done.verdict != BEYOND_BOUND:
                 self._excess = done.excess
-                if done.verdict == HAPPENED and integrator.happened is not None:
+                if done.verdict == EVENT_FOUND and integrator.located is not None:
                     now.state.progress["finder"][0] = FOUND_AT_END
-                    now.mark_happened(*integrator.happened)
-                return done.verdict in (MARKED, HAPPENED)
+                    now.mark_located(*integrator.located)
+                return done.verdict in (MARKED, EVENT_FOUND)
             tau, first = done.start, done.first
             bounds = bounds._replace(stop=tau + 0.5 * (done.end - tau), most=1)
             y = self._examined.y[first]
@@ -251,7 +251,7 @@ class EventLoop:
                 continue
             piece, moving = now.piece(given, stop), self.moving and given.family is Family.SAMPLES
             frame = moving_frame(given) if moving else NO_FRAME
-            now.mark_happened(*(np.zeros(1, np.bool_) for _ in range(3)))
+            now.mark_located(*(np.zeros(1, np.bool_) for _ in range(3)))
             settle_instant(now, piece)
             while now.t < stop:
                 if self._follow(piece, frame):

@@ -93,12 +93,12 @@ def take_points(bodies: Bodies, state: State) -> None:
 
 @scalar_kernel
 def close_marked(run: Run) -> None:
-    """Put what happened exactly on its constraint, and links on the branch that follows."""
-    happened, state = run.happened, run.state
+    """Put what has closed exactly on its constraint, and links on the branch that follows."""
+    located, state = run.located, run.state
     for j in range(state.gap.size):
-        if happened.closing[j]:
+        if located.closing[j]:
             state.gap[j] = 0.0
-    pass_kinks(happened.kinked, state.z, run.instant)
+    pass_kinks(located.kinked, state.z, run.instant)
 
 
 @kernel

@@ -137,8 +137,8 @@ def noise_of(watched: Watched, length: float, time: float) -> Floats:
     return np.concatenate((of_contacts, of_links))
 
 
-def marks_of(watched: Watched, fallen: Bools) -> tuple[Bools, Bools, Bools]:
-    """What happens, from which values (n,) fell: closing (K,), released (K,), kinked (L,)."""
+def located_of(watched: Watched, fallen: Bools) -> tuple[Bools, Bools, Bools]:
+    """The events, from which values (n,) fell: closing (K,), released (K,), kinked (L,)."""
     gaps, forces, kinked = owners(watched)
     whose = gaps | forces
     count = int(whose.sum())

@@ -15,7 +15,7 @@ from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Bools, Floats, Ints, Records
 from eventpound.numerics.records import NamedNumbers
-from eventpound.solvers.events.event_bounds import Found, Watched
+from eventpound.solvers.events.event_bounds import Marks, Watched
 from eventpound.solvers.events.recorder import Journal
 
 
@@ -83,8 +83,8 @@ class RunRecord(NamedTuple):
     held_rows: Ints
 
 
-class Happened(NamedTuple):
-    """What happens at the end of a step.
+class Located(NamedTuple):
+    """The events located at the end of a step.
 
     closing, released (K,): contacts that close, and whose force vanishes. kinked (L,): links
     that pass their kink. vanished (K,): see `Instant`.
@@ -121,8 +121,8 @@ class Run(NamedTuple):
     state: State
     instant: Instant
     record: RunRecord
-    happened: Happened
-    marks: Found
+    located: Located
+    marks: Marks
     observations: tuple[Observed, ...]
     y: Floats
     rate: Floats

@@ -26,11 +26,11 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.solvers.base import Energy
-from eventpound.solvers.events.event_bounds import Found, Watched, inspect_step, room_at_rest
+from eventpound.solvers.events.event_bounds import Marks, Watched, inspect_step, room_at_rest
 from eventpound.solvers.events.run import Dynamics, RunRecord
 from eventpound.tolerances import ENERGY_ERROR, GAP_NOISE, PULLED, SAME_SAMPLE
 
-CLEAR, NOT_FINITE, BEYOND_BOUND, MARKED, HAPPENED = range(5)
+CLEAR, NOT_FINITE, BEYOND_BOUND, MARKED, EVENT_FOUND = range(5)
 """Verdicts on a step: nothing; a state that is no number; a |z| that exceeds its bound by more than
 is allowed; something may have happened; an event that the integrator found, at which it ends."""
 
@@ -38,7 +38,7 @@ is allowed; something may have happened; an event that the integrator found, at 
 class Examination(NamedTuple):
     """What an examination works on, kept from step to step of a segment; on loan.
 
-    dynamics, record, found: the mode, what the run leaves and marks, on loan themselves. frame:
+    dynamics, record, marks: the mode, what the run leaves and marks, on loan themselves. frame:
     the moving frame. observations: both ends, two between, and any other. y, rate (2, size):
     both ends. z_bound (H,); z_allowed: by how much a |z| may exceed it at the end of any step.
     """
@@ -50,7 +50,7 @@ class Examination(NamedTuple):
     y: Floats
     rate: Floats
     record: RunRecord
-    found: Found
+    marks: Marks
     z_bound: Floats
     z_allowed: float
 
@@ -117,11 +117,11 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
         y = _between(tau, tau_0, tau_1, first, e)
         middle = e.observations[row]
         observe_motion(tau, y, rate, mode.system, mode.bodies, forcing, middle)
-        if inspect_step(before, middle, tau - low, mode.watched, e.record.running, e.found):
+        if inspect_step(before, middle, tau - low, mode.watched, e.record.running, e.marks):
             return True
         low, before, row = tau, middle, 5 - row
     after = e.observations[1 - first]
-    return inspect_step(before, after, tau_1 - low, mode.watched, e.record.running, e.found)
+    return inspect_step(before, after, tau_1 - low, mode.watched, e.record.running, e.marks)
 
 
 @kernel
@@ -172,7 +172,7 @@ def examine(
         return verdict, excess
     if e.frame.shape[1] == 0:
         before = e.observations[first]
-        marked = inspect_step(before, after, tau_1 - tau_0, mode.watched, e.record.running, e.found)
+        marked = inspect_step(before, after, tau_1 - tau_0, mode.watched, e.record.running, e.marks)
     else:
         marked = _inspect_between_samples(tau_0, tau_1, first, e)
     if marked:

@@ -47,7 +47,7 @@ def search_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple
     Returns
     -------
     tau : float
-        When something happens (s, local), as `happened` of the run tells; or inf.
+        When the first is (s, local), as `located` of the run tells; or inf.
     marked : bool
         Whether anything was marked.
     """
@@ -59,7 +59,7 @@ def search_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple
     if step.dense.own:
         for j in range(marks.closing.size):
             marks.closing[j] = False
-    return first_event(marks, watched, run.rules, run.happened, step), True
+    return first_event(marks, watched, run.rules, run.located, step), True
 
 
 @kernel
@@ -108,7 +108,7 @@ def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> 
         if high == dense.end and state.progress[0].finder == FOUND_AT_END:
             tau = high
             observe_at(tau, step)
-            add_vanished(step.observed, watched, rules, run.happened)
+            add_vanished(step.observed, watched, rules, run.located)
         end = min(high, tau)
         record_inside(end, marked, run, step)
         if run.laws.contact.size > 0:

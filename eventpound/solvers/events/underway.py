@@ -26,11 +26,11 @@ from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Event, History, LawRecording, Task, steps_used_up
-from eventpound.solvers.events.event_bounds import Found
+from eventpound.solvers.events.event_bounds import Marks
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.modes import Mode, ModeTable
 from eventpound.solvers.events.recorder import PASSED, WRITTEN, Journal, history_of, row_width
-from eventpound.solvers.events.run import Happened, LoopProgress, Rules, Run, RunRecord, State
+from eventpound.solvers.events.run import Located, LoopProgress, Rules, Run, RunRecord, State
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.events.step_check import broken_contact, contact_error
 from eventpound.tolerances import FLAT_WITHIN, FORCE, GAP, LENGTH
@@ -175,10 +175,10 @@ class Underway:
         for a in np.flatnonzero(mode.system.link >= plain):
             mode.system.damping[a] = mode.bodies.damping[mode.system.link[a]]
 
-    def mark_happened(self, closing: Bools, released: Bools, kinked: Bools) -> None:
-        """What happens at present; see `Happened`."""
-        happened = self.run.happened
-        happened.closing[:], happened.released[:], happened.kinked[:] = closing, released, kinked
+    def mark_located(self, closing: Bools, released: Bools, kinked: Bools) -> None:
+        """What has been located at present; see `Located`."""
+        located = self.run.located
+        located.closing[:], located.released[:], located.kinked[:] = closing, released, kinked
 
     def make_room(self) -> None:
         """Double the room for lines and for events, where it is half full."""
@@ -327,7 +327,7 @@ def _record_of(task: Task, model: Model, scales: SceneScales) -> RunRecord:
 
 
 def _instant_of(
-    model: Model, rules: Rules, state: State, happened: Happened, events: Floats
+    model: Model, rules: Rules, state: State, located: Located, events: Floats
 ) -> Instant:
     """What the rules of an instant work on."""
     law = model.law._replace(damping=model.law.damping.copy())
@@ -356,8 +356,8 @@ def _instant_of(
         resting=state.resting,
         pressed=state.pressed,
         branch=state.branch,
-        released=happened.released,
-        vanished=happened.vanished,
+        released=located.released,
+        vanished=located.vanished,
         before=np.zeros_like(state.v),
         now=state.now,
         events=events,
@@ -368,16 +368,16 @@ def _run_of(rules: Rules, state: State, record: RunRecord, model: Model) -> Run:
     """All of it with its scratch, on loan."""
     K, L = model.contacts, model.links
     size = 2 * model.bodies + model.hysteretic.size + model.ledger_entries
-    happened = Happened(*(np.zeros(n, np.bool_) for n in (K, K, K, L)))
-    marks = Found(*(np.zeros(n, np.bool_) for n in (K, K, L, record.extremes.shape[1])))
+    located = Located(*(np.zeros(n, np.bool_) for n in (K, K, K, L)))
+    marks = Marks(*(np.zeros(n, np.bool_) for n in (K, K, L, record.extremes.shape[1])))
     y, rate, atol = np.zeros((3, size))
     return on_loan(
         Run(
             rules=rules,
             state=state,
-            instant=on_loan(_instant_of(model, rules, state, happened, record.events)),
+            instant=on_loan(_instant_of(model, rules, state, located, record.events)),
             record=record,
-            happened=happened,
+            located=located,
             marks=on_loan(marks),
             observations=blank_observations(model, 3),
             y=y,

@@ -144,7 +144,7 @@ def _settle_instant(run: FastRun) -> int:
     if progress.due == 1:
         forcing = lend(Forcing(piece.family, piece.coefficients, piece.samples, t))
         at = lend(instant_of(run))
-        pass_kinks(run.happened.kinked, observed.z, at)
+        pass_kinks(run.located.kinked, observed.z, at)
         if lacks_branch(at):
             choose_clear_branches(at)
             if follows(run):
@@ -154,7 +154,7 @@ def _settle_instant(run: FastRun) -> int:
             choose_branches(observed.a, g, onset, at)
         if any_slider(run):
             return IN_PYTHON
-        run.happened.kinked[:] = False
+        run.located.kinked[:] = False
         ended = settle(forcing, observed.z, at, run)
         if ended != DONE:
             return ended
@@ -162,7 +162,7 @@ def _settle_instant(run: FastRun) -> int:
     if progress.due == SETTLED:
         progress.due = 0
         hold(run)
-        run.happened.released[:] = False
+        run.located.released[:] = False
     observe_at_noinline(0.0, order, g, run)
     write_row(t, run)
     for k in range(plan.distances.shape[0]):

@@ -25,13 +25,13 @@ from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
 from eventpound.solvers.fast.compiled import compiled_noinline
-from eventpound.solvers.fast.locate import clear
+from eventpound.solvers.fast.locate import clear_located
 from eventpound.solvers.fast.run import (
     MORE_TERMS,
     REST_TERMS,
     Contacts,
     Each,
-    FastMarks,
+    FastLocated,
     FastObserved,
     FastPlan,
     FastProgress,
@@ -183,12 +183,12 @@ MOST_TURNS = 40
 """Turning points looked for in one step."""
 
 
-def blank_happened(plan: FastPlan) -> FastMarks:
+def blank_located(plan: FastPlan) -> FastLocated:
     """Marks of nothing."""
     links, hysteretic = plan.links.ends.shape[0], plan.hysteresis.link.size
     contacts = plan.contacts.left.size
     sizes = (contacts, contacts, contacts, links, hysteretic, hysteretic)
-    return FastMarks(*(np.zeros(size, np.bool_) for size in sizes))
+    return FastLocated(*(np.zeros(size, np.bool_) for size in sizes))
 
 
 def zero_state(
@@ -321,10 +321,10 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
 
 
 @compiled_noinline
-def clear_scratch(series: FastSeries, happened: FastMarks, observed: FastObserved) -> None:
+def clear_scratch(series: FastSeries, located: FastLocated, observed: FastObserved) -> None:
     """Leave nothing of the run before, which may have ended with numbers that are not finite."""
     series.block[:] = 0
     series.tables.step[:] = 0.0
-    clear(happened)
-    happened.vanished[:] = False
+    clear_located(located)
+    located.vanished[:] = False
     observed.contact_force[:] = 0.0

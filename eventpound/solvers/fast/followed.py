@@ -169,6 +169,6 @@ def _defect(i: int, tau: float, order: int, run: FastRun) -> float:
 def keep_followed(ended: bool, run: FastRun) -> None:
     """Make z at the end of a step the present ones; exactly zero where one `ended` it there."""
     for h in run.plan.hysteresis.followed:
-        at_zero = ended and run.happened.crossed[h]
+        at_zero = ended and run.located.crossed[h]
         run.state.xi_r[h] = 0.0 if at_zero else run.observed.z[h]
-        run.happened.crossed[h] = False
+        run.located.crossed[h] = False

@@ -114,7 +114,7 @@ def choose_directions(run: FastRun) -> None:
 @compiled
 def instant_of(run: FastRun) -> Instant:
     """What the rules of an instant work on; `travel` of the series is free then."""
-    plan, state, happened = run.plan, run.state, run.happened
+    plan, state, located = run.plan, run.state, run.located
     contacts, links, limits = plan.contacts, plan.links, plan.limits
     return Instant(
         plan.mass,
@@ -138,8 +138,8 @@ def instant_of(run: FastRun) -> Instant:
         state.resting,
         state.pressed,
         state.branch,
-        happened.released,
-        happened.vanished,
+        located.released,
+        located.vanished,
         run.series.travel,
         state.now,
         run.record.events,

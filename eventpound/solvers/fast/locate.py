@@ -1,4 +1,4 @@
-"""The first thing that happens within a step: a closing, a release, a kink, a reversal or a border.
+"""The first event within a step: a closing, a release, a kink, a reversal or a border.
 
 Each quantity that must not change sign is a polynomial; what its bounds
 (`eventpound.solvers.fast.search`) cannot exclude is located, and what happens in the
@@ -26,7 +26,7 @@ from eventpound.numerics.power_series import sign_after
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.followed import follows
 from eventpound.solvers.fast.links import CORE, UNLOADING, UP, place
-from eventpound.solvers.fast.run import FastMarks, FastPlan, FastRun, FastSeries, Limits, Links
+from eventpound.solvers.fast.run import FastLocated, FastPlan, FastRun, FastSeries, Limits, Links
 from eventpound.solvers.fast.search import (
     bound_of_pair,
     distance_coefficient,
@@ -50,32 +50,32 @@ from eventpound.tolerances import (
 
 
 @compiled
-def _mark(tau: float, first: float, which: int, marks: Bools, happened: FastMarks) -> float:
+def _note(tau: float, first: float, which: int, flags: Bools, located: FastLocated) -> float:
     """Mark an event at tau (s) that belongs to the first ones, unless `which` is -1; their time."""
     if not tau <= first * (1.0 + SAME_INSTANT):
         return first
     if tau < first * (1.0 - SAME_INSTANT):
-        clear(happened)
+        clear_located(located)
     if which >= 0 and tau < np.inf:
-        marks[which] = True
+        flags[which] = True
     return min(tau, first)
 
 
 @compiled
-def clear(happened: FastMarks) -> None:
-    """Nothing has happened."""
-    happened.closing[:] = False
-    happened.released[:] = False
-    happened.kinked[:] = False
-    happened.turned[:] = False
-    happened.crossed[:] = False
+def clear_located(located: FastLocated) -> None:
+    """Nothing is located."""
+    located.closing[:] = False
+    located.released[:] = False
+    located.kinked[:] = False
+    located.turned[:] = False
+    located.crossed[:] = False
 
 
 @compiled
-def first_happening(order: int, h: float, run: FastRun) -> float:
-    """Time of the first thing that happens within h (s), marked in `happened`; inf if none."""
+def first_event(order: int, h: float, run: FastRun) -> float:
+    """Time of the first event within h (s), marked in `located`; inf if there is none."""
     state = run.state
-    clear(run.happened)
+    clear_located(run.located)
     first = _closings(order, h, run)
     first = _hysteretic(order, min(h, first), first, run)
     first = _kinks(order, min(h, first), first, run)
@@ -88,7 +88,7 @@ def first_happening(order: int, h: float, run: FastRun) -> float:
 
 @compiled
 def _closings(order: int, h: float, run: FastRun) -> float:
-    plan, state, series, happened = run.plan, run.state, run.series, run.happened
+    plan, state, series, located = run.plan, run.state, run.series, run.located
     first = np.inf
     contacts = plan.contacts
     for j in range(contacts.gap.size):
@@ -101,13 +101,13 @@ def _closings(order: int, h: float, run: FastRun) -> float:
             continue
         gap_polynomial(j, order, run)
         tau = closing_time(series.c, order + 1, min(h, first), series.work)
-        first = _mark(tau, first, j, happened.closing, happened)
+        first = _note(tau, first, j, located.closing, located)
     return first
 
 
 @compiled
 def _hysteretic(order: int, h: float, first: float, run: FastRun) -> float:
-    plan, state, series, happened = run.plan, run.state, run.series, run.happened
+    plan, state, series, located = run.plan, run.state, run.series, run.located
     hysteresis = plan.hysteresis
     for i in range(hysteresis.link.size):
         a = hysteresis.link[i]
@@ -118,10 +118,10 @@ def _hysteretic(order: int, h: float, first: float, run: FastRun) -> float:
         # A link that all but stands still reverses at the level of rounding.
         if state.part[i] != CORE and travel > plan.limits.hysteresis * hysteresis.scale[i]:
             tau = _reversal(order, h, a, state.sigma[i], run)
-            first = _mark(tau, first, i, happened.turned, happened)
+            first = _note(tau, first, i, located.turned, located)
         if state.part[i] < UP:
             tau = _border(order, h, first, i, run)
-            first = _mark(tau, first, i, happened.crossed, happened)
+            first = _note(tau, first, i, located.crossed, located)
     return first
 
 
@@ -164,7 +164,7 @@ def _border(order: int, h: float, first: float, i: int, run: FastRun) -> float:
 
 @compiled
 def _kinks(order: int, h: float, first: float, run: FastRun) -> float:
-    plan, state, series, happened = run.plan, run.state, run.series, run.happened
+    plan, state, series, located = run.plan, run.state, run.series, run.located
     links: Links = plan.links
     for i in range(state.progress[0].active):
         a = series.active[i]
@@ -173,7 +173,7 @@ def _kinks(order: int, h: float, first: float, run: FastRun) -> float:
         side = float(state.branch[a])
         away = side * (series.x[a] - links.offset[a])
         tau = _leaves_branch(order, h, min(h, first), a, side, away, run)
-        first = _mark(tau, first, a, happened.kinked, happened)
+        first = _note(tau, first, a, located.kinked, located)
     return first
 
 
@@ -220,7 +220,7 @@ def _passes_end(
 @compiled_deferred
 def _of_followed(order: int, h: float, first: float, run: FastRun) -> float:
     """The first of these: a link leaves its branch, or the formula of a z that is followed."""
-    plan, state, series, happened = run.plan, run.state, run.series, run.happened
+    plan, state, series, located = run.plan, run.state, run.series, run.located
     for i in range(plan.hysteresis.followed.size):
         z = plan.hysteresis.followed[i]
         a = plan.hysteresis.link[z]
@@ -228,13 +228,13 @@ def _of_followed(order: int, h: float, first: float, run: FastRun) -> float:
             continue
         if has_branches(a, plan.links.law.memory) and state.branch[a] != 0:
             tau = _end_of_branch(order, h, min(h, first), a, z, run)
-            first = _mark(tau, first, a, happened.kinked, happened)
+            first = _note(tau, first, a, located.kinked, located)
         if _bends(h, a, z, order, run):
             # Nothing is to be done there but to begin another series.
             tau = _reversal(order, min(h, first), a, series.followed.sigma[i], run)
-            first = _mark(tau, first, -1, happened.turned, happened)
+            first = _note(tau, first, -1, located.turned, located)
             tau = _zero_of_z(order, min(h, first), z, run)
-            first = _mark(tau, first, z, happened.crossed, happened)
+            first = _note(tau, first, z, located.crossed, located)
     return first
 
 
@@ -283,7 +283,7 @@ def _zero_of_z(order: int, limit: float, z: int, run: FastRun) -> float:
 
 @compiled
 def _releases(order: int, h: float, first: float, run: FastRun) -> float:
-    plan, state, series, happened = run.plan, run.state, run.series, run.happened
+    plan, state, series, located = run.plan, run.state, run.series, run.located
     limits, forces = plan.limits, series.contact_force
     any_released = False
     level = force_level(state.progress[0].clusters, limits, series)
@@ -302,8 +302,8 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
         if kept:
             _drop_rounding(force, order, level, plan, series)
         tau = release_time(force, order - 1, h, min(h, first), level, kept, series.work)
-        first = _mark(tau, first, j, happened.released, happened)
-        any_released = any_released or happened.released[j]
+        first = _note(tau, first, j, located.released, located)
+        any_released = any_released or located.released[j]
     if any_released:
         for end in range(2 * state.resting.size):
             j = end // 2
@@ -311,7 +311,7 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
                 force = series.d if of_slider(j, run) else forces[j]
                 value, slope = value_and_slope(force[: order - 1], first)
                 vanishes = force_vanishes(value, slope, level, limits.time)
-                happened.released[j] = happened.released[j] or vanishes
+                located.released[j] = located.released[j] or vanishes
     return first
 
 

@@ -25,12 +25,12 @@ from eventpound.numerics.lending import lend
 from eventpound.solvers.fast.advance import carry_on
 from eventpound.solvers.fast.columns import Motions, VariantArrays
 from eventpound.solvers.fast.compiled import compiled, compiled_loop, compiled_noinline
-from eventpound.solvers.fast.constants import blank_happened, blank_series, clear_scratch
+from eventpound.solvers.fast.constants import blank_located, blank_series, clear_scratch
 from eventpound.solvers.fast.evaluate import blank_fast_observed
 from eventpound.solvers.fast.links import all_variables, elongations
 from eventpound.solvers.fast.run import (
     GOING_ON,
-    FastMarks,
+    FastLocated,
     FastObserved,
     FastPlan,
     FastRecord,
@@ -136,7 +136,7 @@ class Scratch(NamedTuple):
     """Arrays that serve one run after the other; events have room for one, and no line is kept."""
 
     series: FastSeries
-    happened: FastMarks
+    located: FastLocated
     observed: FastObserved
     events: Floats
     no_lines: Floats
@@ -161,7 +161,7 @@ def run(rows: VariantArrays, events: bool = False) -> Kept:
     hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
     scratch = Scratch(
         blank_series(plan),
-        blank_happened(plan),
+        blank_located(plan),
         blank_fast_observed(plan),
         np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
         np.zeros((0, 0)),
@@ -192,7 +192,7 @@ def run(rows: VariantArrays, events: bool = False) -> Kept:
 @compiled_noinline
 def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kept: Kept) -> int:
     """Run rows from `begun` on that are not a single body's; returns where the log was full."""
-    series, happened, observed = scratch.series, scratch.happened, scratch.observed
+    series, located, observed = scratch.series, scratch.located, scratch.observed
     for i in range(begun, kept.ended.size):
         if _is_full(scratch.events, kept):
             return i
@@ -201,11 +201,11 @@ def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kep
             continue
         state = state_of_run(i, rows.state, rows.motions)
         record = FastRecord(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
-        clear_scratch(series, happened, observed)
+        clear_scratch(series, located, observed)
         record.unique[:] = True
         at = places_of(plan.mass.size, plan.links.springs, plan.contacts.gap.size)
         running = running_of(record.extremes, at)
-        one = lend(FastRun(plan, state, series, happened, record, observed, running))
+        one = lend(FastRun(plan, state, series, located, record, observed, running))
         ended = GOING_ON
         while ended == GOING_ON:
             ended = carry_on(budget, one)

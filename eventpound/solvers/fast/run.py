@@ -276,8 +276,8 @@ class FastSeries(NamedTuple):
     held: Floats  # (4, M): extremes before a mode that may be none
 
 
-class FastMarks(NamedTuple):
-    """Marks of what happens at the end of a step: closing, released (K,), kinked (L,).
+class FastLocated(NamedTuple):
+    """The events located at the end of a step: closing, released (K,), kinked (L,).
 
     turned, crossed (H,): hysteretic links that reverse or pass a border. vanished (K,):
     contacts whose force has passed zero in this instant, by this event or one before it.
@@ -328,7 +328,7 @@ class FastRun(NamedTuple):
     plan: FastPlan
     state: FastState
     series: FastSeries
-    happened: FastMarks
+    located: FastLocated
     record: FastRecord
     observed: FastObserved
     running: Running

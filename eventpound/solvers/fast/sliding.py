@@ -167,8 +167,8 @@ def settle_sliders(noise: float, run: FastRun, model: Model) -> int:
     state, observed = run.state, run.observed
     with by_python():
         at, piece = instant_of(run), piece_of(state.progress[0].piece, run.plan.ground)
-        ended = settle_beside_sliders(observed.contact_force, run.happened.kinked, at, model)
-        run.happened.kinked[:] = False
+        ended = settle_beside_sliders(observed.contact_force, run.located.kinked, at, model)
+        run.located.kinked[:] = False
         if ended != DONE:
             return ended
         choose_directions(run)

@@ -52,7 +52,7 @@ from eventpound.solvers.events.underway import lines_before
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.constants import (
     begin_state,
-    blank_happened,
+    blank_located,
     blank_series,
     clear_scratch,
     links_of,
@@ -234,7 +234,7 @@ class Arrays:
         if plan is not run.plan:
             change_first(run, plan)
         if not plan.oscillator.alone:
-            in_python(clear_scratch)(run.series, run.happened, run.observed)
+            in_python(clear_scratch)(run.series, run.located, run.observed)
         return run
 
     def _left(
@@ -362,7 +362,7 @@ def run_of(plan: FastPlan, moving: JoinedArrays, model: Model) -> FastRun:
         plan=plan,
         state=FastState(*state),
         series=blank_series(plan, model.loads > 0),
-        happened=blank_happened(plan),
+        located=blank_located(plan),
         record=record,
         observed=blank_fast_observed(plan),
         running=in_python(running_of)(extremes, places_in(model)),

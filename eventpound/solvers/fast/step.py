@@ -28,7 +28,7 @@ from eventpound.solvers.fast.expansion import (
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step, take_instant
 from eventpound.solvers.fast.followed import follows, keep_followed
 from eventpound.solvers.fast.links import cross_border, elongations, gap_of, reverse
-from eventpound.solvers.fast.locate import first_happening
+from eventpound.solvers.fast.locate import first_event
 from eventpound.solvers.fast.record import (
     add_work,
     end_if_over,
@@ -69,7 +69,7 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     t = now.t
     order, h = _expansion(stop - t, piece, run)
     set_travel(order, h, progress.clusters, series)
-    first = first_happening(order, h, run)
+    first = first_event(order, h, run)
     tau = min(h, first)
     t_end, g_end, error, pulls = t, 0.0, np.inf, False
     for _again in range(MOST_HALVINGS):
@@ -150,12 +150,12 @@ def _record_inside(tau: float, t_end: float, order: int, piece: CurrentPiece, ru
 @compiled
 def _still_pressed(tau: float, run: FastRun) -> bool:
     """Whether truncation of the series released a contact too soon; the next step finds it."""
-    plan, state, happened, observed = run.plan, run.state, run.happened, run.observed
+    plan, state, located, observed = run.plan, run.state, run.located, run.observed
     if tau <= RELEASED_AT * plan.limits.time:
         return False
     weak = force_level(state.progress[0].clusters, plan.limits, run.series)
     for j in range(observed.gap.size):
-        if happened.released[j] and room_at_rest(j, observed.contact_force[j], run) > weak:
+        if located.released[j] and room_at_rest(j, observed.contact_force[j], run) > weak:
             return True
     return False
 
@@ -218,12 +218,12 @@ def _pulls(ends: bool, run: FastRun) -> bool:
     It has then passed the instant that lets it go. `ends`: whether what is to happen at the end
     does.
     """
-    state, observed, happened = run.state, run.observed, run.happened
+    state, observed, located = run.state, run.observed, run.located
     if state.progress[0].resting == 0:
         return False
     level = PULLED * force_level(state.progress[0].clusters, run.plan.limits, run.series)
     for j in range(observed.gap.size):
-        held = state.unlocked[j] and not (ends and happened.released[j])
+        held = state.unlocked[j] and not (ends and located.released[j])
         if held and not room_at_rest(j, observed.contact_force[j], run) >= -level:
             return True
     return False
@@ -240,23 +240,23 @@ def _move(state: FastState, observed: FastObserved) -> None:
 
 @compiled
 def _apply(run: FastRun) -> None:
-    """Do what happened at the end of a step; an event of contacts or kinks is settled next."""
-    plan, state, series, happened = run.plan, run.state, run.series, run.happened
+    """Do what is located at the end of a step; an event of contacts or kinks is settled next."""
+    plan, state, series, located = run.plan, run.state, run.series, run.located
     hysteresis = plan.hysteresis
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     for h in range(hysteresis.link.size):
         x = series.x[hysteresis.link[h]]
-        if happened.turned[h]:
+        if located.turned[h]:
             reverse(h, x, hysteresis, state)
-        elif happened.crossed[h]:
+        elif located.crossed[h]:
             cross_border(h, x, hysteresis, state)
     due = False
     for j in range(state.gap.size):
-        if happened.closing[j]:
+        if located.closing[j]:
             state.gap[j] = 0.0
-        due = due or happened.closing[j] or happened.released[j]
+        due = due or located.closing[j] or located.released[j]
     for a in range(state.branch.size):
-        due = due or happened.kinked[a]
+        due = due or located.kinked[a]
     if due:
         write_row(state.now[0].t, run)
         state.progress[0].due = 1

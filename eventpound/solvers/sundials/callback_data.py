@@ -24,7 +24,7 @@ from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
     lift,
-    marks_of,
+    located_of,
     noise_of,
     root_functions,
     values_and_rates,
@@ -140,9 +140,9 @@ class RootFunctions:
         roots = Roots(fresh, forces, watched, noise, lifted, pairs, observed)
         change_loan(self.loan, roots)
 
-    def marks(self) -> tuple[Bools, Bools, Bools]:
-        """What happened where values have fallen: closing (K,), released (K,), kinked (L,)."""
-        return marks_of(self._mode.watched, self.loan.pairs[:, 0] < 0.0)
+    def located(self) -> tuple[Bools, Bools, Bools]:
+        """The events where values have fallen: closing (K,), released (K,), kinked (L,)."""
+        return located_of(self._mode.watched, self.loan.pairs[:, 0] < 0.0)
 
 
 @kernel

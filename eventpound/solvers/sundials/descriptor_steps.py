@@ -240,7 +240,7 @@ def examine_descriptor(
     gap, gap_rate = constraint_errors(problem.d, y)
     drift[0], drift[1] = max(drift[0], gap), max(drift[1], gap_rate)
     before, running = e.observations[first], e.record.running
-    if inspect_step(before, after, tau_1 - tau_0, mode.watched, running, e.found):
+    if inspect_step(before, after, tau_1 - tau_0, mode.watched, running, e.marks):
         return MARKED, excess
     update_extremes(after, forcing.start + tau_1, running)
     t, slow = forcing.start + tau_0, SLOW_TURN * followed.acceleration

@@ -71,9 +71,9 @@ class _Duties:
         return self._roots is not None
 
     @property
-    def happened(self) -> tuple[Bools, Bools, Bools] | None:
+    def located(self) -> tuple[Bools, Bools, Bools] | None:
         """What its root finder has found at the end of the last step."""
-        return self._roots.marks() if self._roots is not None else None
+        return self._roots.located() if self._roots is not None else None
 
     def find_events(self, model: Model, length: float, time: float) -> None:
         """Let its own root finder find events, for the whole run."""

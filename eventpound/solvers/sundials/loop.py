@@ -22,7 +22,7 @@ from eventpound.solvers.events.roots import any_fell, on_the_root
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     CLEAR,
-    HAPPENED,
+    EVENT_FOUND,
     NOT_FINITE,
     Examination,
 )
@@ -254,7 +254,7 @@ def root_at(
     Returns
     -------
     verdict : int
-        CLEAR at the bottom of a dip that stays above zero, HAPPENED or BEYOND_BOUND.
+        CLEAR at the bottom of a dip that stays above zero, EVENT_FOUND or BEYOND_BOUND.
     end : float
         Where the value was zero, or the end of a step that leapt over the knee of the hysteresis.
     """
@@ -270,7 +270,7 @@ def root_at(
     end = on_the_root(roots.pairs, roots.noise, start, tau, reach)
     put_inner(handles, end, 0, y)
     to_frame(e.frame, e.forcing.start + end, -1.0, e.dynamics.system.iq, e.dynamics.system.iv, y)
-    return HAPPENED, end
+    return EVENT_FOUND, end
 
 
 def steps_to_roots(
@@ -302,7 +302,7 @@ def steps_to_roots(
             return flag, row, start, end, verdict, excess, taken
         verdict, end = at_root(start, end, row, excess, e)
         if verdict != CLEAR:
-            return flag, row, start, end, verdict, excess, taken + int(verdict == HAPPENED)
+            return flag, row, start, end, verdict, excess, taken + int(verdict == EVENT_FOUND)
         again = again + 1 if end == last else 0
         if again > MOST_AGAIN:
             return SAME_ROOT, row, start, start, CLEAR, excess, taken
