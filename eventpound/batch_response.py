@@ -123,11 +123,11 @@ def blank_many(
     if count is None:
         count = len(next(iter(parameters.values()))) if parameters else 1
 
-    def room(*width: int) -> Floats:
+    def blank(*width: int) -> Floats:
         return np.full((count, *width), np.nan)
 
     def extremes(width: int) -> Extremes:
-        return Extremes(room(width), room(width), room(width), room(width))
+        return Extremes(blank(width), blank(width), blank(width), blank(width))
 
     bodies, springs, contacts = len(scene.bodies), len(scene.springs), len(scene.contacts)
     internal = len(scene.memory)
@@ -136,20 +136,20 @@ def blank_many(
         parameters,
         np.zeros(count, np.bool_),
         [""] * count,
-        room(),
-        room(bodies),
-        room(bodies),
-        room(internal),
+        blank(),
+        blank(bodies),
+        blank(bodies),
+        blank(internal),
         extremes(bodies),
         extremes(springs),
-        room(contacts),
-        room(contacts),
-        room(contacts),
-        room(contacts),
+        blank(contacts),
+        blank(contacts),
+        blank(contacts),
+        blank(contacts),
         np.zeros(count, np.int64),
         extremes(bodies) if accelerations else None,
         extremes(1) if accelerations else None,
-        {name: room() for name in named},
+        {name: blank() for name in named},
         struck=blank_numbers(count, contacts) if impacts else None,
     )
 

@@ -46,7 +46,7 @@ def largest_swings(
     found : ndarray, shape (k, 2)
         Zeros; takes the largest |q| (m) and |w^2 q + 2 xi w q'| (m/s^2).
     """
-    room, f = np.empty((2, _TERMS)), np.empty(4)
+    scratch, f = np.empty((2, _TERMS)), np.empty(4)
     for j in range(omega.size):
         w = omega[j]
         place = rate = 0.0
@@ -58,7 +58,7 @@ def largest_swings(
             parts = max(1, math.ceil(w * h[i]))
             step = h[i] / parts
             terms = _FEW_TERMS if w * step <= _SHORT else _TERMS
-            q, force = room[0, :terms], room[1, : terms - 1]
+            q, force = scratch[0, :terms], scratch[1, : terms - 1]
             inside = w * step > _INSTANT
             for part in range(parts):
                 _pushed(push[i], part, parts, f)

@@ -50,8 +50,8 @@ def _array_at(address: int, shape: Any, like: Any) -> Any:
 def _array_at_in_python(address: int, shape: Any, like: Any) -> Any:
     """The same where Python runs what asks for it; records have attributes there, too."""
     kind = like.dtype if isinstance(like, np.ndarray) else np.dtype(like)
-    room = (ctypes.c_char * (int(np.prod(shape)) * kind.itemsize)).from_address(int(address))
-    found = np.frombuffer(room, kind).reshape(shape)
+    memory = (ctypes.c_char * (int(np.prod(shape)) * kind.itemsize)).from_address(int(address))
+    found = np.frombuffer(memory, kind).reshape(shape)
     return found.view(np.recarray) if kind.names else found
 
 

@@ -69,9 +69,9 @@ def _enter(
         for i in (*P, j):
             bound = box[0][i] if along[i] < 0.0 else box[1][i]
             if along[i] != 0.0 and np.isfinite(bound):
-                room = -x[i].copy()
-                room[0] += bound
-                stops.append((int(i), float(bound), room * np.sign(along[i]), abs(along[i])))
+                slack = -x[i].copy()
+                slack[0] += bound
+                stops.append((int(i), float(bound), slack * np.sign(along[i]), abs(along[i])))
         if not stops:
             return False
         blocking, bound, step = _first(stops, np.abs(x).max(axis=0))
@@ -92,19 +92,19 @@ def _first(
 ) -> tuple[int, float, Floats]:
     """The first of some stops, by the coefficients of their steps one after the other.
 
-    Of each: its unknown, its bound, the room before it (m,), and how much of that a step of one
-    takes. size (m,): of the unknowns, whose rounding is that of rooms.
+    Of each: its unknown, its bound, the slack before it (m,), and how much of that a step of one
+    takes. size (m,): of the unknowns, whose rounding is that of slacks.
     """
     for c in range(size.size):
-        steps = [(room[c] / speed, LCP_ROUNDING * size[c] / speed) for *_, room, speed in stops]
+        steps = [(slack[c] / speed, LCP_ROUNDING * size[c] / speed) for *_, slack, speed in stops]
         least, noise = min(steps)
         stops = [
             stop
             for stop, (step, own) in zip(stops, steps, strict=True)
             if step <= least + noise + own
         ]
-    blocking, bound, room, speed = stops[0]
-    return blocking, bound, room / speed
+    blocking, bound, slack, speed = stops[0]
+    return blocking, bound, slack / speed
 
 
 def _without_rounding(values: Floats, noise: Floats) -> Floats:

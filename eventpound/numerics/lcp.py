@@ -24,7 +24,7 @@ from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.tolerances import EPS, LCP_ROUNDING, SINGULAR
 
 
-class _Room(NamedTuple):
+class _Work(NamedTuple):
     """Scratch of a problem of k unknowns: lower (k, k); rows (6, k), named below; places (k,)."""
 
     lower: Floats
@@ -33,19 +33,19 @@ class _Room(NamedTuple):
 
 
 (_STEP, _RESIDUAL, _RIGHT, _FOUND, _TERMS, _NOISE) = range(6)
-"""Rows of `_Room`: steps and residuals of a solution, its right-hand side, the solution, the sizes
+"""Rows of `_Work`: steps and residuals of a solution, its right-hand side, the solution, the sizes
 of the terms of w, and their rounding along cycles."""
 
 
 @scalar_kernel
-def _solve_passive(G: Floats, passive: np.ndarray, count: int, room: _Room) -> None:
+def _solve_passive(G: Floats, passive: np.ndarray, count: int, work: _Work) -> None:
     """Solve ``G_PP x_P = rhs_P`` by Cholesky with one step of refinement; zero elsewhere.
 
-    The right-hand side and the solution are rows of `room`.
+    The right-hand side and the solution are rows of `work`.
     """
-    lower, index = room.lower, room.places
-    rhs, step, residual = room.rows[_RIGHT], room.rows[_STEP], room.rows[_RESIDUAL]
-    x, k = room.rows[_FOUND], 0
+    lower, index = work.lower, work.places
+    rhs, step, residual = work.rows[_RIGHT], work.rows[_STEP], work.rows[_RESIDUAL]
+    x, k = work.rows[_FOUND], 0
     for i in range(rhs.size):
         x[i], residual[i] = 0.0, rhs[i]
         if passive[i]:
@@ -105,7 +105,7 @@ def _residual(G: Floats, x: Floats, q: Floats, w: Floats, terms: Floats) -> floa
 
 @scalar_kernel
 def _enter(
-    G: Floats, x: Floats, w_j: float, j: int, passive: np.ndarray, room: _Room
+    G: Floats, x: Floats, w_j: float, j: int, passive: np.ndarray, work: _Work
 ) -> tuple[float, float]:
     """Raise x_j until w_j vanishes, letting passive entries leave at zero.
 
@@ -113,11 +113,11 @@ def _enter(
     rounding: where nothing stops x_j along a direction d with ``G d = 0``,
     ``w_j = d·q`` stays as it is.
     """
-    count, terms, direction = _count(passive), room.rows[_TERMS], room.rows[_FOUND]
+    count, terms, direction = _count(passive), work.rows[_TERMS], work.rows[_FOUND]
     while True:
         for i in range(x.size):
-            room.rows[_RIGHT, i] = -G[i, j]
-        _solve_passive(G, passive, count, room)
+            work.rows[_RIGHT, i] = -G[i, j]
+        _solve_passive(G, passive, count, work)
         schur = G[j, j]
         for i in range(passive.size):
             if passive[i]:
@@ -158,25 +158,25 @@ def _count(passive: np.ndarray) -> int:
 
 @scalar_kernel
 def _pivot_to_solution(
-    G: Floats, q: Floats, noise: Floats, x: Floats, w: Floats, passive: np.ndarray, room: _Room
+    G: Floats, q: Floats, noise: Floats, x: Floats, w: Floats, passive: np.ndarray, work: _Work
 ) -> bool:
     """Principal pivoting on a matrix with unit diagonal; False where it did not end."""
-    size, cycle_noise, fresh = q.size, room.rows[_NOISE], room.rows[_FOUND]
+    size, cycle_noise, fresh = q.size, work.rows[_NOISE], work.rows[_FOUND]
     for _ in range(50 * size + 50):
-        level = _residual(G, x, q, w, room.rows[_TERMS])
+        level = _residual(G, x, q, w, work.rows[_TERMS])
         j = _most_violated(w, passive, level, cycle_noise)
         if j < 0:
             for i in range(size):
                 w[i] = 0.0 if passive[i] else max(w[i], 0.0)
             return True
-        left, rounding = _enter(G, x, w[j], j, passive, room)
+        left, rounding = _enter(G, x, w[j], j, passive, work)
         rounding = max(rounding, noise[j])
         if -left > rounding:
             return False
         cycle_noise[j] = rounding
         for i in range(size):
-            room.rows[_RIGHT, i] = -q[i]
-        _solve_passive(G, passive, _count(passive), room)
+            work.rows[_RIGHT, i] = -q[i]
+        _solve_passive(G, passive, _count(passive), work)
         feasible = True
         for i in range(size):
             feasible = feasible and fresh[i] >= 0.0
@@ -216,8 +216,8 @@ def solve_dense(G: Floats, q: Floats, noise: float) -> tuple[Floats, Floats, boo
     for i in range(size):
         for j in range(size):
             scaled[i, j] = G[i, j] / (root[i] * root[j])
-    room = _Room(lower, np.zeros((6, size)), np.empty(size, np.int64))
-    solved = _pivot_to_solution(scaled, right, level, x, w, np.zeros(size, np.bool_), room)
+    work = _Work(lower, np.zeros((6, size)), np.empty(size, np.int64))
+    solved = _pivot_to_solution(scaled, right, level, x, w, np.zeros(size, np.bool_), work)
     for i in range(size):
         x[i] /= root[i]
         w[i] *= root[i]

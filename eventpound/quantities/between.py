@@ -119,11 +119,11 @@ def _hiding(t: Floats, values: Floats, least: float) -> tuple[Ints, float]:
     """
     step = np.where(np.diff(t) > 0.0, np.diff(values), 0.0)
     before, after = np.append(0.0, step), np.append(-step, 0.0)
-    room = np.maximum(before, after)
-    may = values + room > values.max() + least
-    places = np.flatnonzero((before >= 0.0) & (after >= 0.0) & (room > least) & may)
-    most = np.argsort((values + room)[places])[-_MOST_PLACES:]
-    return places[most], float(room[places].max(initial=0.0))
+    excess = np.maximum(before, after)
+    may = values + excess > values.max() + least
+    places = np.flatnonzero((before >= 0.0) & (after >= 0.0) & (excess > least) & may)
+    most = np.argsort((values + excess)[places])[-_MOST_PLACES:]
+    return places[most], float(excess[places].max(initial=0.0))
 
 
 def _around(t: Floats, places: Ints, way: int) -> Floats:

@@ -1,4 +1,4 @@
-"""Accelerations of bodies on linear and curved links; the room in which nothing happens."""
+"""Accelerations of bodies on linear and curved links; the box in which nothing happens."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from eventpound.solvers.fast.sampled.bounds import (
 )
 from eventpound.solvers.fast.sampled.exact import propose_by_matrices
 from eventpound.solvers.fast.sampled.forces import begin
-from eventpound.solvers.fast.sampled.room import set_room, stays_in_room
+from eventpound.solvers.fast.sampled.safe_box import set_safe_box, stays_in_safe_box
 from tests.solvers.stepping import Stepper, stepper_of
 from tests.solvers.test_sample_steps import STEP, bridge
 
@@ -39,8 +39,8 @@ def moving(rng: np.random.Generator) -> Stepper:
     return at._replace(table=begin(STEP, at.run))
 
 
-def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
-    """The bounds of `sampled.bounds` agree, one by one, wherever the room says so."""
+def test_a_step_that_stays_in_its_box_meets_nothing() -> None:
+    """The bounds of `sampled.bounds` agree, one by one, wherever the box says so."""
     inside = linear = 0
     for seed in range(200):
         rng = np.random.default_rng(1000 + seed)
@@ -55,8 +55,8 @@ def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
         bodies = tables.bodies
         bodies.pulled[:] = bodies.acceleration - rng.uniform(-1.0, 1.0)
         propose_by_matrices(2, at.table, rng.uniform(-9.0, 9.0), state.u, state.v, tables)
-        set_room(tables, at.run)
-        if not stays_in_room(2, STEP, state, tables):
+        set_safe_box(tables, at.run)
+        if not stays_in_safe_box(2, STEP, state, tables):
             continue
         inside += 1
         along, ends = tables.along, plan.links.ends

@@ -85,10 +85,10 @@ def _may_peak(i: int, a: Observed, b: Observed, h: float, running: Running) -> b
     rounding, motion = running.rounding[i], is_motion(i, running.at)
     low, high = _bounds(start, end, h, motion)
     flat = FLAT_TURN * rounding if motion else rounding
-    margin = DOUBT * (high - low) + rounding
+    doubt = DOUBT * (high - low) + rounding
     turns = start[1] * end[1] < 0.0 and max(abs(start[1]), abs(end[1])) * h > flat
-    above = (turns or high > max(start[0], end[0]) + flat) and (high + margin > running.maximum[i])
-    below = (turns or low < min(start[0], end[0]) - flat) and (low - margin < running.minimum[i])
+    above = (turns or high > max(start[0], end[0]) + flat) and (high + doubt > running.maximum[i])
+    below = (turns or low < min(start[0], end[0]) - flat) and (low - doubt < running.minimum[i])
     return above or below
 
 
@@ -130,22 +130,22 @@ def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, marks: 
 
 
 @scalar_kernel
-def room_on_branch(link: int, watched: Watched, elongation: Floats) -> tuple[float, float]:
+def margin_on_branch(link: int, watched: Watched, elongation: Floats) -> tuple[float, float]:
     """How far a link is from the end of its branch, positive inside (m, or m/s), and the rate."""
     order = 1 if watched.turns[link] else 0
     x, x_rate = elongation[order, link], elongation[order + 1, link]
-    return _room_between(watched.kink_low[link], watched.kink_high[link], x, x_rate)
+    return _margin_between(watched.kink_low[link], watched.kink_high[link], x, x_rate)
 
 
 @scalar_kernel
-def room_at_rest(j: int, watched: Watched, contact_force: Floats) -> tuple[float, float]:
+def margin_at_rest(j: int, watched: Watched, contact_force: Floats) -> tuple[float, float]:
     """How far the force of a resting contact is from where its rest ends (N), and the rate."""
     low, high = watched.force_low[j], watched.force_high[j]
-    return _room_between(low, high, contact_force[0, j], contact_force[1, j])
+    return _margin_between(low, high, contact_force[0, j], contact_force[1, j])
 
 
 @scalar_kernel
-def _room_between(low: float, high: float, x: float, x_rate: float) -> tuple[float, float]:
+def _margin_between(low: float, high: float, x: float, x_rate: float) -> tuple[float, float]:
     """How far x is inside of two ends, and the rate: the product of both distances over theirs."""
     below, above = x - low, high - x
     if above == np.inf:
@@ -158,7 +158,7 @@ def _room_between(low: float, high: float, x: float, x_rate: float) -> tuple[flo
 
 @scalar_kernel
 def noise_on_branch(link: int, watched: Watched, length: float, time: float) -> float:
-    """Size of `room_on_branch` that means nothing, of a scene's own scales (m, s)."""
+    """Size of `margin_on_branch` that means nothing, of a scene's own scales (m, s)."""
     return still_rate(length, time) if watched.turns[link] else LENGTH * length
 
 

@@ -28,9 +28,9 @@ from eventpound.solvers.events.dense import DenseStep, observe_at
 from eventpound.solvers.events.event_bounds import (
     Marks,
     Watched,
+    margin_at_rest,
+    margin_on_branch,
     noise_on_branch,
-    room_at_rest,
-    room_on_branch,
 )
 from eventpound.solvers.events.run import Located, Rules
 from eventpound.tolerances import EPS
@@ -51,7 +51,7 @@ _GAP, _FORCE, _KINK, _MONITORED = 0, 1, 2, 3
 class Sought(NamedTuple):
     """What may fall below zero, or turn.
 
-    kind: a gap, the force of a resting contact, the room of a link on its branch; or a quantity
+    kind: a gap, the force of a resting contact, the margin of a link on its branch; or a quantity
     of which extremes are recorded. index: of the contact or link, or its column of the extremes.
     noise: depth below zero that means nothing. level: what counts as zero.
     """
@@ -78,13 +78,13 @@ def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
     if sought.kind == _GAP:
         return Sample(tau, observed.gap[0, i], observed.gap[1, i])
     if sought.kind == _FORCE:
-        force, rate = room_at_rest(i, step.dynamics.watched, observed.contact_force)
+        force, rate = margin_at_rest(i, step.dynamics.watched, observed.contact_force)
         return Sample(tau, force - sought.level, rate)
     if sought.kind == _MONITORED:
         value, rate, _ = motion_of(i, step.dynamics.watched.at, observed)
         return Sample(tau, value, rate)
-    room, rate = room_on_branch(i, step.dynamics.watched, observed.elongation)
-    return Sample(tau, room - sought.level, rate)
+    margin, rate = margin_on_branch(i, step.dynamics.watched, observed.elongation)
+    return Sample(tau, margin - sought.level, rate)
 
 
 @kernel
@@ -273,7 +273,7 @@ def first_event(
 
 @kernel
 def _level_of_kept(sought: Sought, step: DenseStep) -> float:
-    """What counts as zero of a force or room that has just passed zero and is as it was before.
+    """What counts as zero of a force or margin that has just passed zero and is as it was before.
 
     Where an instant decides nothing, or decides otherwise, what is below zero is so by rounding:
     it must fall further, or the same instant would come again for ever.
@@ -315,14 +315,14 @@ def add_vanished(observed: Observed, watched: Watched, rules: Rules, located: Lo
     if not released:
         return
     for j in range(located.released.size):
-        force, rate = room_at_rest(j, watched, observed.contact_force)
+        force, rate = margin_at_rest(j, watched, observed.contact_force)
         if watched.unlocked[j] and force_vanishes(force, rate, watched.force_noise, rules.time):
             located.released[j] = True
     for a in range(located.kinked.size):
-        room, rate = room_on_branch(a, watched, observed.elongation)
+        margin, rate = margin_on_branch(a, watched, observed.elongation)
         # A speed that vanishes is a length in the scene's own time.
         unit = rules.time if watched.turns[a] else 1.0
-        if passes_kink(unit * room, -unit * rate, rules.length, rules.time):
+        if passes_kink(unit * margin, -unit * rate, rules.length, rules.time):
             located.kinked[a] = True
 
 

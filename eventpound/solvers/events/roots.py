@@ -22,9 +22,9 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python, scalar_kernel
 from eventpound.solvers.events.event_bounds import (
     Watched,
+    margin_at_rest,
+    margin_on_branch,
     noise_on_branch,
-    room_at_rest,
-    room_on_branch,
 )
 from eventpound.solvers.settings import Settings, word
 from eventpound.tolerances import GAP, NO_ZERO
@@ -61,11 +61,11 @@ def values_and_rates(observed: Observed, watched: Watched, pairs: Floats) -> Non
             pairs[place, 0], pairs[place, 1] = observed.gap[0, j], observed.gap[1, j]
             place += 1
         elif watched.unlocked[j]:
-            pairs[place, 0], pairs[place, 1] = room_at_rest(j, watched, observed.contact_force)
+            pairs[place, 0], pairs[place, 1] = margin_at_rest(j, watched, observed.contact_force)
             place += 1
     for i in range(observed.elongation.shape[1]):
         if watched.kink_low[i] > -np.inf or watched.kink_high[i] < np.inf:
-            pairs[place, 0], pairs[place, 1] = room_on_branch(i, watched, observed.elongation)
+            pairs[place, 0], pairs[place, 1] = margin_on_branch(i, watched, observed.elongation)
             place += 1
 
 

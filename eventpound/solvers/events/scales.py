@@ -275,9 +275,9 @@ def scales_without(model: Model, duration: float, push: float) -> tuple[float, f
     length, time = _free_scales(model, duration)
     if push > 0.0 and not np.isfinite(_elastic_time(model)):
         speed, given = float(np.abs(model.v0).max()), np.append(model.gap, np.abs(model.u0))
-        room = float(given.max(initial=0.0))
-        time = max(np.sqrt(room / push), speed / push) or duration
-        length = max(room, speed * time)
+        widest = float(given.max(initial=0.0))
+        time = max(np.sqrt(widest / push), speed / push) or duration
+        length = max(widest, speed * time)
     length = max(length, push * time**2)
     return length if length > 0.0 else 1.0, time
 

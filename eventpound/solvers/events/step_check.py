@@ -26,7 +26,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.solvers.base import Energy
-from eventpound.solvers.events.event_bounds import Marks, Watched, inspect_step, room_at_rest
+from eventpound.solvers.events.event_bounds import Marks, Watched, inspect_step, margin_at_rest
 from eventpound.solvers.events.run import Dynamics, RunRecord
 from eventpound.tolerances import ENERGY_ERROR, GAP_NOISE, PULLED, SAME_SAMPLE
 
@@ -191,8 +191,8 @@ def broken_contact(observed: Observed, watched: Watched, length_noise: float) ->
         if watched.open_contacts[j] and observed.gap[0, j] < -GAP_NOISE * length_noise:
             return j
     for j in range(observed.gap.shape[1]):
-        room = room_at_rest(j, watched, observed.contact_force)[0]
-        if watched.unlocked[j] and room < -PULLED * watched.force_noise:
+        margin = margin_at_rest(j, watched, observed.contact_force)[0]
+        if watched.unlocked[j] and margin < -PULLED * watched.force_noise:
             return j
     return -1
 
@@ -207,7 +207,7 @@ def contact_error(
         return ComputationError(
             f"contact {name!r} penetrates by {depth:.3g} m; try a smaller rtol", t
         )
-    pull = -float(in_python(room_at_rest)(j, watched, observed.contact_force)[0])
+    pull = -float(in_python(margin_at_rest)(j, watched, observed.contact_force)[0])
     if watched.force_low[j] < 0.0 or watched.force_high[j] < np.inf:
         return ComputationError(
             f"slider {name!r} sticks with {pull:.3g} N more than it can; try a smaller rtol", t

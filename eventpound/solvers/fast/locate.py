@@ -39,7 +39,7 @@ from eventpound.solvers.fast.search import (
     set_distance,
     stays_above,
 )
-from eventpound.solvers.fast.sliding import end_of_slip, of_slider, set_room
+from eventpound.solvers.fast.sliding import end_of_slip, of_slider, set_margin
 from eventpound.tolerances import (
     GAP_COEFFICIENT,
     LENGTH,
@@ -320,7 +320,7 @@ def _has_end(end: int, order: int, run: FastRun) -> bool:
     """Whether the rest of contact end // 2 can end there: at a second one a slider's alone."""
     slides = of_slider(end // 2, run)
     if slides:
-        set_room(end // 2, end % 2, order, run)
+        set_margin(end // 2, end % 2, order, run)
     return slides or end % 2 == 0
 
 

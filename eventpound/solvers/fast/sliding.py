@@ -62,7 +62,7 @@ def _slip_force(j: int, run: FastRun) -> float:
 
 
 @compiled
-def room_at_rest(j: int, force: float, run: FastRun) -> float:
+def margin_at_rest(j: int, force: float, run: FastRun) -> float:
     """How far the force of a contact (N) is from where its rest ends, or the stick of a slider."""
     if not of_slider(j, run):
         return force
@@ -71,7 +71,7 @@ def room_at_rest(j: int, force: float, run: FastRun) -> float:
 
 
 @compiled_deferred
-def set_room(j: int, end: int, order: int, run: FastRun) -> None:
+def set_margin(j: int, end: int, order: int, run: FastRun) -> None:
     """Taylor coefficients of how far a slider is from an end of its stick, into `series.d`.
 
     `end`: 0 of the lower, 1 of the upper.

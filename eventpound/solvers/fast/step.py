@@ -53,7 +53,7 @@ from eventpound.solvers.fast.run import (
     FastState,
 )
 from eventpound.solvers.fast.search import force_level, set_travel
-from eventpound.solvers.fast.sliding import room_at_rest
+from eventpound.solvers.fast.sliding import margin_at_rest
 from eventpound.tolerances import DRIFTED, FORCE, PENETRATED, PULLED, RELEASED_AT
 
 _SAMPLES = int(Family.SAMPLES)
@@ -155,7 +155,7 @@ def _still_pressed(tau: float, run: FastRun) -> bool:
         return False
     weak = force_level(state.progress[0].clusters, plan.limits, run.series)
     for j in range(observed.gap.size):
-        if located.released[j] and room_at_rest(j, observed.contact_force[j], run) > weak:
+        if located.released[j] and margin_at_rest(j, observed.contact_force[j], run) > weak:
             return True
     return False
 
@@ -224,7 +224,7 @@ def _pulls(ends: bool, run: FastRun) -> bool:
     level = PULLED * force_level(state.progress[0].clusters, run.plan.limits, run.series)
     for j in range(observed.gap.size):
         held = state.unlocked[j] and not (ends and located.released[j])
-        if held and not room_at_rest(j, observed.contact_force[j], run) >= -level:
+        if held and not margin_at_rest(j, observed.contact_force[j], run) >= -level:
             return True
     return False
 

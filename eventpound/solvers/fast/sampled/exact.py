@@ -54,11 +54,11 @@ class StepLinks(NamedTuple):
     next_x_rate: Floats
 
 
-class Room(NamedTuple):
+class SafeBox(NamedTuple):
     """What pairs of bodies keep within while nothing happens, (N, N) each.
 
     low, high: bounds of their distance (m). way: the sign that its rate must keep, 0 for none;
-    see `eventpound.solvers.fast.sampled.room`.
+    see `eventpound.solvers.fast.sampled.safe_box`.
     """
 
     low: Floats
@@ -73,7 +73,7 @@ class SampleTables(NamedTuple):
     latest (2,): the last one made, the last one used. stiffness, damping (KEPT, N, N): K and
     C for each unit of mass. of_v, of_a, rate_of_v, rate_of_a (KEPT, N, N), of_slope, rate_of_slope
     (KEPT, N): α and β. turn (KEPT, N): ``Σ |C| dt + |K| dt²`` of a body; most_turn
-    (KEPT,): the largest. work (3, N): scratch. bodies, along, room: what is known of bodies,
+    (KEPT,): the largest. work (3, N): scratch. bodies, along, box: what is known of bodies,
     links and pairs of bodies in a step.
     """
 
@@ -93,7 +93,7 @@ class SampleTables(NamedTuple):
     work: Floats
     bodies: StepBodies
     along: StepLinks
-    room: Room
+    box: SafeBox
 
 
 def blank_tables(bodies: int, links: int) -> SampleTables:
@@ -109,7 +109,7 @@ def blank_tables(bodies: int, links: int) -> SampleTables:
         np.zeros((3, n)),
         StepBodies(*np.zeros((len(StepBodies._fields), n))),
         StepLinks(*np.zeros((len(StepLinks._fields), links))),
-        Room(*np.zeros((len(Room._fields), n, n))),
+        SafeBox(*np.zeros((len(SafeBox._fields), n, n))),
     ]
     return SampleTables(*tables)
 

@@ -1,7 +1,7 @@
 """Several bodies under a record, step by step as long as little happens.
 
 From sample to sample the bodies go by exact steps (`eventpound.solvers.fast.sampled.exact`)
-as long as all their links are linear and they stay in their room: nothing happens in such a step
+as long as all their links are linear and they stay in their box: nothing happens in such a step
 and no extreme is exceeded, so there is nothing to take down but where it ends. Else they go by
 short series (`eventpound.solvers.fast.sampled.series`), where a step is clear of all but simple
 events (`eventpound.solvers.fast.sampled.choice`); any other is left to
@@ -31,7 +31,7 @@ from eventpound.solvers.fast.sampled.forces import (
     line_at,
     linear_accelerations,
 )
-from eventpound.solvers.fast.sampled.room import set_room, stays_in_room
+from eventpound.solvers.fast.sampled.safe_box import set_safe_box, stays_in_safe_box
 from eventpound.solvers.fast.sampled.series import expand_linear
 from eventpound.solvers.fast.single.series import sample_after
 from eventpound.tolerances import SAME_SAMPLE
@@ -47,7 +47,7 @@ def stretch(
     """
     plan, state, series, running = run.plan, run.state, run.series, run.running
     tables, bodies, u, v = series.tables, series.tables.bodies, state.u, state.v
-    set_room(tables, run)
+    set_safe_box(tables, run)
     dt, t, taken, counted = tables.step[i], state.now[0].t, 0, 0
     output = next_output(plan.output_times, state.progress[0])
     while taken < budget:
@@ -57,7 +57,7 @@ def stretch(
         for b in range(n):
             bodies.pulled[b] = bodies.acceleration[b] - line.g
         propose_by_matrices(n, i, line.slope, u, v, tables)
-        if not stays_in_room(n, dt, state, tables):
+        if not stays_in_safe_box(n, dt, state, tables):
             break
         linear_accelerations(n, i, bodies.next_u, bodies.next_v, tables, bodies.next_acceleration)
         if not forces_covered(n, plan.mass, tables, running):

@@ -1,10 +1,10 @@
-"""The room that bodies have within which nothing of note happens to them.
+"""The safe box: distances of bodies within which nothing of note happens to them.
 
 Between two events all that limits a linear motion – contacts, kinks, borders of the
 backbone, the extremes so far – are bounds of the distances of two bodies, the ground among
 them; hysteretic links that unload or yield without hardening also keep a direction. Taken
 together for each pair, they make a step that stays inside cheap to recognise. It is sufficient
-only: a step that leaves its room is judged piece by piece (`sampled.bounds`).
+only: a step that leaves its box is judged piece by piece (`sampled.bounds`).
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from eventpound.tolerances import OWN_GAP
 
 
 @compiled
-def set_room(tables: SampleTables, run: FastRun) -> None:
+def set_safe_box(tables: SampleTables, run: FastRun) -> None:
     """Bounds of all distances: those of the pair (b, c), b < c, of ``u_c - u_b``; (b, b): u_b."""
     plan, state, running = run.plan, run.state, run.running
-    room, links, contacts, distances = tables.room, plan.links, plan.contacts, plan.distances
+    box, links, contacts, distances = tables.box, plan.links, plan.contacts, plan.distances
     n = plan.mass.size
     for b in range(n):
         for c in range(b, n):
-            room.low[b, c], room.high[b, c], room.way[b, c] = -np.inf, np.inf, 0.0
+            box.low[b, c], box.high[b, c], box.way[b, c] = -np.inf, np.inf, 0.0
     for k in range(distances.shape[0]):
         i, start = running.at.displacement + k, start_of(k, plan)
         low, high = running.minimum[i] - start, running.maximum[i] - start
         _narrow(distances[k, 0], distances[k, 1], low, high, 0.0, tables)
     for a in range(links.offset.size):
-        low, high, way = _room_of_link(a, plan, state)
+        low, high, way = _box_of_link(a, plan, state)
         _narrow(links.ends[a, 0], links.ends[a, 1], low, high, way, tables)
     least = OWN_GAP * plan.limits.length
     for j in range(contacts.gap.size):
@@ -42,7 +42,7 @@ def set_room(tables: SampleTables, run: FastRun) -> None:
 
 
 @compiled
-def _room_of_link(a: int, plan: FastPlan, state: FastState) -> tuple[float, float, float]:
+def _box_of_link(a: int, plan: FastPlan, state: FastState) -> tuple[float, float, float]:
     """Elongations (m) between which a link keeps branch and part; the direction it must keep."""
     low, high, way = -np.inf, np.inf, 0.0
     if state.branch[a] > 0:
@@ -74,18 +74,18 @@ def _narrow(
         b, c, turned = second, first, True
     if turned:
         low, high, way = -high, -low, -way
-    room = tables.room
-    room.low[b, c], room.high[b, c] = max(room.low[b, c], low), min(room.high[b, c], high)
-    if way * room.way[b, c] < 0.0:
-        room.low[b, c] = np.inf
+    box = tables.box
+    box.low[b, c], box.high[b, c] = max(box.low[b, c], low), min(box.high[b, c], high)
+    if way * box.way[b, c] < 0.0:
+        box.low[b, c] = np.inf
     elif way != 0.0:
-        room.way[b, c] = way
+        box.way[b, c] = way
 
 
 @compiled
-def stays_in_room(n: int, h: float, state: FastState, tables: SampleTables) -> bool:
+def stays_in_safe_box(n: int, h: float, state: FastState, tables: SampleTables) -> bool:
     """Whether a step of length h (s) of n bodies stays inside, by the bounds of their motion."""
-    bodies, room = tables.bodies, tables.room
+    bodies, box = tables.bodies, tables.box
     for b in range(n):
         for c in range(b, n):
             now, then = state.u[c], bodies.next_u[c]
@@ -96,10 +96,10 @@ def stays_in_room(n: int, h: float, state: FastState, tables: SampleTables) -> b
                 rate, next_rate = rate - state.v[b], next_rate - bodies.next_v[b]
                 sag, fastest = sag + bodies.sag[b], fastest + bodies.fastest[b]
             if not (
-                max(now, then) + sag <= room.high[b, c] and min(now, then) - sag >= room.low[b, c]
+                max(now, then) + sag <= box.high[b, c] and min(now, then) - sag >= box.low[b, c]
             ):
                 return False
-            way = room.way[b, c]
+            way = box.way[b, c]
             if way != 0.0 and not (
                 way * rate > 0.0
                 and way * next_rate > 0.0
