@@ -37,7 +37,7 @@ def begin(now: Records, start: float, time: Floats | float) -> None:
 
 
 class Instant(NamedTuple):
-    """A scene at one instant: arrays of a run, which the rules change in place; lent.
+    """A scene at one instant: arrays of a run, which the rules change in place; by address.
 
     N bodies, L links, H of them hysteretic, K contacts.
     """

@@ -14,7 +14,7 @@ from eventpound.case.case import SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.pulses import Sine
-from eventpound.numerics.lending import on_loan
+from eventpound.numerics.by_address import with_address
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -340,7 +340,7 @@ def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str) -> None:
         def at_root_there(
             start: float, tau: float, first: int, excess: float, e: Examination
         ) -> tuple[int, float]:
-            there = e if said else on_loan(e._replace(z_bound=0.0 * e.z_bound))
+            there = e if said else with_address(e._replace(z_bound=0.0 * e.z_bound))
             verdict, end = at_root(start, tau, first, excess, there)
             said.append((tau, verdict, end))
             return verdict, end

@@ -78,7 +78,7 @@ declare void @NRT_MemInfo_call_dtor(ptr)
 """
 """References counted by plain sums. Numba's are atomic, for arrays that several threads share
 within one call; here none does, and a call from Python counts on counters of its own. They are
-compiled in where arrays are named: most are borrowed or lent and have no counter, and a call
+compiled in where arrays are named: most are borrowed or by address and have no counter, and a call
 that finds none takes numbers out of all registers."""
 
 

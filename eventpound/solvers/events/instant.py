@@ -19,8 +19,8 @@ from eventpound.contact.kinks import lacks_branch, pass_kinks
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import CurrentPiece, longest_safe_step, next_corner
+from eventpound.numerics.by_address import by_address
 from eventpound.numerics.compiled import kernel
-from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, observe_at
 from eventpound.solvers.events.law_contacts import gather, turn_elements
 from eventpound.solvers.events.location import any_located, clear_located
@@ -62,14 +62,14 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     now, progress = state.now[0], state.progress[0]
     t = now.t
     stop = min(next_corner(piece, t, piece.stop), t + longest_safe_step(piece, t))
-    forcing = lend(forcing_now(piece, t))
+    forcing = by_address(forcing_now(piece, t))
     series = local_series(run, forcing, mode, stop - t)
     if not series.finite:
         return NOT_FINITE
     # The arrays of `series` are kept alive by its use at the end.
-    step = lend(DenseStep(series.dense, mode, forcing, run.observations[2]))
+    step = by_address(DenseStep(series.dense, mode, forcing, run.observations[2]))
     tau = series.dense.end
-    observe_at(tau, lend(DenseStep(series.dense, mode, forcing, run.observations[1])))
+    observe_at(tau, by_address(DenseStep(series.dense, mode, forcing, run.observations[1])))
     first, marked = search_between(tau, run, mode, step)
     if first < np.inf:
         tau = first
@@ -135,9 +135,9 @@ def proceed(
     most : int
         Steps of the run after which SETTLE pauses.
     run : Run
-        The run; SETTLE goes on where the `phase` of its progress says; on loan.
+        The run; SETTLE goes on where the `phase` of its progress says.
     mode : Dynamics
-        The present mode; on loan.
+        The present mode.
     piece : CurrentPiece
         The ground motion.
     dense : Dense
@@ -154,7 +154,7 @@ def proceed(
         return search_step(run, mode, piece, dense)
     if wanted == TAKE:
         t = dense.end
-        take(run.y[: mode.system.size], t, mode, lend(forcing_now(piece, t)), run.state)
+        take(run.y[: mode.system.size], t, mode, by_address(forcing_now(piece, t)), run.state)
         return OVER
     make_ready(run, mode, piece)
     if wanted == LAST:
@@ -185,7 +185,7 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
             if run.laws.contact.size > 0:
                 turn_elements(run.laws, at)
             if any_may_rest(at):
-                ended = decide_rests(state.z, lend(forcing_now(piece, now.t)), at)
+                ended = decide_rests(state.z, by_address(forcing_now(piece, now.t)), at)
                 if ended != DONE:
                     return ended
             progress.phase = ARRIVAL

@@ -16,9 +16,9 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.by_address import fields_of, with_address
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiling import Stopwatch
-from eventpound.numerics.lending import fields_of, on_loan
 from eventpound.solvers.base import Energy, Recording, Task, Work
 from eventpound.solvers.events.instant_loop import (
     put_last_instant,
@@ -94,7 +94,7 @@ class Segment:
         close = (pressed and frame.shape[1] == 0) or now.task.rtol < STOP_AT_SAMPLES
         self._stops = piece.family >= Family.SAMPLES and close
         size = self.mode.system.size
-        e = self._examined = on_loan(
+        e = self._examined = with_address(
             Examination(
                 self.mode.unwatched if integrator.finds_events else self.mode.dynamics,
                 self.forcing,

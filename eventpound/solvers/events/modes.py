@@ -21,8 +21,8 @@ from eventpound.mechanics.observables import Bodies, bodies_of
 from eventpound.mechanics.points import with_points
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.by_address import with_address
 from eventpound.numerics.compiled import in_python
-from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.events.run import Dynamics
 
@@ -31,7 +31,7 @@ from eventpound.solvers.events.run import Dynamics
 class Mode:
     """Everything the kernels need while modes and branches stay as they are.
 
-    `dynamics`, on loan as its parts `system` and `bodies` are, is what compiled code takes of it.
+    `dynamics`, by address as its parts `system` and `bodies`, is what compiled code takes of it.
     `branch` (L,): side of the kink each link is on, 0 where it has none.
     """
 
@@ -45,7 +45,7 @@ class Mode:
     @cached_property
     def directed(self) -> Reduced:
         """The same equations with directions of links that are an integrator's own."""
-        return on_loan(self.system._replace(direction=np.zeros_like(self.system.direction)))
+        return with_address(self.system._replace(direction=np.zeros_like(self.system.direction)))
 
     @cached_property
     def unwatched(self) -> Dynamics:
@@ -54,7 +54,7 @@ class Mode:
         watched = self.watched._replace(
             open_contacts=none, unlocked=none, kink_low=-never, kink_high=never
         )
-        return on_loan(Dynamics(self.system, self.bodies, watched))
+        return with_address(Dynamics(self.system, self.bodies, watched))
 
 
 class ModeTable:
@@ -146,8 +146,8 @@ class ModeTable:
         if projection is not None:
             system = system._replace(projection=projection)
         frozen = np.zeros(model.hysteretic.size)
-        bodies = on_loan(bodies_of(model, clusters, system, *branches, frozen))
-        system = on_loan(system)
+        bodies = with_address(bodies_of(model, clusters, system, *branches, frozen))
+        system = with_address(system)
         if model.sliders.size > 0 and not clusters.tree:
             clusters = clusters._replace(locked=locked_beside_sliders(model, ordinary, clusters))
         unlocked = resting.copy()
@@ -170,7 +170,7 @@ class ModeTable:
             self.force_noise,
             self.places,
         )
-        dynamics = on_loan(Dynamics(system, bodies, watched))
+        dynamics = with_address(Dynamics(system, bodies, watched))
         return Mode(branch.copy(), clusters, system, bodies, watched, dynamics)
 
 

@@ -24,8 +24,8 @@ from eventpound.mechanics.reduced_loads import placed
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
+from eventpound.numerics.by_address import by_address
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
-from eventpound.numerics.lending import lend
 from eventpound.solvers.events.recorder import WRITTEN, write_row
 from eventpound.solvers.events.run import Dynamics, Rules, Run, RunRecord, State
 
@@ -116,7 +116,7 @@ def make_ready(run: Run, mode: Dynamics, piece: CurrentPiece) -> None:
     """
     system, bodies, state = mode.system, mode.bodies, run.state
     rate = run.rate[: system.size]
-    forcing = lend(forcing_now(piece, state.now[0].t))
+    forcing = by_address(forcing_now(piece, state.now[0].t))
     copy_numbers(state.z, bodies.frozen_z)
     y = state_vector(bodies, system, bodies.mass, state.u, state.v, state.z, state.ledger)
     copy_numbers(y, run.y)

@@ -1,7 +1,7 @@
 """What the compiled part of the event loop works on: constants, state, record, mode.
 
 N bodies, L links, S springs, H hysteretic links, K contacts, M monitored quantities.
-Python makes the arrays and lends them (`eventpound.numerics.lending`), so that a cascade of
+Python makes the arrays and hands them over by address, so that a cascade of
 thousands of impacts needs no Python.
 """
 
@@ -110,9 +110,9 @@ class Laws(NamedTuple):
 
 
 class Run(NamedTuple):
-    """All of it, as compiled functions hand it to each other, lent.
+    """All of it, as compiled functions hand it to each other, by address.
 
-    instant: what the rules of an instant work on, arrays of the others; on loan, as record and
+    instant: what the rules of an instant work on, arrays of the others; by address, as record and
     marks are. observations: three, as scratch. y, rate, atol: state vector, its
     rate and its absolute tolerances, as an integrator begins with them; long enough for any mode.
     """
@@ -131,7 +131,7 @@ class Run(NamedTuple):
 
 
 class Dynamics(NamedTuple):
-    """The equations of motion of a mode and its bodies, both on loan, and what it has to watch."""
+    """The equations of motion of a mode and its bodies, both by address, and what to watch."""
 
     system: Reduced
     bodies: Bodies

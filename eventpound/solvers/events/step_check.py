@@ -36,9 +36,9 @@ is allowed; something may have happened; an event that the integrator found, at 
 
 
 class Examination(NamedTuple):
-    """What an examination works on, kept from step to step of a segment; on loan.
+    """What an examination works on, kept from step to step of a segment; with an address.
 
-    dynamics, record, marks: the mode, what the run leaves and marks, on loan themselves. frame:
+    dynamics, record, marks: the mode, what the run leaves and marks, with addresses. frame:
     the moving frame. observations: both ends, two between, and any other. y, rate (2, size):
     both ends. z_bound (H,); z_allowed: by how much a |z| may exceed it at the end of any step.
     """

@@ -11,8 +11,8 @@ from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.observables import Observed
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, next_corner
+from eventpound.numerics.by_address import by_address
 from eventpound.numerics.compiled import kernel
-from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, observe_at, state_at
 from eventpound.solvers.events.event_bounds import inspect_step
 from eventpound.solvers.events.law_contacts import gather
@@ -92,7 +92,7 @@ def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> 
     """
     rules, state, record = run.rules, run.state, run.record
     origin = state.now[0].t
-    forcing = lend(forcing_now(piece, origin))
+    forcing = by_address(forcing_now(piece, origin))
     observations, watched = run.observations, mode.watched
     low, high = dense.start, dense.start
     while high < dense.end:
@@ -101,9 +101,9 @@ def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> 
             following = next_corner(piece, origin + low, origin + high)
             high = high if following >= origin + high else following - origin
         part = Dense(dense.Y, dense.center, low, high, dense.frame, dense.own, dense.gaps)
-        observe_at(low, lend(DenseStep(part, mode, forcing, observations[0])))
-        observe_at(high, lend(DenseStep(part, mode, forcing, observations[1])))
-        step = lend(DenseStep(part, mode, forcing, observations[2]))
+        observe_at(low, by_address(DenseStep(part, mode, forcing, observations[0])))
+        observe_at(high, by_address(DenseStep(part, mode, forcing, observations[1])))
+        step = by_address(DenseStep(part, mode, forcing, observations[2]))
         tau, marked = search_between(high - low, run, mode, step)
         if high == dense.end and state.progress[0].finder == FOUND_AT_END:
             tau = high

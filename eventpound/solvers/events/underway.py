@@ -22,8 +22,8 @@ from eventpound.motion.base import Piece
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Bools, Floats, Ints, longer
+from eventpound.numerics.by_address import with_address
 from eventpound.numerics.compiled import in_python
-from eventpound.numerics.lending import on_loan
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Event, History, LawRecording, Task, steps_used_up
 from eventpound.solvers.events.event_bounds import Marks
@@ -104,7 +104,7 @@ class Underway:
     Attributes
     ----------
     run : Run
-        What compiled code works on, on loan.
+        What compiled code works on, with an address.
     rules, state, record : Rules, State, RunRecord
         Parts of it.
     step_observations : tuple of Observed
@@ -188,9 +188,9 @@ class Underway:
             record = record._replace(journal=journal._replace(rows=longer(journal.rows, 2)))
         if 2 * taken > record.events.shape[0]:
             record = record._replace(events=longer(record.events, 2))
-        self.record = on_loan(record)
-        instant = on_loan(self.run.instant._replace(events=record.events))
-        self.run = on_loan(self.run._replace(record=self.record, instant=instant))
+        self.record = with_address(record)
+        instant = with_address(self.run.instant._replace(events=record.events))
+        self.run = with_address(self.run._replace(record=self.record, instant=instant))
 
     def events(self) -> list[Event]:
         """Everything listed so far, in order of time."""
@@ -209,8 +209,8 @@ class Underway:
         return history_of(rows, self.unique_forces, self.model)
 
     def piece(self, piece: Piece, stop: float) -> CurrentPiece:
-        """A piece of the ground motion up to `stop` (s), on loan."""
-        return on_loan(
+        """A piece of the ground motion up to `stop` (s), with an address."""
+        return with_address(
             CurrentPiece(
                 int(piece.family),
                 np.ascontiguousarray(piece.coefficients),
@@ -250,8 +250,8 @@ class Underway:
 
 
 def blank_observations(model: Model, count: int) -> tuple[Observed, ...]:
-    """Empty observations of a scene, so many, each on loan."""
-    return tuple(on_loan(blank_observed(*model.counts)) for _ in range(count))
+    """Empty observations of a scene, so many, with addresses."""
+    return tuple(with_address(blank_observed(*model.counts)) for _ in range(count))
 
 
 def _rules_of(task: Task, scales: SceneScales) -> Rules:
@@ -305,7 +305,7 @@ def _first_branches(model: Model, noise: float) -> Ints:
 
 
 def _record_of(task: Task, model: Model, scales: SceneScales) -> RunRecord:
-    """A record without extremes, on loan."""
+    """A record without extremes, with an address."""
     first = lines_before(task, model, scales)
     times = np.ascontiguousarray(task.output_times, np.float64)
     rows = np.empty((times.size + SPARE_ROWS, row_width(model)))
@@ -314,7 +314,7 @@ def _record_of(task: Task, model: Model, scales: SceneScales) -> RunRecord:
     cursor[WRITTEN] = first.shape[0]
     at = places_in(model)
     extremes = blank_extremes(at, scales)
-    return on_loan(
+    return with_address(
         RunRecord(
             journal=Journal(times, rows, cursor, model.law.damping[: model.springs].copy()),
             events=np.empty((SPARE_ROWS + 8 * model.contacts, EVENT_WIDTH)),
@@ -365,20 +365,20 @@ def _instant_of(
 
 
 def _run_of(rules: Rules, state: State, record: RunRecord, model: Model) -> Run:
-    """All of it with its scratch, on loan."""
+    """All of it with its scratch, with an address."""
     K, L = model.contacts, model.links
     size = 2 * model.bodies + model.hysteretic.size + model.ledger_entries
     located = Located(*(np.zeros(n, np.bool_) for n in (K, K, K, L)))
     marks = Marks(*(np.zeros(n, np.bool_) for n in (K, K, L, record.extremes.shape[1])))
     y, rate, atol = np.zeros((3, size))
-    return on_loan(
+    return with_address(
         Run(
             rules=rules,
             state=state,
-            instant=on_loan(_instant_of(model, rules, state, located, record.events)),
+            instant=with_address(_instant_of(model, rules, state, located, record.events)),
             record=record,
             located=located,
-            marks=on_loan(marks),
+            marks=with_address(marks),
             observations=blank_observations(model, 3),
             y=y,
             rate=rate,

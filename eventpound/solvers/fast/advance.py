@@ -15,7 +15,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration, ground_onset, next_corner
 from eventpound.motion.loads import LOADED, support_motion
-from eventpound.numerics.lending import lend
+from eventpound.numerics.by_address import by_address
 from eventpound.solvers.fast.apart.steps import go_apart, may_go_apart
 from eventpound.solvers.fast.compiled import compiled, compiled_noinline, compiled_whole
 from eventpound.solvers.fast.evaluate import observe_at_noinline
@@ -50,12 +50,12 @@ def advance(budget: int, run: FastRun) -> int:
         How it ended: FINISHED, GOING_ON, FULL (the record needs more room), IN_PYTHON (an instant
         is to be settled by `settle_sliders`), or an error; the state says when and where.
     """
-    return carry_on(budget, lend(run))
+    return carry_on(budget, by_address(run))
 
 
 @compiled_whole
 def carry_on(budget: int, run: FastRun) -> int:
-    """`advance`, the run lent."""
+    """`advance`, the run by address."""
     ground, end = run.plan.ground, run.plan.limits.end
     now, progress = run.state.now[0], run.state.progress[0]
     last_step = progress.steps + budget
@@ -68,13 +68,13 @@ def carry_on(budget: int, run: FastRun) -> int:
         if not has_room(run):
             return FULL
         if ground.family[progress.piece] == LOADED and progress.steps > 0:
-            _put_supports(lend(piece_of(progress.piece, ground)), run)
+            _put_supports(by_address(piece_of(progress.piece, ground)), run)
         if now.t >= end or progress.due != 0:
             ended = _settle_instant(run)
             if ended != DONE or now.t >= end:
                 return ended
         i = progress.piece
-        piece = lend(piece_of(i, ground))
+        piece = by_address(piece_of(i, ground))
         stop = min(ground.ends[i], end)
         if may_go_apart(piece, run):
             go_apart(last_step - progress.steps, stop, piece, run)
@@ -139,11 +139,11 @@ def _settle_instant(run: FastRun) -> int:
     t, order = state.now[0].t, plan.limits.order
     while progress.due == 1 and ground.ends[progress.piece] <= t:
         progress.piece += 1
-    piece = lend(piece_of(progress.piece, ground))
+    piece = by_address(piece_of(progress.piece, ground))
     g = ground_acceleration(piece, t)
     if progress.due == 1:
-        forcing = lend(Forcing(piece.family, piece.coefficients, piece.samples, t))
-        at = lend(instant_of(run))
+        forcing = by_address(Forcing(piece.family, piece.coefficients, piece.samples, t))
+        at = by_address(instant_of(run))
         pass_kinks(run.located.kinked, observed.z, at)
         if lacks_branch(at):
             choose_clear_branches(at)

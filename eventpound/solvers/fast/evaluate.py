@@ -7,7 +7,7 @@ import numpy as np
 from eventpound.mechanics.clusters import is_support
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.lending import lend
+from eventpound.numerics.by_address import by_address
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.followed import follows, observe_followed
 from eventpound.solvers.fast.links import add_pull, elongation, gap_of, link_force
@@ -72,7 +72,7 @@ def observe_forces(ground: float, run: FastRun) -> None:
 @compiled_deferred
 def _add_loads(tau: float, run: FastRun) -> None:
     """Add the loads of the present piece to `body_force`; those of supports are their `a`."""
-    piece = lend(piece_of(run.state.progress[0].piece, run.plan.ground))
+    piece = by_address(piece_of(run.state.progress[0].piece, run.plan.ground))
     add_body_loads(piece, run.state.now[0].t + tau, run.observed.body_force, run.observed.a)
 
 

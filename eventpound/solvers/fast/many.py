@@ -21,7 +21,7 @@ from eventpound.contact.event_rows import (
 )
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.lending import lend
+from eventpound.numerics.by_address import by_address
 from eventpound.solvers.fast.advance import carry_on
 from eventpound.solvers.fast.columns import Motions, VariantArrays
 from eventpound.solvers.fast.compiled import compiled, compiled_loop, compiled_noinline
@@ -205,7 +205,7 @@ def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kep
         record.unique[:] = True
         at = places_of(plan.mass.size, plan.links.springs, plan.contacts.gap.size)
         running = running_of(record.extremes, at)
-        one = lend(FastRun(plan, state, series, located, record, observed, running))
+        one = by_address(FastRun(plan, state, series, located, record, observed, running))
         ended = GOING_ON
         while ended == GOING_ON:
             ended = carry_on(budget, one)

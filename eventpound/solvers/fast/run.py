@@ -320,7 +320,7 @@ class FastObserved(NamedTuple):
 
 
 class FastRun(NamedTuple):
-    """A run: the one argument of most functions, lent (`eventpound.numerics.lending`).
+    """A run: the one argument of most functions, by address (`eventpound.numerics.by_address`).
 
     running: `record.extremes`, row by row.
     """

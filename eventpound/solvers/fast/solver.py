@@ -26,12 +26,12 @@ from eventpound.mechanics.supported import lowered
 from eventpound.motion.parametric import Parametric
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Bytes, Floats, longer
+from eventpound.numerics.by_address import change_first, with_address
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.numerics.joined_arrays import JoinedArrays
 from eventpound.numerics.latest import Latest
-from eventpound.numerics.lending import change_first, on_loan
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.parameters import Place
@@ -226,11 +226,11 @@ class Arrays:
         return self._keep(("begun", *of), made)
 
     def _blank_run(self, begun: _Begun) -> FastRun:
-        """A run with nothing recorded, on loan, in the arrays of the one before."""
+        """A run with nothing recorded, with an address, in the arrays of the one before."""
         run, plan = self._run, begun.plan
         self._moving.data[:] = begun.moving
         if run is None or not np.array_equal(run.plan.ground.family, plan.ground.family):
-            return on_loan(run_of(plan, self._moving, self._model))
+            return with_address(run_of(plan, self._moving, self._model))
         if plan is not run.plan:
             change_first(run, plan)
         if not plan.oscillator.alone:
@@ -383,7 +383,7 @@ def _run(
         if ended == FULL:
             if state.now["events"][0] > MOST_EVENTS:
                 return run, CROWDED, None
-            run = on_loan(run._replace(record=_enlarged(run.record, plan, state)))
+            run = with_address(run._replace(record=_enlarged(run.record, plan, state)))
         elif ended != GOING_ON:
             return run, ended, None
         try:
@@ -426,6 +426,6 @@ def kernels_kept(task: Task) -> bool:
     scene = Scene((Body("any", 1.0),))
     model = assemble(scene)
     plan = plan_of(replace(task, scene=scene), model, scene_scales(scene, model, 1.0))
-    run = on_loan(run_of(plan, moving_of(model), model))
+    run = with_address(run_of(plan, moving_of(model), model))
     types = tuple(needed.typeof_pyval(each) for each in (BUDGET, run))
     return needed._cache.has(types, needed.targetctx)

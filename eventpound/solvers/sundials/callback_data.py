@@ -1,6 +1,6 @@
 """What the compiled callbacks and steps of a SUNDIALS object are handed.
 
-A callback gets one address: that of the table of a group on loan (`eventpound.numerics.lending`),
+A callback gets one address: that of the table of a group (`eventpound.numerics.by_address`),
 which stays where it is while the mode, the forcing and the moving frame in it change. Where
 SUNDIALS finds events, the `Roots` of its root functions (`eventpound.solvers.events.roots`) are
 part of it.
@@ -18,8 +18,8 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_of
 from eventpound.mechanics.observables import Observed, blank_observed
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.by_address import change_group, type_by_address, with_address
 from eventpound.numerics.compiled import callback, in_python, kernel
-from eventpound.numerics.lending import change_loan, on_loan, type_of_loan
 from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
@@ -34,11 +34,11 @@ _FALLING, _RISING = -1, 1
 
 
 class Roots(NamedTuple):
-    """Root functions of a mode, n of them; on loan.
+    """Root functions of a mode, n of them; with an address.
 
     fresh (1,): whether they are still to be asked for the first time. forces: whether contact
     forces or rates of x' are among them. watched: of the `Mode`. noise, lifted (n,), pairs (n, 2):
-    as `eventpound.solvers.events.roots` has them. observed: scratch, on loan.
+    as `eventpound.solvers.events.roots` has them. observed: scratch, with an address.
     """
 
     fresh: Bools
@@ -63,11 +63,11 @@ def address_of(
     function : callable
         In Numba's part of Python, of numbers, then addresses, what it is handed, more addresses.
     given : named tuple
-        What it is handed, on loan.
+        What it is handed, with an address.
     pointers, reals, after : int
         How many addresses and numbers come before what it is handed, and addresses after it.
     """
-    kind = type_of_loan(given)
+    kind = type_by_address(given)
     if (function, kind) not in _CALLBACKS:
         before = (types.float64,) * reals + (types.intp,) * pointers
         signature = types.intc(*before, kind, *(types.intp,) * after)
@@ -76,11 +76,11 @@ def address_of(
 
 
 def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int = 0) -> Roots:
-    """`Roots` without functions of a scene with so many of each, on loan."""
+    """`Roots` without functions of a scene with so many of each, with an address."""
     gaps, forces = np.zeros((2, contacts), np.bool_)
     (least, most), (low, high) = np.zeros((2, contacts)), np.zeros((2, links))
     turns, at = np.zeros(links, np.bool_), in_python(places_of)(0, 0, 0)
-    return on_loan(
+    return with_address(
         Roots(
             np.zeros(1, np.bool_),
             False,
@@ -88,7 +88,7 @@ def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int
             np.zeros(0),
             np.zeros(0),
             np.zeros((0, 2)),
-            on_loan(blank_observed(bodies, links, contacts, hysteretic)),
+            with_address(blank_observed(bodies, links, contacts, hysteretic)),
         )
     )
 
@@ -111,19 +111,19 @@ class RootFunctions:
 
     Attributes
     ----------
-    loan : Roots
-        On loan, the same for all modes.
+    present : Roots
+        Those of the present mode, at the same address for all.
     """
 
     def __init__(self, model: Model, length: float, time: float) -> None:
         self._length, self._time = length, time
         self._mode: Mode
-        self.loan = no_roots(*model.counts)
+        self.present = no_roots(*model.counts)
 
     @property
     def count(self) -> int:
         """Values, each with its rate."""
-        return int(self.loan.noise.size)
+        return int(self.present.noise.size)
 
     @property
     def directions(self) -> list[int]:
@@ -133,16 +133,16 @@ class RootFunctions:
     def point_to(self, mode: Mode) -> None:
         """Be the functions of a mode, from a start on."""
         watched, noise = mode.watched, noise_of(mode.watched, self._length, self._time)
-        self._mode, fresh, observed = mode, self.loan.fresh, self.loan.observed
+        self._mode, fresh, observed = mode, self.present.fresh, self.present.observed
         fresh[0] = True
         forces = bool(watched.unlocked.any() or watched.turns.any())
         lifted, pairs = np.zeros(noise.size), np.zeros((noise.size, 2))
         roots = Roots(fresh, forces, watched, noise, lifted, pairs, observed)
-        change_loan(self.loan, roots)
+        change_group(self.present, roots)
 
     def located(self) -> tuple[Bools, Bools, Bools]:
         """The events where values have fallen: closing (K,), released (K,), kinked (L,)."""
-        return located_of(self._mode.watched, self.loan.pairs[:, 0] < 0.0)
+        return located_of(self._mode.watched, self.present.pairs[:, 0] < 0.0)
 
 
 @kernel

@@ -11,8 +11,8 @@ from eventpound.mechanics.observables import Bodies, Observed, observe
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
+from eventpound.numerics.by_address import with_address
 from eventpound.numerics.compiled import kernel, loop_kernel
-from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.reversals import take_directions
@@ -54,10 +54,10 @@ NEVER = -1.0
 
 
 class CvodeData(NamedTuple):
-    """What CVODE's callbacks are handed, on loan.
+    """What CVODE's callbacks are handed, with an address.
 
     calls (2,): of the right-hand side; Jacobians. system: of the mode, whose directions of
-    links are the segment's own; it, `bodies` and `roots` are on loan themselves. frame: the
+    links are the segment's own; it, `bodies` and `roots` have addresses. frame: the
     moving frame.
     """
 
@@ -70,7 +70,7 @@ class CvodeData(NamedTuple):
 
 
 class CvodeHandles(NamedTuple):
-    """Addresses of a CVODE object and its state vector, and where times are put; on loan.
+    """Addresses of a CVODE object and its state vector, and where times are put.
 
     interpolated: a vector for states. given: what its callbacks are handed. rtol: that of
     the motion. spent (1,): Jacobians since the last start or reversal that are counted.
@@ -286,7 +286,7 @@ class DirectCvode(Direct):
             callback, data = address_of(right_hand_side, given, 2), given.address
             memory = CvodeMemory(self.library, self.method, plan, callback, data)
             numbers = np.zeros(2), memory.interpolated, given, self.rtol, np.zeros(1, np.int64)
-            handles = on_loan(CvodeHandles(memory.address, memory.vector, *numbers))
+            handles = with_address(CvodeHandles(memory.address, memory.vector, *numbers))
             self._memories[plan.key] = memory, handles
         found: tuple[CvodeMemory, CvodeHandles] = self._memories[plan.key]
         return found

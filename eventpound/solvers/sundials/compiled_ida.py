@@ -16,8 +16,8 @@ from eventpound.mechanics.descriptor_motion import (
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
+from eventpound.numerics.by_address import with_address
 from eventpound.numerics.compiled import kernel, loop_kernel
-from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import Examination
@@ -54,9 +54,9 @@ if ida_library() is None:
 
 
 class IdaData(NamedTuple):
-    """What IDA's callbacks are handed, on loan.
+    """What IDA's callbacks are handed, with an address.
 
-    calls (2,): of the residual and of its Jacobian. problem, roots: on loan themselves.
+    calls (2,): of the residual and of its Jacobian. problem, roots: with addresses.
     """
 
     calls: Ints
@@ -65,7 +65,7 @@ class IdaData(NamedTuple):
 
 
 class IdaHandles(NamedTuple):
-    """Addresses of an IDA object and its vectors; where times and drifts are put; on loan.
+    """Addresses of an IDA object and its vectors; where times and drifts are put.
 
     interpolated: a vector for unknowns. given: what its callbacks are handed. mode: the
     loop's. reached (1,): where IDA is (s). followed: whose steps. time: the scene's own T (s).
@@ -262,7 +262,7 @@ class DirectIda(InDescriptorForm, Direct):
         own = self._own
         self._hand(IdaData(self._calls, self._problem, self._present_roots))
         memory = self._memory = self._memory_for(own)
-        self._handles = on_loan(
+        self._handles = with_address(
             IdaHandles(
                 memory.address,
                 memory.vector,

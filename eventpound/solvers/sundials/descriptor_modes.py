@@ -9,7 +9,7 @@ import numpy as np
 from eventpound.mechanics.descriptor import Descriptor, descriptor_form
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.lending import on_loan
+from eventpound.numerics.by_address import with_address
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.sundials.memory import Tolerances, step_tolerances
@@ -27,7 +27,7 @@ class DescriptorMode:
     Parameters
     ----------
     descriptor : Descriptor
-        On loan.
+        With an address.
     algebraic : ndarray of bool, shape (size,)
         Unknowns whose rates do not appear.
     rtol : float
@@ -105,4 +105,4 @@ class DescriptorModes:
                 np.full(d.size - d.ledger if self.ledger else 0, self.atol["energy"]),
             ]
         )
-        return DescriptorMode(on_loan(d), algebraic, self.rtol, atol)
+        return DescriptorMode(with_address(d), algebraic, self.rtol, atol)

@@ -17,8 +17,8 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import blank_observed
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.by_address import change_group, with_address
 from eventpound.numerics.compiled import in_python
-from eventpound.numerics.lending import change_loan, on_loan
 from eventpound.solvers.events.dense import NO_GAPS, NODES, Dense, from_values
 from eventpound.solvers.events.integrator import Bounds, StandstillError, Start, StepsTaken
 from eventpound.solvers.events.modes import Mode
@@ -132,13 +132,13 @@ class Direct(_Duties):
     def _hand(self, given: Any) -> None:
         """Let the callbacks be handed this, always at the same address."""
         if self._given is None:
-            self._given = on_loan(given)
+            self._given = with_address(given)
         else:
-            change_loan(self._given, given)
+            change_group(self._given, given)
 
     @property
     def _present_roots(self) -> Roots:
-        return NO_ROOTS if self._roots is None else self._roots.loan
+        return NO_ROOTS if self._roots is None else self._roots.present
 
     @property
     def rhs_calls(self) -> int:
@@ -281,7 +281,7 @@ class Wrapped(_Duties):
     def _values_left(self, tau: float) -> Roots:
         """Of `root_at`."""
         assert self._roots is not None
-        roots = self._roots.loan
+        roots = self._roots.present
         roots.pairs[:] = self._left.reshape(-1, 2)
         return roots
 
@@ -318,16 +318,16 @@ class InDescriptorForm(_Duties):
         super().__init__()
         self.scales, self.drift = modes.scales, np.zeros(2)
         self._modes = modes
-        self._scratch = on_loan(blank_observed(*modes.model.counts))
+        self._scratch = with_address(blank_observed(*modes.model.counts))
         self._own: DescriptorMode
         self._problem: DescriptorProblem
         self._followed: Followed
 
     def start(self, start: Start) -> None:
         """Begin with the clusters in the state given; the tolerances are those of the run."""
-        self._own = self._modes.of(start.mode)
-        self._problem = on_loan(DescriptorProblem(self._own.descriptor, start.forcing, start.frame))
-        self._followed = on_loan(Followed(self._problem, self.drift, self.scales.acceleration))
+        self._own = own = self._modes.of(start.mode)
+        self._problem = with_address(DescriptorProblem(own.descriptor, start.forcing, start.frame))
+        self._followed = with_address(Followed(self._problem, self.drift, self.scales.acceleration))
         super().start(start)
 
     def advance(

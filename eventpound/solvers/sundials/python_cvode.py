@@ -96,7 +96,7 @@ class WrappedCvode(Wrapped):
         system, bodies = self._mode.directed, self._mode.bodies
         assert self._roots is not None
         self._relative(tau, y)
-        cluster_roots(tau, y, system, bodies, self._forcing, self._roots.loan, out)
+        cluster_roots(tau, y, system, bodies, self._forcing, self._roots.present, out)
 
     def _put_inner(self, tau: float, k: int, y: Floats) -> None:
         y[:] = self._interpolated(tau)

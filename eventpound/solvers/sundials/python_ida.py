@@ -94,7 +94,7 @@ class WrappedIda(InDescriptorForm, Wrapped):
         assert self._roots is not None
         self._relative(tau, y)
         onto_constraints(self._own.descriptor, y)
-        descriptor_roots(tau, y, self._problem, self._roots.loan, out)
+        descriptor_roots(tau, y, self._problem, self._roots.present, out)
 
     def _take(self, start: float, first: int, bounds: Bounds, e: Examination) -> tuple[int, float]:
         """A step from `start` (s)."""

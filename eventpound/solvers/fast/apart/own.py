@@ -11,7 +11,7 @@ from typing import NamedTuple
 from eventpound.mechanics.monitored import Running, places_of, running_of
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece
-from eventpound.numerics.lending import lend
+from eventpound.numerics.by_address import by_address
 from eventpound.solvers.fast.apart.between import A_HIGH, A_LOW, U_HIGH, U_LOW
 from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.extremes import flat_time, take_turn
@@ -41,7 +41,7 @@ _GAUSSIAN = int(Family.GAUSSIAN)
 
 
 class Window(NamedTuple):
-    """A stretch of one piece of the ground motion, from `start` to `end` (s), lent.
+    """A stretch of one piece of the ground motion, from `start` to `end` (s), by address.
 
     segment: under a record, within one step of which it stays, number of the sample before.
     """
@@ -70,7 +70,7 @@ def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
     plan, each, h = run.plan, run.series.each, run.plan.links.grounded[b]
     tables, piece, own = plan.hysteresis.tables, window.piece, running_of_own(b, each)
     # Rows and what belongs to several bodies is taken elsewhere.
-    one = lend(
+    one = by_address(
         SingleRun(
             each.body[b],
             each.now[b],

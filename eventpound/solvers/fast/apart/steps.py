@@ -16,7 +16,7 @@ from __future__ import annotations
 from eventpound.contact.cascade import is_fleeting
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece
-from eventpound.numerics.lending import lend
+from eventpound.numerics.by_address import by_address
 from eventpound.solvers.fast.apart.own import START, Window, go, take_own
 from eventpound.solvers.fast.apart.together import go_together
 from eventpound.solvers.fast.apart.windows import go_by_windows, windows_fit
@@ -55,7 +55,7 @@ def may_go_apart(piece: CurrentPiece, run: FastRun) -> bool:
 def go_apart(budget: int, stop: float, piece: CurrentPiece, run: FastRun) -> None:
     """Steps of each body by itself, to `stop` (s) at most and `budget` in all; then one instant."""
     state, each, now = run.state, run.series.each, run.state.now[0].t
-    window = lend(Window(now, stop, -1, piece))
+    window = by_address(Window(now, stop, -1, piece))
     for b in range(each.body.size):
         go(b, START, now, window, run)
         each.until[b] = now

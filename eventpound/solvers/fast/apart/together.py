@@ -20,7 +20,7 @@ from eventpound.contact.instant import settle_impacts
 from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.monitored import update_extreme
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.lending import lend
+from eventpound.numerics.by_address import by_address
 from eventpound.solvers.fast.apart.between import (
     A_HIGH,
     A_LOW,
@@ -191,7 +191,7 @@ def _impact(j: int, tau: float, window: Window, run: FastRun) -> bool:
         if b >= 0:
             go(b, STAY, tau, window, run)
             state.u[b], state.v[b] = each.body[b].u, each.body[b].v
-    if not simple or settle_impacts(lend(instant_of(run))) != DONE:
+    if not simple or settle_impacts(by_address(instant_of(run))) != DONE:
         return False
     parts = state.gap_rate[j] > still
     for b in (contacts.left[j], contacts.right[j]):

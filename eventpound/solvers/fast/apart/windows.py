@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.motion.forcing import CurrentPiece, sample_time
-from eventpound.numerics.lending import lend
+from eventpound.numerics.by_address import by_address
 from eventpound.solvers.fast.apart.between import (
     A_HIGH,
     A_LOW,
@@ -68,7 +68,7 @@ def go_by_windows(budget: int, stop: float, piece: CurrentPiece, run: FastRun) -
         whole = whole and end == sample_time(coefficients[0], dt, segment + 1)
         if not _choose(dt, whole, window, run):
             break
-        go_together(_ANY, lend(window), run)
+        go_together(_ANY, by_address(window), run)
         for b in range(each.body.size):
             if each.until[b] < np.inf:
                 set_line(dt, each.body[b])

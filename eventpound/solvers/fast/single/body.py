@@ -155,7 +155,7 @@ class SingleBody(NamedNumbers, room=ROOM):
 
 
 class SingleRun(NamedTuple):
-    """A run of a single body, lent (`eventpound.numerics.lending`): parts of a `FastRun`.
+    """A run of a single body, by address (`eventpound.numerics.by_address`): parts of a `FastRun`.
 
     now, progress: those of `FastState`. table: of its backbone.
     """

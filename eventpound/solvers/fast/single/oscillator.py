@@ -32,7 +32,7 @@ from eventpound.motion.forcing import (
     ground_taylor,
     sample_time,
 )
-from eventpound.numerics.lending import lend, whole
+from eventpound.numerics.by_address import by_address, whole
 from eventpound.solvers.fast.compiled import (
     compiled,
     compiled_deferred,
@@ -149,7 +149,7 @@ def _write_rest(rests: bool, j: int, rate: float, run: SingleRun) -> None:
 
 @compiled_noinline
 def oscillate_alone(budget: int, run: FastRun) -> int:
-    """`oscillate` of a run, lent."""
+    """`oscillate` of a run by address."""
     single = whole(run.series.single)
     return oscillate(budget, whole(run.plan), whole(run.state), single, whole(run.record))
 
@@ -177,7 +177,7 @@ def oscillate(
     """
     start = plan.hysteresis.at[0] if plan.hysteresis.at.size > 0 else 0
     at = places_of(1, plan.links.springs, plan.contacts.gap.size)
-    run = lend(
+    run = by_address(
         SingleRun(
             single.body[0],
             state.now[0],
@@ -219,7 +219,7 @@ def _settle(run: SingleRun) -> None:
     body, ground, t, progress = run.body, run.plan.ground, run.now.t, run.progress
     while progress.due == 1 and ground.ends[progress.piece] <= t:
         progress.piece += 1
-    piece = lend(piece_of(progress.piece, ground))
+    piece = by_address(piece_of(progress.piece, ground))
     g = ground_acceleration(piece, t)
     if progress.due == 1:
         settle_single(g, piece, run)
@@ -235,7 +235,7 @@ def _rest(last_step: int, run: SingleRun) -> int:
     """Steps of a body at rest, until something is to be settled."""
     ground, body, now, progress = run.plan.ground, run.body, run.now, run.progress
     i = progress.piece
-    piece = lend(piece_of(i, ground))
+    piece = by_address(piece_of(i, ground))
     piece_end = min(ground.ends[i], run.plan.limits.end)
     while progress.steps < last_step and progress.due == 0 and now.t < piece_end:
         if not rest_step(piece_end, piece, run):
@@ -257,7 +257,7 @@ def _swing(last_step: int, run: SingleRun) -> int:
     """Steps of a body that moves, until something is to be settled."""
     body, ground, now, progress = run.body, run.plan.ground, run.now, run.progress
     i = progress.piece
-    piece = lend(piece_of(i, ground))
+    piece = by_address(piece_of(i, ground))
     piece_end = min(ground.ends[i], run.plan.limits.end)
     family, coefficients = piece.family, piece.coefficients
     if body.piece_known != i + 1:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.by_address import by_address, change_first, whole, with_address
 from eventpound.numerics.compiled import scalar_kernel
-from eventpound.numerics.lending import change_first, lend, on_loan, whole
 from eventpound.numerics.records import NamedNumbers
 
 
@@ -37,7 +37,7 @@ class Several(NamedTuple):
 
 @scalar_kernel
 def fill(pair: Pair) -> float:
-    """Write into records that are lent, and read them."""
+    """Write into records by address, and read them."""
     pair.one.x = 2.0 * pair.y[0]
     pair.one.terms[2] = pair.all[1].x
     return pair.all[0].x
@@ -45,21 +45,22 @@ def fill(pair: Pair) -> float:
 
 @scalar_kernel
 def fill_all(several: Several, y: Floats) -> float:
-    """The same, lending what Python has lent."""
-    return several.factor * fill(lend(Pair(several.all, several.all[1], y)))
+    """The same, with an address of parts of what Python handed over."""
+    return several.factor * fill(by_address(Pair(several.all, several.all[1], y)))
 
 
-def test_records_are_lent() -> None:
+def test_records_go_by_address() -> None:
     masses = np.zeros(2, Mass.layout)
     masses[0].x = 3.0
-    assert fill_all(on_loan(Several(masses, 0.5)), np.array([7.0])) == 1.5
+    assert fill_all(with_address(Several(masses, 0.5)), np.array([7.0])) == 1.5
     assert masses[1].x == 14.0
     assert masses[1].terms.tolist() == [0.0, 0.0, 14.0]
 
 
 def test_layouts_are_told_apart_by_their_class() -> None:
     other = np.dtype((type("Other", (Mass,), {}), np.dtype([("x", float)])))
-    kinds = {on_loan(Several(np.zeros(2, each), 0.5))._numba_type_ for each in (Mass.layout, other)}  # type: ignore[attr-defined]
+    groups = [with_address(Several(np.zeros(2, each), 0.5)) for each in (Mass.layout, other)]
+    kinds = {each._numba_type_ for each in groups}  # type: ignore[attr-defined]
     assert len(kinds) == 2
 
 
@@ -80,22 +81,22 @@ class Scaled(NamedTuple):
 
 @scalar_kernel
 def total(inner: Inner) -> float:
-    """All numbers of a group that is no loan."""
+    """All numbers of a group without an address."""
     return inner.factor * inner.y[0] + inner.z[0]
 
 
 @scalar_kernel
-def total_of_lent(scaled: Scaled) -> float:
-    """The same of one that was lent, and the number beside it."""
+def total_by_address(scaled: Scaled) -> float:
+    """The same of one by address, and the number beside it."""
     return total(whole(scaled.first)) + scaled.second[0]
 
 
-def test_the_first_group_on_loan_is_exchanged() -> None:
+def test_the_first_group_at_an_address_is_exchanged() -> None:
     y, z = np.array([2.0]), np.array([3.0, 4.0])
-    loan = on_loan(Scaled(Inner(0.5, y, z), np.array([100.0])))
-    assert total_of_lent(loan) == 104.0
-    change_first(loan, Inner(10.0, y, np.array([5.0])))
-    assert total_of_lent(loan) == 125.0
-    assert loan.first.factor == 10.0
+    addressed = with_address(Scaled(Inner(0.5, y, z), np.array([100.0])))
+    assert total_by_address(addressed) == 104.0
+    change_first(addressed, Inner(10.0, y, np.array([5.0])))
+    assert total_by_address(addressed) == 125.0
+    assert addressed.first.factor == 10.0
     with pytest.raises(TypeError, match="Inner is of another kind"):
-        change_first(loan, Inner(10.0, y, np.array([5])))
+        change_first(addressed, Inner(10.0, y, np.array([5])))

@@ -2,16 +2,17 @@
 
 Numba takes a named tuple apart at every call: an array is seven numbers, so a group of
 thirty arrays is two hundred arguments, and to compile the calls costs several times what is
-done in the functions. A group that is *lent* is one address, of a table that tells where
+done in the functions. A group *by address* is one address, of a table that tells where
 its arrays are and how long; a field is read from the table where it is used. The table does
-not change while it is lent, which the compiler is told, so that what was read from it once
+not change meanwhile, which the compiler is told, so that what was read from it once
 need not be read again.
 
-Nothing here is counted as a reference: whoever lends a group keeps its arrays alive. Only
+Nothing here is counted as a reference: whoever hands over a group keeps its arrays alive. Only
 Numba's interface for extensions is used.
 
-Python lends a group by `on_loan`: to hand over sixty arrays costs what one address does then.
-Several functions may borrow it, one after the other, and one group may be a field of another.
+Python gives a group one by `with_address`: to hand over sixty arrays costs what one address does
+then. Several functions may be given it, one after the other,
+and one group may be a field of another.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ _GROUPS = (types.NamedTuple, types.NamedUniTuple)
 _LENGTH = ir.IntType(64)
 _ADDRESS = ir.IntType(8).as_pointer()
 _unpacked: Any = cgutils.unpack_tuple
-_room_for: Any = cgutils.alloca_once
+_stack_slot: Any = cgutils.alloca_once
 _named_tuple: Any = types.BaseTuple.from_types
 _tuple_of: Any = types.UniTuple
 _native: Any = NativeValue
@@ -47,19 +48,19 @@ _NOTHING = ctypes.c_char * 0
 Group = TypeVar("Group")
 
 
-class Lent(types.Type):
+class ByAddress(types.Type):
     """A named tuple of arrays, records, numbers and such tuples, by the address of its table."""
 
     def __init__(self, group: Any) -> None:
         self.group = group
         name = group.instance_class.__name__
-        super().__init__(f"Lent[{name}:{sha256(str(group).encode()).hexdigest()[:16]}]")
+        super().__init__(f"ByAddress[{name}:{sha256(str(group).encode()).hexdigest()[:16]}]")
 
 
-@register_model(Lent)
-class _LentModel(PrimitiveModel):
-    def __init__(self, manager: Any, lent: Any) -> None:
-        super().__init__(manager, lent, _ADDRESS)  # type: ignore[no-untyped-call]
+@register_model(ByAddress)
+class _ByAddressModel(PrimitiveModel):
+    def __init__(self, manager: Any, addressed: Any) -> None:
+        super().__init__(manager, addressed, _ADDRESS)  # type: ignore[no-untyped-call]
 
 
 def _words(kind: Any) -> int:
@@ -68,13 +69,13 @@ def _words(kind: Any) -> int:
         return sum(map(_words, kind.types))
     if isinstance(kind, types.Array):
         if kind.layout != "C":
-            raise TypingError(f"only contiguous arrays can be lent, not {kind}")
+            raise TypingError(f"only contiguous arrays have an address, not {kind}")
         return 1 + int(kind.ndim)
-    if isinstance(kind, types.UniTuple) and isinstance(kind.dtype, Lent):
+    if isinstance(kind, types.UniTuple) and isinstance(kind.dtype, ByAddress):
         return int(kind.count)
-    if isinstance(kind, Lent | types.Record | types.Number | types.Boolean):
+    if isinstance(kind, ByAddress | types.Record | types.Number | types.Boolean):
         return 1
-    raise TypingError(f"{kind} cannot be lent")
+    raise TypingError(f"{kind} cannot go by address")
 
 
 def _at(builder: Any, table: Any, word: int, kind: Any) -> Any:
@@ -110,33 +111,33 @@ def _read(builder: Any, table: Any, word: int, kind: Any) -> Any:
     return found
 
 
-def lend(group: Any) -> Any:
-    """A group as one address, for the time of the function that lends it; see the module.
+def by_address(group: Any) -> Any:
+    """A group as one address, for the time of the function that asks for it; see the module.
 
     Where Python runs that function, it is the group itself.
     """
     return group
 
 
-@type_callable(lend)
-def _type_of_lent(context: Any) -> Any:
-    def lent(group: Any) -> Any:
-        if isinstance(group, Lent):
+@type_callable(by_address)
+def _type_by_address(context: Any) -> Any:
+    def addressed(group: Any) -> Any:
+        if isinstance(group, ByAddress):
             return group
         if not isinstance(group, _GROUPS):
             raise TypingError(f"{group} is no named tuple")
         _words(group)
-        return Lent(group)
+        return ByAddress(group)
 
-    return lent
+    return addressed
 
 
-@lower_builtin(lend, types.Any)  # type: ignore[no-untyped-call]
-def _lend(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+@lower_builtin(by_address, types.Any)  # type: ignore[no-untyped-call]
+def _by_address(context: Any, builder: Any, signature: Any, given: Any) -> Any:
     group = signature.args[0]
-    if isinstance(group, Lent):
+    if isinstance(group, ByAddress):
         return given[0]
-    table = _room_for(builder, ir.ArrayType(_LENGTH, _words(group)))
+    table = _stack_slot(builder, ir.ArrayType(_LENGTH, _words(group)))
     address = builder.bitcast(table, _ADDRESS)
     _fill(context, builder, address, 0, group, given[0])
     # An address of which the compiler does not know whose it is: it may not move a reading
@@ -145,44 +146,44 @@ def _lend(context: Any, builder: Any, signature: Any, given: Any) -> Any:
     return builder.asm(same, "", "=r,0,~{memory}", [address], True)
 
 
-def whole(lent: Any) -> Any:
-    """A group that is lent as a named tuple again; where Python runs it, what it is given."""
-    return lent
+def whole(addressed: Any) -> Any:
+    """A group by address as a named tuple again; where Python runs it, what it is given."""
+    return addressed
 
 
 @type_callable(whole)
 def _type_of_whole(context: Any) -> Any:
-    return lambda lent: lent.group
+    return lambda addressed: addressed.group
 
 
-@lower_builtin(whole, Lent)  # type: ignore[no-untyped-call]
+@lower_builtin(whole, ByAddress)  # type: ignore[no-untyped-call]
 def _whole(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-    def gathered(lent: Any, table: Any) -> Any:
+    def gathered(addressed: Any, table: Any) -> Any:
         values = []
-        for name, kind in zip(lent.group.fields, lent.group.types, strict=True):
-            value = _field(context, builder, lent, table, name)
-            values.append(gathered(Lent(kind), value) if isinstance(kind, _GROUPS) else value)
-        return context.make_tuple(builder, lent.group, values)
+        for name, kind in zip(addressed.group.fields, addressed.group.types, strict=True):
+            value = _field(context, builder, addressed, table, name)
+            values.append(gathered(ByAddress(kind), value) if isinstance(kind, _GROUPS) else value)
+        return context.make_tuple(builder, addressed.group, values)
 
     return gathered(signature.args[0], given[0])
 
 
 @infer_getattr
 class _Fields(AttributeTemplate):
-    key = Lent
+    key = ByAddress
 
-    def generic_resolve(self, lent: Any, name: str) -> Any:  # type: ignore[override]
-        """The type of a field: of a group in a group, one that is lent."""
-        if name not in lent.group.fields:
+    def generic_resolve(self, addressed: Any, name: str) -> Any:  # type: ignore[override]
+        """The type of a field: of a group in a group, one by address."""
+        if name not in addressed.group.fields:
             return None
-        kind = lent.group.types[lent.group.fields.index(name)]
-        return Lent(kind) if isinstance(kind, _GROUPS) else kind
+        kind = addressed.group.types[addressed.group.fields.index(name)]
+        return ByAddress(kind) if isinstance(kind, _GROUPS) else kind
 
 
-@lower_getattr_generic(Lent)  # type: ignore[no-untyped-call]
-def _field(context: Any, builder: Any, lent: Any, table: Any, name: str) -> Any:
-    place = lent.group.fields.index(name)
-    kind, word = lent.group.types[place], sum(map(_words, lent.group.types[:place]))
+@lower_getattr_generic(ByAddress)  # type: ignore[no-untyped-call]
+def _field(context: Any, builder: Any, addressed: Any, table: Any, name: str) -> Any:
+    place = addressed.group.fields.index(name)
+    kind, word = addressed.group.types[place], sum(map(_words, addressed.group.types[:place]))
     if isinstance(kind, _GROUPS):
         return builder.gep(table, [_LENGTH(word * _WORD)])
     if isinstance(kind, types.Array):
@@ -220,19 +221,19 @@ def _array(context: Any, builder: Any, kind: Any, table: Any, word: int) -> Any:
     return array._getvalue()
 
 
-class Loan:
-    """A group that Python lends, of which fields are read as of the group itself.
+class WithAddress:
+    """A group with an address, of which fields are read as of the group itself.
 
     Parameters
     ----------
     group : named tuple
-        Of contiguous arrays, numbers, named tuples, loans, and tuples of loans of one kind.
+        Of contiguous arrays, numbers, named tuples, others like it, and tuples of such of one kind.
         Arrays of records have a class of records for each layout.
 
     Attributes
     ----------
     group : named tuple
-        The same; the loan keeps its arrays alive.
+        The same; its arrays are kept alive.
     address : int
         Of the table, which stays where it is.
 
@@ -251,16 +252,16 @@ class Loan:
         self.group = group
 
     def change_to(self, group: Any) -> None:
-        """Lend another group of the same kind, at the same address."""
+        """Put another group of the same kind at the same address."""
         kind, table = _listed(group)
         if kind is not self._numba_type_:
-            raise TypeError(f"{type(group).__name__} is of another kind than what was lent")
+            raise TypeError(f"{type(group).__name__} is of another kind than before")
         # Of the same length, so that it is filled where it is.
         self._table[:] = table
         self.group = group
 
     def change_first(self, group: Any) -> None:
-        """Lend another group of the same kind as the first field, at the same address.
+        """Put another group of the same kind into the first field, at the same address.
 
         Of its own fields only those that are others are listed anew.
         """
@@ -273,7 +274,7 @@ class Loan:
             if now is not was:
                 marks, words = _marked(now)
                 if marks != known[0]:
-                    raise TypeError(f"{type(group).__name__} is of another kind than what was lent")
+                    raise TypeError(f"{type(group).__name__} is of another kind than before")
                 self._table[begin:end] = array("q", words)
             begin = end
         self.group = type(self.group)(group, *others)
@@ -282,46 +283,46 @@ class Loan:
         return getattr(self.group, name)
 
 
-def on_loan(group: Group) -> Group:
-    """A group as Python lends it to compiled functions: a `Loan`, to be read like the group."""
-    loan: Any = Loan(group)
-    return loan
+def with_address(group: Group) -> Group:
+    """A group that Python hands to compiled functions by address, to be read like the group."""
+    addressed: Any = WithAddress(group)
+    return addressed
 
 
-def change_loan(loan: Group, group: Group) -> None:
-    """Lend another group of the same kind at the address of one on loan; see `Loan.change_to`."""
-    present: Any = loan
+def change_group(addressed: Group, group: Group) -> None:
+    """Put another group of the same kind at an address; see `WithAddress.change_to`."""
+    present: Any = addressed
     present.change_to(group)
 
 
-def change_first(loan: Any, group: Any) -> None:
-    """Lend another group of the same kind as the first field of one on loan."""
-    loan.change_first(group)
+def change_first(addressed: Any, group: Any) -> None:
+    """Put another group of the same kind into the first field of one with an address."""
+    addressed.change_first(group)
 
 
-def fields_of(loan: Any) -> tuple[Any, ...]:
-    """The fields of a group on loan, one after the other."""
-    group: tuple[Any, ...] = loan.group
+def fields_of(addressed: Any) -> tuple[Any, ...]:
+    """The fields of a group with an address, one after the other."""
+    group: tuple[Any, ...] = addressed.group
     return group
 
 
-def type_of_loan(loan: Any) -> Any:
-    """Numba's type of a group on loan, for the signature of a callback that is handed one."""
-    return loan._numba_type_
+def type_by_address(addressed: Any) -> Any:
+    """Numba's type of a group by address, for the signature of a callback that is handed one."""
+    return addressed._numba_type_
 
 
-_KINDS: dict[tuple[Any, ...], Lent] = {}
-"""Types of what has been on loan, by the marks that `_list` makes: to make one takes longer."""
+_KINDS: dict[tuple[Any, ...], ByAddress] = {}
+"""Types of what has had an address, by the marks that `_list` makes: to make one takes longer."""
 
 
-def _listed(group: Any) -> tuple[Lent, array[int]]:
-    """The type of a group on loan, and its table."""
+def _listed(group: Any) -> tuple[ByAddress, array[int]]:
+    """The type of a group with an address, and its table."""
     words: list[int] = []
     marks: list[Any] = []
     _list(group, words, marks)
     mark = tuple(marks)
     if mark not in _KINDS:
-        _KINDS[mark] = Lent(_kind(group))
+        _KINDS[mark] = ByAddress(_kind(group))
     return _KINDS[mark], array("q", words)
 
 
@@ -336,7 +337,7 @@ def _marked(value: Any) -> tuple[list[Any], list[int]]:
 def _list(group: tuple[Any, ...], words: list[int], marks: list[Any]) -> None:
     """Put what stands for fields behind the words of a table, and what they are behind the marks.
 
-    Some hundreds of arrays are lent in a run, whose steps take no longer.
+    Some hundreds of arrays are listed in a run, whose steps take no longer.
     """
     marks += type(group), len(group)
     for value in group:
@@ -346,7 +347,7 @@ def _list(group: tuple[Any, ...], words: list[int], marks: list[Any]) -> None:
             # A layout takes long to look up; the class of its records stands for it.
             kind: Any = value.dtype.char if value.dtype.names is None else value.dtype.type
             marks += kind, value.ndim
-        elif isinstance(value, Loan):
+        elif isinstance(value, WithAddress):
             words.append(value.address)
             marks.append(id(value._numba_type_))
         elif isinstance(value, tuple):
@@ -358,7 +359,7 @@ def _list(group: tuple[Any, ...], words: list[int], marks: list[Any]) -> None:
             words.append(int(value))
             marks.append(bool if isinstance(value, bool | np.bool_) else int)
         else:
-            raise TypeError(f"{type(value).__name__} cannot be lent")
+            raise TypeError(f"{type(value).__name__} cannot go by address")
 
 
 def _address_of(value: Any) -> int:
@@ -368,7 +369,7 @@ def _address_of(value: Any) -> int:
         return ctypes.addressof(_NOTHING.from_buffer(value))
     except TypeError:
         if not value.flags.c_contiguous:
-            raise TypeError("only contiguous arrays can be lent") from None
+            raise TypeError("only contiguous arrays have an address") from None
         # Not to be written.
         return int(value.ctypes.data)
 
@@ -377,7 +378,7 @@ def _kind(value: Any) -> Any:
     """Numba's type of a field."""
     if isinstance(value, np.ndarray):
         return types.Array(from_dtype(value.dtype), value.ndim, "C")
-    if isinstance(value, Loan):
+    if isinstance(value, WithAddress):
         return value._numba_type_
     if isinstance(value, tuple):
         kinds = [_kind(each) for each in value]
@@ -389,9 +390,9 @@ def _kind(value: Any) -> Any:
     return types.float64 if isinstance(value, float) else types.int64
 
 
-@unbox(Lent)  # type: ignore[no-untyped-call]
-def _of_loan(kind: Any, loan: Any, c: Any) -> Any:
-    address = c.pyapi.object_getattr_string(loan, "address")
+@unbox(ByAddress)  # type: ignore[no-untyped-call]
+def _unboxed(kind: Any, addressed: Any, c: Any) -> Any:
+    address = c.pyapi.object_getattr_string(addressed, "address")
     number = c.pyapi.long_as_longlong(address)
     c.pyapi.decref(address)
     return _native(c.builder.inttoptr(number, _ADDRESS))
