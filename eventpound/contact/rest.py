@@ -266,7 +266,7 @@ def noise_of(
     left_over (C,): what counts as rounding of the first beside its own. rough: of `Pairs`.
     """
     orders, forcing = found.shape[0], touching.forcing
-    ground, stiffness = np.zeros(orders), _stiffness_held(system)
+    ground, stiffness = np.zeros(orders), _initial_stiffness(system)
     ground_taylor(forcing, forcing.start, orders, ground)
     # In the tails of a pulse high orders are large beside what they are derivatives of.
     time = min(touching.time, decay_time(forcing, forcing.start))
@@ -313,7 +313,7 @@ def _left_over(now: Pairs, acceleration: Floats, touching: Touching) -> Floats:
 
 
 @kernel
-def _stiffness_held(system: Reduced) -> Floats:
+def _initial_stiffness(system: Reduced) -> Floats:
     """Initial stiffness of each link (N/m), shape (A,)."""
     stiffness = system.stiffness.copy()
     for a in range(stiffness.size):

@@ -305,15 +305,15 @@ def observe_friction(
     """Take the forces of the contacts of sliders (J,) from those of slips: what friction is."""
     first = out.gap.shape[1] - sliders.size
     for i in range(sliders.size):
-        link, held = sliders[i], out.contact_force[:, first + i]
+        link, stick = sliders[i], out.contact_force[:, first + i]
         slip, h = memory[link, STRENGTH], z_of_link[link]
-        out.z[0, h], out.z[1, h] = (slip - held[0]) / abs(slip), -held[1] / abs(slip)
+        out.z[0, h], out.z[1, h] = (slip - stick[0]) / abs(slip), -stick[1] / abs(slip)
         for row in range(2):
-            out.force[row, link] -= held[row]
+            out.force[row, link] -= stick[row]
             if link_ends[link, 0] < 0:
-                out.shear[row] -= held[row]
+                out.shear[row] -= stick[row]
             elif link_ends[link, 1] < 0:
-                out.shear[row] += held[row]
+                out.shear[row] += stick[row]
 
 
 @kernel

@@ -249,7 +249,7 @@ from tests.solvers.test_points import towers
 
 for scene in (pounding_pair(), towers()):
     assert run(scene, 1e-6, solver="cvode").events
-    print(len(present.take_points.overloads), len(short_series.add_point_series.overloads))
+    print(len(present.set_points.overloads), len(short_series.add_point_series.overloads))
 """
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True

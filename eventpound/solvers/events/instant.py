@@ -22,16 +22,16 @@ from eventpound.motion.forcing import CurrentPiece, longest_safe_step, next_corn
 from eventpound.numerics.by_address import by_address
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.dense import Dense, DenseStep, observe_at
-from eventpound.solvers.events.law_contacts import gather, turn_elements
+from eventpound.solvers.events.law_contacts import add_shares, switch_elements
 from eventpound.solvers.events.location import any_located, clear_located
 from eventpound.solvers.events.present import (
     forcing_now,
-    forget_held,
-    hold,
     make_ready,
     put_instant,
     put_present,
-    take,
+    restore_record,
+    save_record,
+    set_state,
 )
 from eventpound.solvers.events.recorder import PASSED, WRITTEN, is_due
 from eventpound.solvers.events.run import Dynamics, Run
@@ -39,11 +39,11 @@ from eventpound.solvers.events.short_series import local_series
 from eventpound.solvers.events.step_check import broken_contact
 from eventpound.solvers.events.step_search import BROKEN, record_inside, search_between, search_step
 
-MOST_KNOTS = 3
+MOST_REVERSALS = 3
 """Reversals of links after which short steps end although no event is in sight."""
-DUTIES, RESTS, ARRIVAL, FLIGHT = range(4)
+IMPACTS, RESTS, HISTORY, SHORT_STEP = range(4)
 """Where an instant goes on: impacts; who rests; the instant into the history; a short step."""
-SETTLE, SEARCH, TAKE, READY, LAST = range(5)
+SETTLE, SEARCH, SET_STATE, READY, LAST = range(5)
 """What `proceed` is asked for: all that an instant demands; to search a step of an
 integrator; to make the state vector of the run the present state; to make the present instant
 ready for a step; to put it, the last, into the history."""
@@ -84,11 +84,11 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     if marked or is_due(end, record.journal):
         record_inside(tau, marked, run, step)
     if run.laws.contact.size > 0:
-        gather(tau, run, step)
+        add_shares(tau, run, step)
     observe_at(tau, step)
     observed = step.observed
     if fleeting:
-        forget_held(record)
+        restore_record(record)
     elif any_event:
         put_instant(end, observed, record)
     else:
@@ -97,7 +97,7 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         now.t = end
         return BROKEN
     since = now.since_impact
-    take(evaluate_series(series.dense.Y, tau)[0], end, mode, forcing, state)
+    set_state(evaluate_series(series.dense.Y, tau)[0], end, mode, forcing, state)
     pass_kinks(located.kinked, state.z, run.instant)
     # The differences of times are none where intervals are short.
     now.since_impact = since + tau
@@ -106,11 +106,11 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
             continue
         closes = located.closing[j]
         state.gap[j], state.gap_rate[j] = 0.0 if closes else observed.gap[0, j], observed.gap[1, j]
-    progress.knots = 0 if any_event else progress.knots + series.knot
+    progress.reversals = 0 if any_event else progress.reversals + series.reverses
     progress.steps += 1
     progress.short_steps += 1
-    progress.phase = DUTIES if any_event else FLIGHT
-    again = series.knot and progress.knots <= MOST_KNOTS
+    progress.phase = IMPACTS if any_event else SHORT_STEP
+    again = series.reverses and progress.reversals <= MOST_REVERSALS
     return DONE if any_event or mode.system.mass.size == 0 or again else OVER
 
 
@@ -141,7 +141,7 @@ def proceed(
     piece : CurrentPiece
         The ground motion.
     dense : Dense
-        The step to SEARCH; at its end the state vector is to TAKE.
+        The step to SEARCH; its end is the time of SET_STATE.
 
     Returns
     -------
@@ -152,9 +152,9 @@ def proceed(
         return _settle(most, run, mode, piece)
     if wanted == SEARCH:
         return search_step(run, mode, piece, dense)
-    if wanted == TAKE:
+    if wanted == SET_STATE:
         t = dense.end
-        take(run.y[: mode.system.size], t, mode, by_address(forcing_now(piece, t)), run.state)
+        set_state(run.y[: mode.system.size], t, mode, by_address(forcing_now(piece, t)), run.state)
         return OVER
     make_ready(run, mode, piece)
     if wanted == LAST:
@@ -174,7 +174,7 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         by_python = mode.bodies.points.size > 0 or mode.bodies.sliders.size > 0
         if by_python and progress.phase <= RESTS:
             return IN_PYTHON
-        if progress.phase == DUTIES:
+        if progress.phase == IMPACTS:
             ended = settle_impacts(at)
             if ended != DONE:
                 return ended
@@ -183,20 +183,20 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
             if lacks_branch(at):
                 return FIRST_BRANCHES
             if run.laws.contact.size > 0:
-                turn_elements(run.laws, at)
+                switch_elements(run.laws, at)
             if any_may_rest(at):
                 ended = decide_rests(state.z, by_address(forcing_now(piece, now.t)), at)
                 if ended != DONE:
                     return ended
-            progress.phase = ARRIVAL
-        if progress.phase == ARRIVAL:
+            progress.phase = HISTORY
+        if progress.phase == HISTORY:
             if now.stale:
                 return NEW_MODE
             if is_fleeting(0.0, now, run.rules.time):
-                hold(run.record)
+                save_record(run.record)
             make_ready(run, mode, piece)
             put_present(run, True)
-            progress.phase = FLIGHT
+            progress.phase = SHORT_STEP
         if now.t >= piece.stop:
             ended = OVER
         elif progress.steps >= most:
@@ -205,7 +205,7 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
             return UNENDING
         else:
             ended = _short_step(run, mode, piece)
-            if progress.phase == FLIGHT:
+            if progress.phase == SHORT_STEP:
                 make_ready(run, mode, piece)
     if ended == OVER:
         end_cascade(state.resting, now, run.record.events)

@@ -17,9 +17,9 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import by_python, in_python
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.instant import (
-    ARRIVAL,
-    DUTIES,
     FIRST_BRANCHES,
+    HISTORY,
+    IMPACTS,
     IN_PYTHON,
     LAST,
     NEW_MODE,
@@ -29,12 +29,12 @@ from eventpound.solvers.events.instant import (
     READY,
     RESTS,
     SEARCH,
+    SET_STATE,
     SETTLE,
-    TAKE,
     UNENDING,
     proceed,
 )
-from eventpound.solvers.events.law_contacts import turn_elements
+from eventpound.solvers.events.law_contacts import switch_elements
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.present import forcing_now
 from eventpound.solvers.events.step_search import BROKEN, EVENT
@@ -62,14 +62,14 @@ def settle_instant(now: Underway, piece: CurrentPiece) -> None:
         Where an instant has no solution or cascades have no end.
     """
     progress = now.state.progress
-    progress["knots"][0] = progress["short_steps"][0] = 0
-    progress["phase"][0] = DUTIES
+    progress["reversals"][0] = progress["short_steps"][0] = 0
+    progress["phase"][0] = IMPACTS
     most = now.steps
     ended = DONE
     while ended != OVER:
         ended = proceed(SETTLE, most, now.run, now.mode.dynamics, piece, NOWHERE)
         if ended == PAUSED:
-            now.go_on(now.t)
+            now.report_time(now.t)
             most = now.steps + now.steps_left(STEPS_AT_ONCE)
         elif ended == NEW_MODE:
             now.enter_mode()
@@ -92,7 +92,7 @@ def _settle_in_python(now: Underway, piece: CurrentPiece) -> int:
     run, model, slides = now.run, now.model, now.model.sliders.size > 0
     at, progress = run.instant, run.state.progress[0]
     with by_python():
-        if progress.phase == DUTIES:
+        if progress.phase == IMPACTS:
             if slides:
                 # The last observation is at the event.
                 force = run.observations[2].contact_force[0]
@@ -104,14 +104,14 @@ def _settle_in_python(now: Underway, piece: CurrentPiece) -> int:
             progress.phase = RESTS
         if in_python(lacks_branch)(at):
             return FIRST_BRANCHES
-        in_python(turn_elements)(run.laws, at)
+        in_python(switch_elements)(run.laws, at)
         z, forcing = run.state.z, forcing_now(piece, now.t)
         if slides:
             ended = decide_sticks(z, forcing, now.table.force_noise, at, model)
         else:
             ended = decide_at_points(z, forcing, at, model)
         if ended == DONE:
-            progress.phase = ARRIVAL
+            progress.phase = HISTORY
         return ended
 
 
@@ -154,10 +154,10 @@ def make_ready(now: Underway, mode: Mode, piece: CurrentPiece) -> None:
     proceed(READY, 0, now.run, mode.dynamics, piece, NOWHERE)
 
 
-def take_state(now: Underway, piece: CurrentPiece, y: Floats, t: float) -> None:
+def set_present(now: Underway, piece: CurrentPiece, y: Floats, t: float) -> None:
     """Make a state vector of the present mode the present state, at the time t (s)."""
     now.run.y[: y.size] = y
-    proceed(TAKE, 0, now.run, now.mode.dynamics, piece, NOWHERE._replace(end=t))
+    proceed(SET_STATE, 0, now.run, now.mode.dynamics, piece, NOWHERE._replace(end=t))
 
 
 def put_last_instant(now: Underway, piece: CurrentPiece) -> None:

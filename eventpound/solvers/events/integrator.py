@@ -80,13 +80,13 @@ class StandstillError(ComputationError):
         What happened.
     t : float
         Time it stands at (s).
-    stretch : StepsTaken
+    taken : StepsTaken
         The steps it took before, the last of them to nowhere.
     """
 
-    def __init__(self, message: str, t: float, stretch: StepsTaken) -> None:
+    def __init__(self, message: str, t: float, taken: StepsTaken) -> None:
         super().__init__(message, t)
-        self.stretch = stretch
+        self.taken = taken
 
 
 class Integrator(Protocol):

@@ -36,7 +36,7 @@ _HERTZ_DAMP = int(Element.HERTZ_DAMP)
 
 @scalar_kernel
 def closing_drag(p: int, gap: float, rate: float, length: float, laws: Laws) -> float:
-    """The number of the damping of a contact that closes as `turn` has it (SI)."""
+    """The number of the damping of a contact that closes as `switch_touch` has it (SI)."""
     if laws.kind[p] != _HERTZ_DAMP:
         return float(laws.damping[p])
     # One that was pressed shut from the start has never closed.
@@ -45,7 +45,7 @@ def closing_drag(p: int, gap: float, rate: float, length: float, laws: Laws) -> 
 
 
 @scalar_kernel
-def turn(
+def switch_touch(
     p: int, closed: bool, gap: float, rate: float, length: float, laws: Laws, t: float
 ) -> bool:
     """Begin or end a time in contact, where one does, and say whether one has ended.
@@ -99,19 +99,19 @@ def add_share(p: int, weight: float, force: float, rate: float, laws: Laws) -> N
 
 
 @deferred_kernel
-def turn_elements(laws: Laws, at: Instant) -> None:
+def switch_elements(laws: Laws, at: Instant) -> None:
     """Begin and end times in contact where the branches of elements have changed."""
     for p in range(laws.contact.size):
         a, j = at.branch.size - laws.contact.size + p, laws.contact[p]
         gap = at.opening[j] + difference(at.u, at.left[j], at.right[j])
         rate = difference(at.v, at.left[j], at.right[j])
-        if turn(p, at.branch[a] < 0, gap, rate, at.length, laws, at.now[0].t):
+        if switch_touch(p, at.branch[a] < 0, gap, rate, at.length, laws, at.now[0].t):
             write_touch(p, rate, laws, at.now[0], at.events)
         at.law.damping[a] = laws.touch[DRAG, p]
 
 
 @deferred_kernel
-def gather(end: float, run: Run, step: DenseStep) -> None:
+def add_shares(end: float, run: Run, step: DenseStep) -> None:
     """Add what the closed elements do from the start of a step to `end` (s, local)."""
     laws = run.laws
     if not (laws.touch[CLOSED] != 0.0).any():

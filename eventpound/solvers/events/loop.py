@@ -23,8 +23,8 @@ from eventpound.solvers.base import Energy, Recording, Task, Work
 from eventpound.solvers.events.instant_loop import (
     put_last_instant,
     search_step,
+    set_present,
     settle_instant,
-    take_state,
 )
 from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError, Start
 from eventpound.solvers.events.recorder import (
@@ -129,18 +129,18 @@ class Segment:
         now = self.now
         while self.end < self._length:
             try:
-                now.go_on(self.origin + self.end)
+                now.report_time(self.origin + self.end)
                 if self._advance():
                     step = self.integrator.dense(self.start, self.end)
                     if search_step(now, self.piece, step):
                         return True
             except ComputationError:
                 y = self._examined.y[self._reached_row]
-                take_state(now, self.piece, y, self.origin + self.reached)
+                set_present(now, self.piece, y, self.origin + self.reached)
                 raise
             self.reached, self._reached_row = self.end, 1 - self._first
         y = self._examined.y[1 - self._first]
-        take_state(now, self.piece, y, self.piece.stop)
+        set_present(now, self.piece, y, self.piece.stop)
         return False
 
     def _advance(self) -> bool:
@@ -162,7 +162,7 @@ class Segment:
             try:
                 done = integrator.advance(tau, first, self._excess, bounds, self._examined)
             except StandstillError as error:
-                self.reached, self._reached_row = error.stretch.start, error.stretch.first
+                self.reached, self._reached_row = error.taken.start, error.taken.first
                 raise
             self._first, self.start, self.end = done.first, done.start, done.end
             self.reached, self._reached_row = done.start, done.first

@@ -57,7 +57,7 @@ def tolerances_of_state(rules: Rules, system: Reduced, bodies: Bodies) -> Floats
 
 
 @kernel
-def take(y: Floats, t: float, mode: Dynamics, forcing: Forcing, state: State) -> None:
+def set_state(y: Floats, t: float, mode: Dynamics, forcing: Forcing, state: State) -> None:
     """Make a state vector the present state, at the time t (s)."""
     system, bodies = mode.system, mode.bodies
     now = state.now[0]
@@ -77,12 +77,12 @@ def take(y: Floats, t: float, mode: Dynamics, forcing: Forcing, state: State) ->
         state.gap[j] = 0.0 if resting else gap
         state.gap_rate[j] = 0.0 if resting else difference(state.v, left, right)
     if bodies.points.size > 0:
-        take_points(bodies, state)
+        set_points(bodies, state)
 
 
 @deferred_kernel
-def take_points(bodies: Bodies, state: State) -> None:
-    """The gaps of contacts at points, of which `take` has those without displacements."""
+def set_points(bodies: Bodies, state: State) -> None:
+    """The gaps of contacts at points, of which `set_state` has those without displacements."""
     add_points(bodies.points, bodies.spread, state.u, state.gap)
     add_points(bodies.points, bodies.spread, state.v, state.gap_rate)
     for p in range(bodies.points.size):
@@ -92,7 +92,7 @@ def take_points(bodies: Bodies, state: State) -> None:
 
 
 @scalar_kernel
-def close_marked(run: Run) -> None:
+def close_located(run: Run) -> None:
     """Put what has closed exactly on its constraint, and links on the branch that follows."""
     located, state = run.located, run.state
     for j in range(state.gap.size):
@@ -144,14 +144,14 @@ def put_present(run: Run, settled: bool) -> None:
 
 
 @kernel
-def hold(record: RunRecord) -> None:
-    """Remember history and extremes as they are, for `forget_held`."""
-    record.held_rows[0] = record.journal.cursor[WRITTEN]
-    copy_extremes(record.extremes, record.held)
+def save_record(record: RunRecord) -> None:
+    """Remember history and extremes as they are, for `restore_record`."""
+    record.saved_rows[0] = record.journal.cursor[WRITTEN]
+    copy_extremes(record.extremes, record.saved_extremes)
 
 
 @kernel
-def forget_held(record: RunRecord) -> None:
-    """Take back what has come into history and extremes since `hold`."""
-    record.journal.cursor[WRITTEN] = record.held_rows[0]
-    copy_extremes(record.held, record.extremes)
+def restore_record(record: RunRecord) -> None:
+    """Take back what has come into history and extremes since `save_record`."""
+    record.journal.cursor[WRITTEN] = record.saved_rows[0]
+    copy_extremes(record.saved_extremes, record.extremes)

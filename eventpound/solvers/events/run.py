@@ -23,7 +23,7 @@ class LoopProgress(NamedNumbers):
     """What the event loop counts itself."""
 
     steps: int  # steps so far
-    knots: int  # reversals followed without an event
+    reversals: int  # reversals followed without an event
     short_steps: int  # short steps of this cascade
     phase: int  # where an instant goes on, as of `eventpound.solvers.events.instant`
     finder: int  # who finds events in a step, as of `eventpound.solvers.events.step_search`
@@ -72,15 +72,15 @@ class State(NamedTuple):
 class RunRecord(NamedTuple):
     """What a run leaves: history, event rows, extremes (5, M) and the same row by row.
 
-    held (5, M), held_rows (1,): extremes and lines written before a mode that may be none.
+    saved_extremes (5, M), saved_rows (1,): those written before a mode that may be none.
     """
 
     journal: Journal
     events: Floats
     extremes: Floats
     running: Running
-    held: Floats
-    held_rows: Ints
+    saved_extremes: Floats
+    saved_rows: Ints
 
 
 class Located(NamedTuple):

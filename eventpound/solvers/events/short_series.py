@@ -198,7 +198,7 @@ def _ground_radius(forcing: Forcing, bodies_mass: Floats, acceleration: float) -
 
 
 @kernel
-def _knot(Y: Floats, system: Reduced, weight: Floats, limit: float) -> float:
+def _first_reversal(Y: Floats, system: Reduced, weight: Floats, limit: float) -> float:
     """First reversal of a hysteretic link, or zero of its z, that the series may not cross."""
     order = Y.shape[0] - 1
     first = limit
@@ -266,13 +266,13 @@ def all_finite(Y: Floats) -> bool:
 class ShortSeries(NamedTuple):
     """Where a local series ends, and why.
 
-    end (s): it ceases to be accurate, or contacts `closing` (K,) close. knot: a link reversed
+    end (s): it ceases to be accurate, or contacts `closing` (K,) close. reverses: a link does
     there, and another expansion may go on. finite: whether it is numbers.
     """
 
     dense: Dense
     closing: Bools
-    knot: bool
+    reverses: bool
     finite: bool
 
 
@@ -301,10 +301,10 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Sh
     C = gap_series(Y, system, bodies, state, ground, least, rules.time)
     first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
     closed = min(first, limit, radius)
-    knot = _knot(Y, system, weight, closed)
-    end = _trusted(Y, system, forcing, weight, knot)
+    reversal = _first_reversal(Y, system, weight, closed)
+    end = _trusted(Y, system, forcing, weight, reversal)
     if end < first:
         for j in range(closing.size):
             closing[j] = False
     dense = Dense(Y, 0.0, 0.0, end, np.empty((4, 0)), True, C)
-    return ShortSeries(dense, closing, knot == end and end < closed, True)
+    return ShortSeries(dense, closing, reversal == end and end < closed, True)

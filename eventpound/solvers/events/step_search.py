@@ -15,9 +15,9 @@ from eventpound.numerics.by_address import by_address
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.dense import Dense, DenseStep, observe_at, state_at
 from eventpound.solvers.events.event_bounds import inspect_step
-from eventpound.solvers.events.law_contacts import gather
+from eventpound.solvers.events.law_contacts import add_shares
 from eventpound.solvers.events.location import add_vanished, first_event, update_peaks
-from eventpound.solvers.events.present import close_marked, forcing_now, put_instant, take
+from eventpound.solvers.events.present import close_located, forcing_now, put_instant, set_state
 from eventpound.solvers.events.recorder import is_due, write_samples
 from eventpound.solvers.events.run import Dynamics, Run
 from eventpound.solvers.events.step_check import broken_contact
@@ -112,12 +112,12 @@ def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> 
         end = min(high, tau)
         record_inside(end, marked, run, step)
         if run.laws.contact.size > 0:
-            gather(end, run, step)
+            add_shares(end, run, step)
         if tau < np.inf:
             observe_at(tau, step)
             put_instant(origin + tau, step.observed, record)
-            take(state_at(tau, step), origin + tau, mode, forcing, state)
-            close_marked(run)
+            set_state(state_at(tau, step), origin + tau, mode, forcing, state)
+            close_located(run)
             return EVENT
         after = observations[1]
         if broken_contact(after, watched, rules.length_noise) >= 0:

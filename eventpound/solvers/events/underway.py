@@ -223,7 +223,7 @@ class Underway:
         """The ground motion from the present instant on."""
         return Forcing(piece.family, piece.coefficients, piece.samples, self.t)
 
-    def go_on(self, t: float) -> None:
+    def report_time(self, t: float) -> None:
         """Report the time reached (s).
 
         Raises
@@ -320,8 +320,8 @@ def _record_of(task: Task, model: Model, scales: SceneScales) -> RunRecord:
             events=np.empty((SPARE_ROWS + 8 * model.contacts, EVENT_WIDTH)),
             extremes=extremes,
             running=in_python(running_of)(extremes, at),
-            held=np.zeros_like(extremes),
-            held_rows=np.zeros(1, np.int64),
+            saved_extremes=np.zeros_like(extremes),
+            saved_rows=np.zeros(1, np.int64),
         )
     )
 

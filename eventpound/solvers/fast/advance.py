@@ -22,10 +22,10 @@ from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.extremes import distance_now, take_instant
 from eventpound.solvers.fast.followed import follows, put_on_branches
 from eventpound.solvers.fast.instant import instant_of, settle, start
-from eventpound.solvers.fast.record import has_room, hold, write_row
+from eventpound.solvers.fast.record import has_room, save_record, write_row
 from eventpound.solvers.fast.run import GOING_ON, IN_PYTHON, SETTLED, FastRun, piece_of
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
-from eventpound.solvers.fast.single.body import forget
+from eventpound.solvers.fast.single.body import reset_body
 from eventpound.solvers.fast.sliding import any_slider
 from eventpound.solvers.fast.step import take_step
 from eventpound.tolerances import LENGTH
@@ -62,7 +62,7 @@ def carry_on(budget: int, run: FastRun) -> int:
     if not progress.started:
         start(run)
         for b in range(run.series.each.body.size):
-            forget(run.series.each.body[b])
+            reset_body(run.series.each.body[b])
         progress.started = True
     while progress.steps < last_step:
         if not has_room(run):
@@ -161,7 +161,7 @@ def _settle_instant(run: FastRun) -> int:
         progress.due = SETTLED
     if progress.due == SETTLED:
         progress.due = 0
-        hold(run)
+        save_record(run)
         run.located.released[:] = False
     observe_at_noinline(0.0, order, g, run)
     write_row(t, run)

@@ -316,7 +316,7 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         followed=FollowedMemories(np.zeros(followed), np.zeros(followed), np.zeros(1)),
         # Steps from sample to sample follow no z.
         tables=blank_tables(bodies if followed == 0 else 0, links),
-        held=np.zeros((4, in_python(places_of)(bodies, plan.links.springs, contacts).end)),
+        saved=np.zeros((4, in_python(places_of)(bodies, plan.links.springs, contacts).end)),
     )
 
 

@@ -26,7 +26,7 @@ from eventpound.solvers.fast.search import (
     set_distance,
     stays_above,
 )
-from eventpound.solvers.fast.sliding import add_held_shear, any_slider
+from eventpound.solvers.fast.sliding import add_stick_shear, any_slider
 from eventpound.tolerances import FLAT_WITHIN
 
 
@@ -236,7 +236,7 @@ def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bo
     shear, end, rate, bend = 0.0, 0.0, 0.0, 0.0
     # Where nothing rests on a barrier or is pushed, all links to the ground together pull at all
     # bodies.
-    held = state.progress[0].resting > 0 or series.load.shape[0] > 0
+    pushed = state.progress[0].resting > 0 or series.load.shape[0] > 0
     overwritten = False
     for b in range(bodies):
         c, m = series.of_body[b], plan.mass[b]
@@ -249,10 +249,10 @@ def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bo
             series.d[:] = 0.0
             _add_acceleration_rate(c, 1.0, order, series)
             overwritten = _turns(c, tau, order, run) or overwritten
-    if held:
+    if pushed:
         value = _base_shear(order, plan, series)
         if any_slider(run):
-            value += add_held_shear(order, run)
+            value += add_stick_shear(order, run)
         if not _settled(at.base_shear, value, tau, order, series, running):
             overwritten = _turns(-1, tau, order, run) or overwritten
     elif _may_turn(at.base_shear, shear, end, rate, bend, tau, running):

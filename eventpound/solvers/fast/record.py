@@ -123,28 +123,28 @@ def sample_step(t: float, t_end: float, order: int, piece: CurrentPiece, run: Fa
 
 
 @compiled_noinline
-def hold(run: FastRun) -> None:
+def save_record(run: FastRun) -> None:
     """Remember history and extremes as they are before a mode that may be none."""
     plan, state, series, record = run.plan, run.state, run.series, run.record
     now, progress = state.now[0], state.progress[0]
     if not is_fleeting(0.0, now, plan.limits.time):
         return
-    progress.held, progress.held_at = progress.rows, now.t
-    copy_extremes(record.extremes, series.held)
+    progress.saved_rows, progress.saved_at = progress.rows, now.t
+    copy_extremes(record.extremes, series.saved)
 
 
 @compiled_noinline
-def forget(run: FastRun) -> None:
-    """Take back what has come into history and extremes since `hold`, and the time that passed.
+def restore_record(run: FastRun) -> None:
+    """Take back what has come into history and extremes since `save_record`, and the time passed.
 
-    What follows happens in the instant of `hold`, to which its events belong then.
+    What follows happens in the instant of `save_record`, to which its events belong then.
     """
     state, series, record, times = run.state, run.series, run.record, run.plan.output_times
     now, progress = state.now[0], state.progress[0]
-    progress.rows, now.t = progress.held, progress.held_at
+    progress.rows, now.t = progress.saved_rows, progress.saved_at
     while progress.output > 0 and times[progress.output - 1] >= now.t:
         progress.output -= 1
-    copy_extremes(series.held, record.extremes)
+    copy_extremes(series.saved, record.extremes)
 
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)

@@ -138,8 +138,8 @@ class FastProgress(NamedNumbers):
     """What the stepper counts and remembers itself."""
 
     guess: float  # step that is tried next (s)
-    held_at: float  # when a mode that may be none began (s)
-    held: int  # rows of the history before it
+    saved_at: float  # when a mode that may be none began (s)
+    saved_rows: int  # rows of the history before it
     piece: int  # of the ground motion
     steps: int  # steps so far
     expansions: int  # series so far
@@ -273,7 +273,7 @@ class FastSeries(NamedTuple):
     each: Each  # of bodies that go apart
     followed: FollowedMemories  # z that have series of their own
     tables: SampleTables  # exact steps from sample to sample
-    held: Floats  # (4, M): extremes before a mode that may be none
+    saved: Floats  # (4, M): extremes before a mode that may be none
 
 
 class FastLocated(NamedTuple):

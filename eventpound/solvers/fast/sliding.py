@@ -138,7 +138,7 @@ def _to_ground(a: int, run: FastRun) -> float:
 
 
 @compiled_deferred
-def add_held_shear(order: int, run: FastRun) -> float:
+def add_stick_shear(order: int, run: FastRun) -> float:
     """What sliders that stick add to the base shear (N), and to its rate in `series.d`."""
     links, series, value = run.plan.links, run.series, 0.0
     first = run.state.gap.size - links.sliders.size

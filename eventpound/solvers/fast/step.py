@@ -32,9 +32,9 @@ from eventpound.solvers.fast.locate import first_event
 from eventpound.solvers.fast.record import (
     add_work,
     end_if_over,
-    forget,
     is_due,
     pass_time,
+    restore_record,
     sample_step,
     write_row,
 )
@@ -104,7 +104,7 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
         progress.guess = min(progress.guess, max(tau, SOONER * progress.guess))
         _apply(run)
         if fleeting and progress.due == 1:
-            forget(run)
+            restore_record(run)
     else:
         progress.guess = tau
         end_if_over(run)
@@ -223,8 +223,8 @@ def _pulls(ends: bool, run: FastRun) -> bool:
         return False
     level = PULLED * force_level(state.progress[0].clusters, run.plan.limits, run.series)
     for j in range(observed.gap.size):
-        held = state.unlocked[j] and not (ends and located.released[j])
-        if held and not margin_at_rest(j, observed.contact_force[j], run) >= -level:
+        stays = state.unlocked[j] and not (ends and located.released[j])
+        if stays and not margin_at_rest(j, observed.contact_force[j], run) >= -level:
             return True
     return False
 

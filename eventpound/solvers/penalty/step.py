@@ -17,7 +17,7 @@ from eventpound.solvers.events.law_contacts import (
     DRAG,
     add_share,
     closing_drag,
-    turn,
+    switch_touch,
     write_touch,
 )
 from eventpound.solvers.events.run import Laws
@@ -162,13 +162,13 @@ def _follow_contacts(step: FixedStep, laws: Laws, run: Stepping) -> None:
         rate_0, rate_1 = gap_rate(structure, j, state.v), gap_rate(structure, j, trial.v)
         if gap_1 < 0.0:
             ahead = h * max(0.0, gap_0) / (max(0.0, gap_0) - gap_1)
-            turn(j, True, gap_0, rate_0, 0.0, laws, t + ahead)
+            switch_touch(j, True, gap_0, rate_0, 0.0, laws, t + ahead)
         if laws.touch[CLOSED, j] == 0.0:
             continue
         force, rate = state.contact[j] + trial.contact[j], 0.5 * (rate_0 + rate_1)
         add_share(j, 0.5 * h, force, rate, laws)
         record.work[CONTACT] -= 0.5 * h * force * rate
-        if turn(j, gap_1 < 0.0, gap_1, rate_1, 0.0, laws, t + h):
+        if switch_touch(j, gap_1 < 0.0, gap_1, rate_1, 0.0, laws, t + h):
             write_touch(j, rate_1, laws, record.now[0], record.events)
 
 

@@ -99,15 +99,15 @@ class _Duties:
             Where the solver could not go on.
         """
         done = steps_to_roots(self._steps, self._at_root, tau, first, excess, bounds, e)
-        flag, stretch = done[0], StepsTaken(*done[1:])
+        flag, taken = done[0], StepsTaken(*done[1:])
         if flag < 0:
             raise StandstillError(
                 f"{self.name} could not continue ({self._meaning(flag).rstrip('.')}); "
                 "try a larger rtol, or look at the state written so far",
-                self._forcing.start + stretch.start,
-                stretch,
+                self._forcing.start + taken.start,
+                taken,
             )
-        return stretch
+        return taken
 
 
 class Direct(_Duties):

@@ -1,4 +1,4 @@
-"""The loop that all fixed-step methods share: stretches, chunks, the record."""
+"""The loop that all fixed-step methods share: segments, chunks, the record."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from eventpound.solvers.timestepping.stepping import (
     record_step,
     structure_of,
 )
-from eventpound.solvers.timestepping.steps import EqualSteps, stretches
+from eventpound.solvers.timestepping.steps import EqualSteps, segments
 from eventpound.tolerances import SAME_SAMPLE
 
 CHUNK = 20_000
@@ -110,14 +110,14 @@ def carry_to_end(run: FixedStepRun, time_step: float, advance: Advance, contacts
     """
     task, progress = run.task, run.work.record.progress[0]
     _take_start(run)
-    for stretch in stretches(task.scene.motion.pieces(), task.start, task.end, time_step):
+    for segment in segments(task.scene.motion.pieces(), task.start, task.end, time_step):
         try:
-            outcome = _carry_over(run, stretch, advance, contacts)
+            outcome = _carry_over(run, segment, advance, contacts)
         except ComputationError as stopped:  # by whoever watches the run, or the limit of steps
             stopped.recording = recording_of(run, str(stopped), success=False)
             raise
         if outcome != DONE:
-            message = MESSAGES[outcome].format(step=stretch.step)
+            message = MESSAGES[outcome].format(step=segment.step)
             raise ComputationError(message, run.t, recording_of(run, message, success=False))
     run.t = task.end
     # The last output time may lie a rounding error after the last step.
@@ -139,18 +139,18 @@ def _take_start(run: FixedStepRun) -> None:
     record_step(start, ground, run.work)
 
 
-def _carry_over(run: FixedStepRun, stretch: EqualSteps, advance: Advance, contacts: Any) -> int:
-    """The steps of one stretch; an outcome."""
-    forcing, done, most = forcing_of(stretch.piece, stretch.start), 0, run.task.max_steps
-    while done < stretch.steps:
+def _carry_over(run: FixedStepRun, segment: EqualSteps, advance: Advance, contacts: Any) -> int:
+    """The steps of one segment; an outcome."""
+    forcing, done, most = forcing_of(segment.piece, segment.start), 0, run.task.max_steps
+    while done < segment.steps:
         chunk = CHUNK
         if most is not None:
             chunk = min(chunk, most - int(run.work.record.progress[0].steps))
             if chunk <= 0:
                 raise steps_used_up(most, run.t)
-        target = min(done + chunk, stretch.steps)
-        done, outcome = advance(Span(done, target, stretch.step), forcing, contacts, run.work)
-        run.t = stretch.start + done * stretch.step
+        target = min(done + chunk, segment.steps)
+        done, outcome = advance(Span(done, target, segment.step), forcing, contacts, run.work)
+        run.t = segment.start + done * segment.step
         if outcome == NO_ROOM:
             record, events = run.work.record, run.work.record.events
             larger = record._replace(events=np.concatenate((events, np.zeros_like(events))))

@@ -140,10 +140,8 @@ class EqualSteps:
     piece: Piece
 
 
-def stretches(
-    pieces: list[Piece], start: float, end: float, longest: float
-) -> Iterator[EqualSteps]:
-    """Cut a run into stretches of equal steps.
+def segments(pieces: list[Piece], start: float, end: float, longest: float) -> Iterator[EqualSteps]:
+    """Cut a run into segments of equal steps.
 
     Parameters
     ----------
@@ -156,7 +154,7 @@ def stretches(
 
     Yields
     ------
-    Stretch
+    EqualSteps
         In order, without holes.
     """
     t = start

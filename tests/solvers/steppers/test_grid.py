@@ -7,15 +7,15 @@ import pytest
 
 from eventpound.motion.pulses import Cosine
 from eventpound.motion.record import Record
-from eventpound.solvers.timestepping.steps import stretches
+from eventpound.solvers.timestepping.steps import segments
 
 
 def _nodes(motion, start, end, longest):
     nodes = [start]
-    for stretch in stretches(motion.pieces(), start, end, longest):
-        assert stretch.start == pytest.approx(nodes[-1], abs=1e-12)
-        assert stretch.step <= longest * (1.0 + 1e-9)
-        nodes += [stretch.start + (i + 1) * stretch.step for i in range(stretch.steps)]
+    for segment in segments(motion.pieces(), start, end, longest):
+        assert segment.start == pytest.approx(nodes[-1], abs=1e-12)
+        assert segment.step <= longest * (1.0 + 1e-9)
+        nodes += [segment.start + (i + 1) * segment.step for i in range(segment.steps)]
     assert nodes[-1] == pytest.approx(end, abs=1e-12)
     return np.array(nodes)
 

@@ -38,7 +38,7 @@ from eventpound.tolerances import SAME_SAMPLE
 
 
 @compiled
-def stretch(
+def table_steps(
     n: int, i: int, segment: int, budget: int, until: float, piece: CurrentPiece, run: FastRun
 ) -> int:
     """Steps of n bodies by table i from the sample `segment`, no more than `budget`.
@@ -133,7 +133,7 @@ def sample_steps(budget: int, piece_end: float, piece: CurrentPiece, run: FastRu
             break
         linear = _is_straight(i, run) and line.since == 0.0
         if linear and fresh and now.in_a_row == 0:
-            taken = _stretch(i, segment, last - progress.steps, until, piece, run)
+            taken = _table_steps(i, segment, last - progress.steps, until, piece, run)
             fresh, segment = False, segment + taken
             if taken > 0:
                 continue
@@ -159,14 +159,14 @@ def _is_straight(i: int, run: FastRun) -> bool:
 
 
 @compiled
-def _stretch(
+def _table_steps(
     i: int, segment: int, budget: int, until: float, piece: CurrentPiece, run: FastRun
 ) -> int:
-    """As `stretch`, whose loops over bodies the compiler unrolls where there are two."""
+    """As `table_steps`, whose loops over bodies the compiler unrolls where there are two."""
     state = run.state
     if state.u.size == 2:
-        return stretch(2, i, segment, budget, until, piece, run)
-    return stretch(state.u.size, i, segment, budget, until, piece, run)
+        return table_steps(2, i, segment, budget, until, piece, run)
+    return table_steps(state.u.size, i, segment, budget, until, piece, run)
 
 
 @compiled

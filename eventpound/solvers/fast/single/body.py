@@ -251,7 +251,7 @@ def pass_border(u: float, body: SingleBody) -> None:
 
 
 @compiled
-def forget(body: SingleBody) -> None:
+def reset_body(body: SingleBody) -> None:
     """Leave nothing of the run before."""
     body.known, body.piece_known = False, 0
     body.on_line[0] = body.saturated[0] = 0.0

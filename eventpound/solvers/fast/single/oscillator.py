@@ -58,8 +58,8 @@ from eventpound.solvers.fast.single.body import (
     absolute_acceleration,
     acceleration_level,
     enter,
-    forget,
     leave,
+    reset_body,
     set_force,
     side_closed,
     spring_state,
@@ -192,7 +192,7 @@ def oscillate(
     )
     body, now, progress = run.body, run.now, run.progress
     if not progress.started:
-        forget(body)
+        reset_body(body)
         enter(plan, state, run)
         progress.started = True
     last_step = progress.steps + budget
