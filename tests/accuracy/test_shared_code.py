@@ -85,7 +85,7 @@ NEITHER = {
     "solvers.events.recorder",
     "solvers.events.run",
     "solvers.events.step_check",
-    "solvers.events.underway",
+    "solvers.events.event_run",
 }
 """Modules of both of which `fast` takes types, constants, rows of a file or scales only, and
 which of many forces of locked contacts are told: no motion depends on them."""

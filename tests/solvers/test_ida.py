@@ -163,7 +163,7 @@ def test_a_failure_keeps_what_was_computed() -> None:
         if t > 1.0:
             ida._own.descriptor.stiffness[:] = np.nan
 
-    loop.now.task = replace(task, progress=spoil)
+    loop.event_run.task = replace(task, progress=spoil)
     with pytest.raises(ComputationError, match="IDA could not continue") as caught:
         loop.run()
     assert 1.0 <= caught.value.recording.history.t[-1] < 1.5

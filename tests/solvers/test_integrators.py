@@ -116,7 +116,7 @@ def test_a_failure_keeps_what_was_computed(way: str) -> None:
             system = chosen._given.system if way == "direct" else chosen._arguments[0]
             system.stiffness[:] = np.nan
 
-    loop.now.task = replace(task, progress=spoil)
+    loop.event_run.task = replace(task, progress=spoil)
     with pytest.raises(ComputationError, match="CVODE could not continue") as caught:
         loop.run()
     recording = caught.value.recording

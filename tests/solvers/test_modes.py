@@ -13,8 +13,8 @@ from eventpound.mechanics.reduced import state_vector
 from eventpound.numerics.compiled import in_python
 from eventpound.scene import GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import EventKind, Task
+from eventpound.solvers.events.event_run import EventRun
 from eventpound.solvers.events.modes import ModeTable
-from eventpound.solvers.events.underway import Underway
 
 # before, g, γ, duty: the rows of the table in `eventpound.contact.modes`.
 TABLE = [
@@ -63,7 +63,7 @@ def _instant(law: object, u: float, v: float) -> Instant:
     """A scene with a spring from the ground to its first body, which is at u (m) with v (m/s)."""
     bodies = Body("a", 1.0, displacement=u, velocity=v), Body("b", 2.0)
     scene = Scene(bodies, (Spring("s", (GROUND, "a"), law),), (), ())
-    return Underway(Task(scene, 0.0, 1.0, 1e-8)).run.instant
+    return EventRun(Task(scene, 0.0, 1.0, 1e-8)).arrays.instant
 
 
 def test_what_a_mode_watches() -> None:

@@ -64,7 +64,7 @@ def nothing_else_looks(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def watched(self: Segment, *arguments: object) -> None:
         begin(self, *arguments)  # type: ignore[arg-type]
-        assert self.now.state.progress[0].finder == INTEGRATOR
+        assert self.event_run.state.progress[0].finder == INTEGRATOR
         watched = self._examined.dynamics.watched
         assert not watched.open_contacts.any()
         assert not watched.unlocked.any()
@@ -170,14 +170,14 @@ def test_a_gap_that_is_zero_at_a_start_and_closes_is_found_at_once(gap: float) -
     bodies = (Body("b", 1.0, 1.0, -1.0),)
     scene = Scene(bodies, (), (), (Contact("wall", BARRIER, "b", 0.0, 0.5),))
     loop, chosen = _loop(scene, 1e-8, 1.0)
-    now = loop.now
-    now.state.u[0], now.state.gap[0] = gap, max(gap, 0.0)
-    piece = now.piece(scene.motion.pieces()[0], 1.0)
-    make_ready(now, now.mode, piece)
-    assert Segment(now, chosen, piece, NO_FRAME).run()
-    assert now.state.gap[0] == 0.0
+    run = loop.event_run
+    run.state.u[0], run.state.gap[0] = gap, max(gap, 0.0)
+    piece = run.piece(scene.motion.pieces()[0], 1.0)
+    make_ready(run, run.mode, piece)
+    assert Segment(run, chosen, piece, NO_FRAME).run()
+    assert run.state.gap[0] == 0.0
     # Lifted by its noise, 1e-15 of L = 1 m, at 1 m/s.
-    assert 0.0 < now.t < 3e-15
+    assert 0.0 < run.t < 3e-15
 
 
 def test_roots_of_one_step_come_one_after_the_other() -> None:

@@ -20,6 +20,7 @@ from eventpound.numerics.by_address import fields_of, with_address
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work
+from eventpound.solvers.events.event_run import EventRun
 from eventpound.solvers.events.instant_loop import (
     put_last_instant,
     search_step,
@@ -42,7 +43,6 @@ from eventpound.solvers.events.step_check import (
     check_energy,
 )
 from eventpound.solvers.events.step_search import FOUND_AT_END, INTEGRATOR, OURSELVES
-from eventpound.solvers.events.underway import Underway
 from eventpound.tolerances import FRAMED, STOP_AT_SAMPLES
 
 Z_EXCESS = 10.0
@@ -66,7 +66,7 @@ class Segment:
 
     Parameters
     ----------
-    now : Underway
+    run : EventRun
         The run, at the instant the segment begins.
     integrator : Integrator
         Carries the motion.
@@ -77,21 +77,21 @@ class Segment:
     """
 
     def __init__(
-        self, now: Underway, integrator: Integrator, piece: CurrentPiece, frame: Floats
+        self, run: EventRun, integrator: Integrator, piece: CurrentPiece, frame: Floats
     ) -> None:
-        self.now, self.integrator, self.piece, self.frame = now, integrator, piece, frame
-        self.mode, self.origin = now.mode, now.t
+        self.event_run, self.integrator, self.piece, self.frame = run, integrator, piece, frame
+        self.mode, self.origin = run.mode, run.t
         self.start = self.end = self.reached = 0.0
-        self.forcing = now.forcing(piece)
+        self.forcing = run.forcing(piece)
         self._first = self._reached_row = 0
         self._excess = -1.0
         self._length = piece.stop - self.origin
-        now.state.progress["finder"][0] = INTEGRATOR if integrator.finds_events else OURSELVES
+        run.state.progress["finder"][0] = INTEGRATOR if integrator.finds_events else OURSELVES
         pressed = self.mode.bodies.resting.size > 0
         _, sinusoid, _ = in_python(shortest_times)(piece.family, piece.coefficients)
         self._longest = SINUSOID_STEP * sinusoid if pressed else np.inf
         # In a moving frame a step is inspected from sample to sample.
-        close = (pressed and frame.shape[1] == 0) or now.task.rtol < STOP_AT_SAMPLES
+        close = (pressed and frame.shape[1] == 0) or run.task.rtol < STOP_AT_SAMPLES
         self._stops = piece.family >= Family.SAMPLES and close
         size = self.mode.system.size
         e = self._examined = with_address(
@@ -99,21 +99,21 @@ class Segment:
                 self.mode.unwatched if integrator.finds_events else self.mode.dynamics,
                 self.forcing,
                 frame,
-                now.step_observations,
+                run.step_observations,
                 np.zeros((2, size)),
                 np.zeros((2, size)),
-                now.record,
-                now.run.marks,
-                now.scales.z_bound,
-                Z_EXCESS * now.task.rtol,
+                run.record,
+                run.arrays.marks,
+                run.scales.z_bound,
+                Z_EXCESS * run.task.rtol,
             )
         )
         # The instant was made ready where it was settled.
-        e.y[0], e.rate[0] = now.run.y[:size], now.run.rate[:size]
-        both = e.observations[0], now.run.observations[0]
+        e.y[0], e.rate[0] = run.arrays.y[:size], run.arrays.rate[:size]
+        both = e.observations[0], run.arrays.observations[0]
         for observed, values in zip(*map(fields_of, both), strict=True):
             observed[...] = values
-        self.atol = now.run.atol[:size].copy()
+        self.atol = run.arrays.atol[:size].copy()
         self._start = Start(self.mode, self.forcing, frame, e.y[0].copy(), self.atol)
         integrator.start(self._start)
 
@@ -126,21 +126,21 @@ class Segment:
             Where the integrator fails or whoever watches the run ends it; the present state
             is then the end of the last step that passed.
         """
-        now = self.now
+        run = self.event_run
         while self.end < self._length:
             try:
-                now.report_time(self.origin + self.end)
+                run.report_time(self.origin + self.end)
                 if self._advance():
                     step = self.integrator.dense(self.start, self.end)
-                    if search_step(now, self.piece, step):
+                    if search_step(run, self.piece, step):
                         return True
             except ComputationError:
                 y = self._examined.y[self._reached_row]
-                set_present(now, self.piece, y, self.origin + self.reached)
+                set_present(run, self.piece, y, self.origin + self.reached)
                 raise
             self.reached, self._reached_row = self.end, 1 - self._first
         y = self._examined.y[1 - self._first]
-        set_present(now, self.piece, y, self.piece.stop)
+        set_present(run, self.piece, y, self.piece.stop)
         return False
 
     def _advance(self) -> bool:
@@ -155,8 +155,8 @@ class Segment:
         ComputationError
             Where the integrator stands still or no step passes.
         """
-        now, integrator = self.now, self.integrator
-        bounds = Bounds(self._length, self._stops, self._longest, now.steps_left(STEPS_AT_ONCE))
+        run, integrator = self.event_run, self.integrator
+        bounds = Bounds(self._length, self._stops, self._longest, run.steps_left(STEPS_AT_ONCE))
         tau, first = self.end, 1 - self._first if self.end > 0.0 else self._first
         for _ in range(MOST_HALVINGS):
             try:
@@ -166,7 +166,7 @@ class Segment:
                 raise
             self._first, self.start, self.end = done.first, done.start, done.end
             self.reached, self._reached_row = done.start, done.first
-            now.state.progress["steps"][0] += done.steps
+            run.state.progress["steps"][0] += done.steps
             if done.end <= done.start:
                 raise ComputationError(
                     "the integrator makes no progress; try a larger rtol", self.origin + self.end
@@ -179,8 +179,8 @@ class Segment:
             if done.verdict != BEYOND_BOUND:
                 self._excess = done.excess
                 if done.verdict == EVENT_FOUND and integrator.located is not None:
-                    now.state.progress["finder"][0] = FOUND_AT_END
-                    now.mark_located(*integrator.located)
+                    run.state.progress["finder"][0] = FOUND_AT_END
+                    run.mark_located(*integrator.located)
                 return done.verdict in (MARKED, EVENT_FOUND)
             tau, first = done.start, done.first
             bounds = bounds._replace(stop=tau + 0.5 * (done.end - tau), most=1)
@@ -216,11 +216,11 @@ class EventLoop:
         finds_events: bool = False,
     ) -> None:
         self.integrator = integrator
-        self.now = Underway(task)
+        run = self.event_run = EventRun(task)
         self._integrated = 0.0
         if finds_events:
-            integrator.find_events(self.now.model, self.now.rules.length, self.now.rules.time)
-        scales = self.now.scales
+            integrator.find_events(run.model, run.rules.length, run.rules.time)
+        scales = run.scales
         self.moving = moving and scales.own_length.min() >= FRAMED * scales.length
 
     def run(self) -> Recording:
@@ -236,71 +236,71 @@ class EventLoop:
             self._advance_to_end()
             energy = self._energy()
             if energy is not None:
-                check_energy(self.now.t, energy, self.now.task.rtol)
+                check_energy(self.event_run.t, energy, self.event_run.task.rtol)
         except ComputationError as error:
             error.recording = self._recording(False, str(error), clock)
             raise
         return self._recording(True, "reached the end of the run", clock)
 
     def _advance_to_end(self) -> None:
-        now = self.now
-        end = now.task.end
-        for given in now.task.scene.motion.pieces():
+        run = self.event_run
+        end = run.task.end
+        for given in run.task.scene.motion.pieces():
             stop = min(given.end, end)
-            if stop <= now.t:
+            if stop <= run.t:
                 continue
-            piece, moving = now.piece(given, stop), self.moving and given.family is Family.SAMPLES
+            piece, moving = run.piece(given, stop), self.moving and given.family is Family.SAMPLES
             frame = moving_frame(given) if moving else NO_FRAME
-            now.mark_located(*(np.zeros(1, np.bool_) for _ in range(3)))
-            settle_instant(now, piece)
-            while now.t < stop:
+            run.mark_located(*(np.zeros(1, np.bool_) for _ in range(3)))
+            settle_instant(run, piece)
+            while run.t < stop:
                 if self._follow(piece, frame):
-                    settle_instant(now, piece)
+                    settle_instant(run, piece)
             if stop == end:
                 break
-        put_last_instant(now, piece)
+        put_last_instant(run, piece)
 
     def _follow(self, piece: CurrentPiece, frame: Floats) -> bool:
         """A segment, whose time is that of the integrator; whether something happened."""
-        now, begun = self.now, self.now.t
+        run, begun = self.event_run, self.event_run.t
         try:
-            return Segment(now, self.integrator, piece, frame).run()
+            return Segment(run, self.integrator, piece, frame).run()
         finally:
-            self._integrated += now.t - begun
+            self._integrated += run.t - begun
 
     def _energy(self) -> Energy | None:
         """The ledger of the present state, where it is kept."""
-        now = self.now
-        if not now.task.energy:
+        run = self.event_run
+        if not run.task.energy:
             return None
-        state = now.state
-        terms = impact_terms(now.model, now.task.scene.motion, now.events())
-        return energy_ledger(now.model, now.scales, state.u, state.v, state.ledger, *terms)
+        state = run.state
+        terms = impact_terms(run.model, run.task.scene.motion, run.events())
+        return energy_ledger(run.model, run.scales, state.u, state.v, state.ledger, *terms)
 
     def _recording(self, success: bool, message: str, clock: Stopwatch) -> Recording:
-        now, integrator = self.now, self.integrator
-        events = now.events()
+        run, integrator = self.event_run, self.integrator
+        events = run.events()
         recording = Recording(
             success,
             message,
-            now.t,
-            now.state.u.copy(),
-            now.state.v.copy(),
-            now.state.z.copy(),
-            now.history(),
+            run.t,
+            run.state.u.copy(),
+            run.state.v.copy(),
+            run.state.z.copy(),
+            run.history(),
             tuple(events),
-            unique_forces=now.unique_forces,
+            unique_forces=run.unique_forces,
             work=Work(
                 integrator.rhs_calls,
                 integrator.jacobian_calls,
-                now.steps,
+                run.steps,
                 max(integrator.starts - 1, 0),
                 clock.seconds,
                 clock.compilation,
             ),
             energy=self._energy(),
-            laws=now.law_recording(),
+            laws=run.law_recording(),
             integrated=self._integrated,
-            **kept(now.record.extremes, events, now.t, now.model),
+            **kept(run.record.extremes, events, run.t, run.model),
         )
-        return own_recording(recording, now.model)
+        return own_recording(recording, run.model)

@@ -38,6 +38,7 @@ from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import LawName, Spring
 from eventpound.solvers.base import Energy, History, Recording, Task, Work, steps_used_up
+from eventpound.solvers.events.event_run import lines_before
 from eventpound.solvers.events.recorder import (
     energy_ledger,
     history_of,
@@ -48,7 +49,6 @@ from eventpound.solvers.events.recorder import (
 )
 from eventpound.solvers.events.scales import SceneScales, scale_units, scales_by, scene_scales
 from eventpound.solvers.events.step_check import check_energy
-from eventpound.solvers.events.underway import lines_before
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.constants import (
     begin_state,

@@ -93,7 +93,7 @@ def _first_piece(task: Task) -> Forcing:
     return forcing_of(piece, task.start)
 
 
-class Underway:
+class EventRun:
     """A run under way.
 
     Parameters
@@ -103,7 +103,7 @@ class Underway:
 
     Attributes
     ----------
-    run : Run
+    arrays : Run
         What compiled code works on, with an address.
     rules, state, record : Rules, State, RunRecord
         Parts of it.
@@ -124,9 +124,9 @@ class Underway:
         self.rules = _rules_of(task, self.scales)
         self.state = _state_of(task, model, self.scales)
         self.record = _record_of(task, model, self.scales)
-        self.run = _run_of(self.rules, self.state, self.record, model)
+        self.arrays = _run_of(self.rules, self.state, self.record, model)
         # What lies between the ends of a step is looked at anew whenever it is asked for.
-        self.step_observations = blank_observations(model, 2) + self.run.observations
+        self.step_observations = blank_observations(model, 2) + self.arrays.observations
         self.enter_mode()
 
     @property
@@ -151,7 +151,7 @@ class Underway:
     def enter_mode(self) -> None:
         """Bring `mode` up to date with who rests and on which branches links are."""
         state, model = self.state, self.model
-        opening = self.run.instant.opening
+        opening = self.arrays.instant.opening
         mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed, opening)
         state.now["stale"][0] = False
         self.table.place_ends(mode, state.u, state.z)
@@ -169,7 +169,7 @@ class Underway:
         """What the damping of elements that depends on how they closed is in this mode."""
         if self.model.laws.size == 0:
             return
-        plain, damping = self.model.plain, self.run.instant.law.damping
+        plain, damping = self.model.plain, self.arrays.instant.law.damping
         closed = mode.branch[plain:] < 0
         mode.bodies.damping[plain:] = np.where(closed, damping[plain:], 0.0)
         for a in np.flatnonzero(mode.system.link >= plain):
@@ -177,7 +177,7 @@ class Underway:
 
     def mark_located(self, closing: Bools, released: Bools, kinked: Bools) -> None:
         """What has been located at present; see `Located`."""
-        located = self.run.located
+        located = self.arrays.located
         located.closing[:], located.released[:], located.kinked[:] = closing, released, kinked
 
     def make_room(self) -> None:
@@ -189,18 +189,18 @@ class Underway:
         if 2 * taken > record.events.shape[0]:
             record = record._replace(events=longer(record.events, 2))
         self.record = with_address(record)
-        instant = with_address(self.run.instant._replace(events=record.events))
-        self.run = with_address(self.run._replace(record=self.record, instant=instant))
+        instant = with_address(self.arrays.instant._replace(events=record.events))
+        self.arrays = with_address(self.arrays._replace(record=self.record, instant=instant))
 
     def events(self) -> list[Event]:
         """Everything listed so far, in order of time."""
         listed = events_of(self.record.events[: self.state.now["events"][0]])
         group = int(self.state.now["groups"][0])
-        return with_unfinished(listed, self.model, self.run.laws, self.state.v, group)
+        return with_unfinished(listed, self.model, self.arrays.laws, self.state.v, group)
 
     def law_recording(self) -> LawRecording | None:
         """What contacts with laws of their own did; None where there are none."""
-        return law_recording(self.model, self.run.laws, self.t, self.record.extremes)
+        return law_recording(self.model, self.arrays.laws, self.t, self.record.extremes)
 
     def history(self) -> History:
         """Everything sampled so far, in order."""
@@ -244,7 +244,7 @@ class Underway:
 
     def broken_contact(self, t: float) -> ComputationError:
         """What to raise where the last observation has a contact that penetrates or pulls."""
-        observed, watched = self.run.observations[2], self.mode.watched
+        observed, watched = self.arrays.observations[2], self.mode.watched
         j = in_python(broken_contact)(observed, watched, self.rules.length_noise)
         return contact_error(t, j, observed, watched, self.names)
 
