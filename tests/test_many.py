@@ -31,8 +31,8 @@ from eventpound.scene.parameters import places_of, with_values
 from eventpound.solvers.base import Extremes
 from eventpound.solvers.fast import many as fast_many
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.many import run_rows, run_single_rows
-from eventpound.solvers.fast.single.oscillator import oscillate
+from eventpound.solvers.fast.many import run_rows, run_sdof_rows
+from eventpound.solvers.fast.sdof.oscillator import oscillate
 from eventpound.study import sweep
 from eventpound.study.axes import given_axes
 from eventpound.study.plan import base_of
@@ -388,7 +388,7 @@ def test_nothing_is_compiled_anew_for_another_scene():
         simulate_many(scene, parameters, duration=duration)
     assert (len(advance.signatures), len(oscillate.signatures)) == before
     assert len(run_rows.signatures) == 1
-    assert len(run_single_rows.signatures) == 1
+    assert len(run_sdof_rows.signatures) == 1
 
 
 def test_units_terms_and_the_same_without_contact():

@@ -1,4 +1,4 @@
-"""When a cascade of impacts is over: rules that the event loop and the fast stepper share.
+"""When a cascade of impacts (Zeno) is over: rules that the event loop and the fast stepper share.
 
 Impacts may follow each other at intervals that shrink below any number (bodies that
 come to rest, a light body between heavy ones) or, where contacts leave their bodies

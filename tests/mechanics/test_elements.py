@@ -25,8 +25,8 @@ from eventpound.mechanics.elements import (
 )
 from eventpound.mechanics.link_law import APART, CLOSED, YIELDING, link_law, z_bound
 from eventpound.scene import Backfill, BoucWen, DegradingBoucWen, Slider
-from eventpound.solvers.fast.single.body import SingleBody
-from eventpound.solvers.fast.single.series import curved_series
+from eventpound.solvers.fast.sdof.body import SdofBody
+from eventpound.solvers.fast.sdof.series import curved_series
 from tests.mechanics.dense import literal_z_rate, memory_of
 
 EPS = np.finfo(float).eps
@@ -219,7 +219,7 @@ def test_series_on_a_curve_is_the_general_one(n: float, z_0: float, sigma: float
 @pytest.mark.parametrize("kappa", [1.0, 0.2])
 def test_series_of_one_body_is_the_general_one(kappa: float) -> None:
     """The recurrence that the kernel of one body has for itself, κ > 0 for y of either sign."""
-    body = np.zeros(1, SingleBody.layout)[0]
+    body = np.zeros(1, SdofBody.layout)[0]
     body.step, body.z, body.exponent, body.per_scale = 0.2, 0.7 if kappa == 1.0 else -0.7, 5.0, 2.0
     body.stiffness, body.damping, body.strength = 3.0, 0.1, 1.5
     body.x[1], body.x[2] = 0.3, -0.4

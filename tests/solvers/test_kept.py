@@ -11,7 +11,7 @@ from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Sc
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.single.oscillator import oscillate_alone
+from eventpound.solvers.fast.sdof.oscillator import oscillate_alone
 from eventpound.solvers.fast.solver import kernels_kept
 
 ALONE = Scene(

@@ -26,7 +26,7 @@ from eventpound.scene import (
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.fast.constants import links_of
-from eventpound.solvers.fast.single.body import oscillator_of
+from eventpound.solvers.fast.sdof.body import oscillator_of
 from tests.benchmarks.agreement import ROUNDING, distances, loud, sequence
 from tests.solvers.accuracy import allowed
 from tests.solvers.test_apart import MOTIONS, row

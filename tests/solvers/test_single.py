@@ -21,8 +21,8 @@ from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.constants import blank_series, plan_of
 from eventpound.solvers.fast.run import FastPlan, FastRecord, FastState
-from eventpound.solvers.fast.single.body import SingleRun, enter
-from eventpound.solvers.fast.single.oscillator import settle_single, stays_closed
+from eventpound.solvers.fast.sdof.body import SdofRun, load_body
+from eventpound.solvers.fast.sdof.oscillator import settle_sdof, stays_closed
 from eventpound.tolerances import LAST_SPEED
 from tests.solvers.stepping import state_of
 from tests.solvers.test_modes import TABLE
@@ -50,7 +50,7 @@ def prepared(task: Task) -> tuple[Model, FastPlan, FastState]:
     return model, plan, state_of(plan, model, model.z0)
 
 
-def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False) -> SingleRun:
+def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False) -> SdofRun:
     """A run of a body on a spring between two barriers, near or at one of them."""
     contacts = (
         Contact("right", "a", BARRIER, GAP, RESTITUTION),
@@ -61,8 +61,8 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
     task = Task(Scene((Body("a", MASS),), (spring,), (), contacts, motion), 0.0, 6.0, 1e-8)
     model, plan, state = prepared(task)
     series = blank_series(plan)
-    body, record = series.single.body[0], blank_record(task, model)
-    run = SingleRun(
+    body, record = series.sdof.body[0], blank_record(task, model)
+    run = SdofRun(
         body,
         state.now[0],
         state.progress[0],
@@ -71,9 +71,9 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
         Running(*record.extremes, places_in(model)),
         plan.hysteresis.tables,
         plan,
-        series.single,
+        series.sdof,
     )
-    enter(plan, state, run)
+    load_body(plan, state, run)
     gap = 0.0 if closed else 0.1
     near, far = gap, 2.0 * GAP - gap
     body.right, body.left = (near, far) if side > 0.0 else (far, near)
@@ -82,10 +82,10 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
     return run
 
 
-def settle(run: SingleRun, g: float) -> None:
+def settle(run: SdofRun, g: float) -> None:
     """Settle under a ground acceleration that stays as it is (m/s²)."""
     piece = CurrentPiece(int(Family.SAMPLES), np.array([0.0, 1.0]), np.full(3, g), 2.0)
-    settle_single(g, piece, run)
+    settle_sdof(g, piece, run)
 
 
 @pytest.mark.parametrize("side", SIDES)

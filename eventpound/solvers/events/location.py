@@ -48,8 +48,8 @@ creep along and leave one end of the bracket where it was."""
 _GAP, _FORCE, _KINK, _MONITORED = 0, 1, 2, 3
 
 
-class Sought(NamedTuple):
-    """What may fall below zero, or turn.
+class EventFunction(NamedTuple):
+    """An event function, which may fall below zero, or what may turn.
 
     kind: a gap, the force of a resting contact, the margin of a link on its branch; or a quantity
     of which extremes are recorded. index: of the contact or link, or its column of the extremes.
@@ -71,29 +71,29 @@ class Sample(NamedTuple):
 
 
 @kernel
-def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
+def _sample(tau: float, g: EventFunction, step: DenseStep) -> Sample:
     """The quantity at `tau` (s)."""
     observe_at(tau, step)
-    observed, i = step.observed, sought.index
-    if sought.kind == _GAP:
+    observed, i = step.observed, g.index
+    if g.kind == _GAP:
         return Sample(tau, observed.gap[0, i], observed.gap[1, i])
-    if sought.kind == _FORCE:
+    if g.kind == _FORCE:
         force, rate = margin_at_rest(i, step.dynamics.watched, observed.contact_force)
-        return Sample(tau, force - sought.level, rate)
-    if sought.kind == _MONITORED:
+        return Sample(tau, force - g.level, rate)
+    if g.kind == _MONITORED:
         value, rate, _ = motion_of(i, step.dynamics.watched.at, observed)
         return Sample(tau, value, rate)
     margin, rate = margin_on_branch(i, step.dynamics.watched, observed.elongation)
-    return Sample(tau, margin - sought.level, rate)
+    return Sample(tau, margin - g.level, rate)
 
 
 @kernel
-def first_below(sought: Sought, end: float, step: DenseStep) -> float:
+def first_below(g: EventFunction, end: float, step: DenseStep) -> float:
     """First time at which a quantity falls below zero.
 
     Parameters
     ----------
-    sought : Sought
+    g : EventFunction
         What is watched; at the start of the step it counts as not below.
     end : float
         End of the search (s), within the step.
@@ -106,27 +106,27 @@ def first_below(sought: Sought, end: float, step: DenseStep) -> float:
         Time at which the quantity passes zero, to fall below it by more
         than its noise (s); inf where it does not.
     """
-    noise, dense = sought.noise, step.dense
-    a = _sample(dense.start, sought, step)
+    noise, dense = g.noise, step.dense
+    a = _sample(dense.start, g, step)
     a = Sample(a.tau, max(a.value, 0.0), a.rate)
     width = end - a.tau
     shortest = max(width * 2.0**-DEPTH, 8.0 * EPS * abs(end))
     while True:
-        b = _sample(a.tau + width if a.tau + width < end - shortest else end, sought, step)
+        b = _sample(a.tau + width if a.tau + width < end - shortest else end, g, step)
         below, short = b.value < -noise, width <= shortest
         c = cubic_bernstein(a.value, a.rate, b.value, b.rate, b.tau - a.tau)
         changes = 0
         for i in range(3):
             changes += (c[i] < 0.0) != (c[i + 1] < 0.0)
         if below and (changes <= 1 or short):
-            return _falling_root(a, b, sought, step)
+            return _falling_root(a, b, g, step)
         clear = not below and (short or min(c) > 0.05 * (max(c) - min(c)) - noise)
         if not (clear or below) and a.rate < 0.0 < b.rate:
             bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
-            tau = turning_point(_rate_at, (sought, step), bracket, 2.0 * EPS * b.tau)
-            lowest = _sample(tau, sought, step)
+            tau = turning_point(_rate_at, (g, step), bracket, 2.0 * EPS * b.tau)
+            lowest = _sample(tau, g, step)
             if lowest.value < -noise:
-                return _falling_root(a, lowest, sought, step)
+                return _falling_root(a, lowest, g, step)
             clear = True
         if not clear:
             width *= 0.5
@@ -137,7 +137,7 @@ def first_below(sought: Sought, end: float, step: DenseStep) -> float:
 
 
 @kernel
-def _falling_root(a: Sample, b: Sample, sought: Sought, step: DenseStep) -> float:
+def _falling_root(a: Sample, b: Sample, g: EventFunction, step: DenseStep) -> float:
     """Root between a (not below) and b (below): Newton's iteration kept inside the bracket."""
     low, high = a.tau, b.tau
     tau = high if b.rate == 0.0 else high - b.value / b.rate
@@ -146,7 +146,7 @@ def _falling_root(a: Sample, b: Sample, sought: Sought, step: DenseStep) -> floa
             tau = 0.5 * (low + high)
         if tau <= low or tau >= high:
             return high
-        s = _sample(tau, sought, step)
+        s = _sample(tau, g, step)
         if s.value < 0.0:
             high = tau
         else:
@@ -207,7 +207,7 @@ def turning_point(
 
 
 @kernel
-def _rate_at(tau: float, of: tuple[Sought, DenseStep]) -> float:
+def _rate_at(tau: float, of: tuple[EventFunction, DenseStep]) -> float:
     return _sample(tau, of[0], of[1]).rate
 
 
@@ -249,10 +249,10 @@ def first_event(
             noise = watched.force_noise if kind == _FORCE else rules.length_noise
             if kind == _KINK:
                 noise = noise_on_branch(i, watched, rules.length, rules.time)
-            sought = Sought(kind, i, noise, 0.0)
+            g = EventFunction(kind, i, noise, 0.0)
             if (kind == _FORCE and released[i]) or (kind == _KINK and kinked[i]):
-                sought = Sought(kind, i, noise, _level_of_kept(sought, step))
-            tau = first_below(sought, first, step)
+                g = EventFunction(kind, i, noise, _level_of_kept(g, step))
+            tau = first_below(g, first, step)
             if tau == np.inf:
                 continue
             if tau < first:
@@ -272,14 +272,14 @@ def first_event(
 
 
 @kernel
-def _level_of_kept(sought: Sought, step: DenseStep) -> float:
+def _level_of_kept(g: EventFunction, step: DenseStep) -> float:
     """What counts as zero of a force or margin that has just passed zero and is as it was before.
 
     Where an instant decides nothing, or decides otherwise, what is below zero is so by rounding:
     it must fall further, or the same instant would come again for ever.
     """
-    value = _sample(step.dense.start, sought, step).value
-    return value - sought.noise if value < 0.0 else 0.0
+    value = _sample(step.dense.start, g, step).value
+    return value - g.noise if value < 0.0 else 0.0
 
 
 @scalar_kernel
@@ -358,21 +358,21 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
     for k in range(running.at.displacement, running.at.end):
         if not peak[k]:
             continue
-        sought = Sought(_MONITORED, k, running.rounding[k], 0.0)
+        g = EventFunction(_MONITORED, k, running.rounding[k], 0.0)
         a = Sample(times[0], samples[0, 0, k], samples[1, 0, k])
         for i in range(1, PARTS + 1):
             b = Sample(times[i], samples[0, i, k], samples[1, i, k])
             if a.rate * b.rate < 0.0:
-                _take_turn(a, b, near, sought, running, step)
+                _take_turn(a, b, near, g, running, step)
             else:
-                between = _other_way(a, b, sought, running, step)
-                _take_turn(a, between, near, sought, running, step)
-                _take_turn(between, b, near, sought, running, step)
+                between = _other_way(a, b, g, running, step)
+                _take_turn(a, between, near, g, running, step)
+                _take_turn(between, b, near, g, running, step)
             a = b
 
 
 @kernel
-def _other_way(a: Sample, b: Sample, sought: Sought, running: Running, step: DenseStep) -> Sample:
+def _other_way(a: Sample, b: Sample, g: EventFunction, running: Running, step: DenseStep) -> Sample:
     """Where a quantity goes the other way than at both ends, at one of which it may stand still.
 
     So does a body that starts from rest one way and soon turns to the other. Such a place is looked
@@ -381,12 +381,12 @@ def _other_way(a: Sample, b: Sample, sought: Sought, running: Running, step: Den
     """
     last = b
     for _ in range(DEPTH):
-        if _beyond(a, b, sought.index, running) <= sought.noise:
+        if _beyond(a, b, g.index, running) <= g.noise:
             break
-        middle = _sample(0.5 * (a.tau + b.tau), sought, step)
+        middle = _sample(0.5 * (a.tau + b.tau), g, step)
         if middle.rate * (a.rate + b.rate) < 0.0:
             return middle
-        if _beyond(a, middle, sought.index, running) > _beyond(middle, b, sought.index, running):
+        if _beyond(a, middle, g.index, running) > _beyond(middle, b, g.index, running):
             b = middle
         else:
             a = middle
@@ -404,11 +404,11 @@ def _beyond(a: Sample, b: Sample, i: int, running: Running) -> float:
 
 @kernel
 def _take_turn(
-    a: Sample, b: Sample, near: float, sought: Sought, running: Running, step: DenseStep
+    a: Sample, b: Sample, near: float, g: EventFunction, running: Running, step: DenseStep
 ) -> None:
     """Take the turning point between two samples, if any, into the extremes."""
     if a.rate * b.rate < 0.0:
         bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
-        tau = turning_point(_rate_at, (sought, step), bracket, 4.0 * EPS * step.dense.end)
-        value = _sample(tau, sought, step).value
-        update_turning_point(sought.index, value, step.forcing.start + tau, near, running)
+        tau = turning_point(_rate_at, (g, step), bracket, 4.0 * EPS * step.dense.end)
+        value = _sample(tau, g, step).value
+        update_turning_point(g.index, value, step.forcing.start + tau, near, running)

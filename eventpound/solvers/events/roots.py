@@ -1,4 +1,4 @@
-"""What may happen in a mode as functions of the state, for integrators that find roots themselves.
+"""Event functions of the state in a mode, for integrators that find roots themselves.
 
 Every gap that may close, contact force that may vanish and link that may pass its kink is a
 *value*, positive while nothing has happened, and gives two functions: the value, whose fall

@@ -25,7 +25,7 @@ from eventpound.solvers.fast.instant import instant_of, settle, start
 from eventpound.solvers.fast.record import has_room, save_record, write_row
 from eventpound.solvers.fast.run import GOING_ON, IN_PYTHON, SETTLED, FastRun, piece_of
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
-from eventpound.solvers.fast.single.body import reset_body
+from eventpound.solvers.fast.sdof.body import reset_body
 from eventpound.solvers.fast.sliding import any_slider
 from eventpound.solvers.fast.step import take_step
 from eventpound.tolerances import LENGTH

@@ -43,7 +43,7 @@ from eventpound.solvers.fast.constants import (
     zero_state,
 )
 from eventpound.solvers.fast.run import Contacts, FastPlan, FastState, Ground, Limits
-from eventpound.solvers.fast.single.body import oscillators_of
+from eventpound.solvers.fast.sdof.body import oscillators_of
 
 
 class Motions(NamedTuple):

@@ -41,10 +41,10 @@ from eventpound.solvers.fast.run import (
     Ground,
     Limits,
     Links,
-    Single,
+    Sdof,
 )
 from eventpound.solvers.fast.sampled.exact import blank_tables
-from eventpound.solvers.fast.single.body import SingleBody, oscillator_of
+from eventpound.solvers.fast.sdof.body import SdofBody, oscillator_of
 from eventpound.tolerances import OF_BACKBONE
 
 HYSTERESIS_SHARE = 0.01
@@ -226,7 +226,7 @@ def begin_state(
     progress, time = state.progress[..., 0], plan.limits.time
     state.u[:], state.v[:], state.xi_r[:] = u0, v0, z0 / plan.hysteresis.bound
     begin(state.now[..., 0], start, time)
-    progress["guess"], progress["due"] = time, 1
+    progress["trial"], progress["due"] = time, 1
 
 
 def _blank_each(plan: FastPlan, loaded: bool) -> Each:
@@ -256,7 +256,7 @@ def _each_of(n: int, contacts: int) -> Each:
     # The base shear of a body by itself is not looked at.
     extremes[:, 4, at.base_shear] = np.inf
     return Each(
-        body=np.zeros(n, SingleBody.layout),
+        body=np.zeros(n, SdofBody.layout),
         now=np.zeros(n, Now.layout),
         progress=np.zeros(n, FastProgress.layout),
         extremes=extremes,
@@ -307,11 +307,11 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
     }
     block = JoinedArrays(list(arrays.values()))
     own: dict[str, Any] = dict(zip(arrays, block.arrays, strict=True))
-    single = np.zeros(1, SingleBody.layout), np.zeros(most), own["turns"], own["work"]
+    sdof = np.zeros(1, SdofBody.layout), np.zeros(most), own["turns"], own["work"]
     return FastSeries(
         **own,
         block=block.data,
-        single=Single(*single),
+        sdof=Sdof(*sdof),
         each=_blank_each(plan, loaded),
         followed=FollowedMemories(np.zeros(followed), np.zeros(followed), np.zeros(1)),
         # Steps from sample to sample follow no z.

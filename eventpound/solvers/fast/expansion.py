@@ -276,24 +276,24 @@ def defect_error(tau: float, order: int, ground: float, a: Floats, series: FastS
 
 
 @compiled
-def shortened(error: float, order: int) -> float:
+def shortening(error: float, order: int) -> float:
     """Factor by which a step is to be shortened that has too large an error at its end."""
     return max(0.1, 0.9 * error ** (-1.0 / order)) if error < np.inf else 0.1
 
 
 @compiled
-def longest_try(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[float, float]:
+def largest_step_size(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[float, float]:
     """Longest step (s), `limit` at most, and the length that the series are made for."""
     gaussian, sinusoid, sampled = shortest_times(piece.family, piece.coefficients)
     longest = min(limit, GAUSSIAN_STEP * gaussian, SINUSOID_STEP * sinusoid)
     if not longest < np.inf:
         longest = run.plan.limits.time * LONGEST_STEP
     # To the next sample a further term costs less than a further step.
-    return longest, longest if sampled else min(longest, 2.0 * run.state.progress[0].guess)
+    return longest, longest if sampled else min(longest, 2.0 * run.state.progress[0].trial)
 
 
 @compiled
-def choose_length(tried: float, order: int, error: float, longest: float) -> float:
+def choose_step_size(tried: float, order: int, error: float, longest: float) -> float:
     """Length of a step (s), for which the series of this order were `tried` with this error."""
     if error > 1.0:
         shrunk = tried * (0.5 / error) ** (1.0 / (order - 1))

@@ -71,7 +71,7 @@ CORE, UNLOADING, DOWN, UP, SATURATED = 0, 1, 2, 3, 4
 
 
 @compiled
-def place(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
+def xi_at(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
     """ξ of a hysteretic link at the elongation x (m)."""
     return state.xi_r[h] + state.sigma[h] * (x - state.x_r[h]) / hysteresis.scale[h]
 
@@ -79,7 +79,7 @@ def place(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
 @compiled
 def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> float:
     """Z of a hysteretic link at the elongation x (m), reached without reversal."""
-    xi = place(h, x, hysteresis, state)
+    xi = xi_at(h, x, hysteresis, state)
     y = on_part(state.part[h], xi, hysteresis.tables, hysteresis.at[h])
     return state.sigma[h] * hysteresis.bound[h] * y
 
@@ -140,7 +140,7 @@ def saturate(x: Floats, hysteresis: Hysteresis, state: FastState) -> tuple[bool,
         part = state.part[h]
         if part < DOWN or part > UP:
             continue
-        xi = place(h, x[hysteresis.link[h]], hysteresis, state)
+        xi = xi_at(h, x[hysteresis.link[h]], hysteresis, state)
         if part == UP and xi >= hysteresis.saturated[h]:
             state.part[h] = SATURATED
             changed = True
@@ -206,7 +206,7 @@ def cross_border(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> 
     """Move a link that has reached the border of its part to the next."""
     part = state.part[h]
     core = hysteresis.core[h]
-    xi = place(h, x, hysteresis, state)
+    xi = xi_at(h, x, hysteresis, state)
     if part == CORE and xi < 0.0:
         state.sigma[h] = -state.sigma[h]
         state.xi_r[h], state.x_r[h], state.part[h] = core, x, UP

@@ -25,7 +25,7 @@ from eventpound.numerics.polynomial import value_and_slope
 from eventpound.numerics.power_series import sign_after
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.followed import follows
-from eventpound.solvers.fast.links import CORE, UNLOADING, UP, place
+from eventpound.solvers.fast.links import CORE, UNLOADING, UP, xi_at
 from eventpound.solvers.fast.run import FastLocated, FastPlan, FastRun, FastSeries, Limits, Links
 from eventpound.solvers.fast.search import (
     bound_of_pair,
@@ -150,7 +150,7 @@ def _border(order: int, h: float, first: float, i: int, run: FastRun) -> float:
     hysteresis, state, series = run.plan.hysteresis, run.state, run.series
     a, part = hysteresis.link[i], state.part[i]
     head, tail = series.ends[a, 0], series.ends[a, 1]
-    xi, factor = place(i, series.x[a], hysteresis, state), state.sigma[i] / hysteresis.scale[i]
+    xi, factor = xi_at(i, series.x[a], hysteresis, state), state.sigma[i] / hysteresis.scale[i]
     above = (hysteresis.core[i] if part <= UNLOADING else hysteresis.down[i]) - xi
     below, limit, tau = hysteresis.core[i] + xi, min(h, first), np.inf
     if not distance_stays_above(above, -factor, head, tail, h, series):

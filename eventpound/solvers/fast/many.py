@@ -39,7 +39,7 @@ from eventpound.solvers.fast.run import (
     FastState,
     Ground,
 )
-from eventpound.solvers.fast.single.oscillator import oscillate
+from eventpound.solvers.fast.sdof.oscillator import oscillate
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 
 LOGGED_AT_ONCE = 16
@@ -180,7 +180,7 @@ def run(rows: VariantArrays, events: bool = False) -> Kept:
     )
     alone: Any = plan.oscillator.alone
     logs = [kept.log[:0]]
-    for kernel, some in ((run_single_rows, alone.any()), (run_rows, not alone.all())):
+    for kernel, some in ((run_sdof_rows, alone.any()), (run_rows, not alone.all())):
         done = 0 if some else count
         while done < count:
             kept.logged[0] = 0
@@ -215,11 +215,11 @@ def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kep
 
 
 @compiled_loop
-def run_single_rows(
+def run_sdof_rows(
     budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kept: Kept
 ) -> int:
     """Run every row of a single body, as `run_rows`; no lines of a history are written."""
-    single = scratch.series.single
+    sdof = scratch.series.sdof
     for i in range(begun, kept.ended.size):
         if _is_full(scratch.events, kept):
             return i
@@ -231,7 +231,7 @@ def run_single_rows(
         record.unique[:] = True
         ended = GOING_ON
         while ended == GOING_ON:
-            ended = oscillate(budget, plan, state, single, record)
+            ended = oscillate(budget, plan, state, sdof, record)
         kept.ended[i] = ended
         _keep(i, plan, state, scratch, kept)
     return int(kept.ended.size)

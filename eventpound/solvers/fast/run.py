@@ -137,7 +137,7 @@ class FastPlan(NamedTuple):
 class FastProgress(NamedNumbers):
     """What the stepper counts and remembers itself."""
 
-    guess: float  # step that is tried next (s)
+    trial: float  # step size that is tried next (s)
     saved_at: float  # when a mode that may be none began (s)
     saved_rows: int  # rows of the history before it
     piece: int  # of the ground motion
@@ -174,10 +174,10 @@ class FastState(NamedTuple):
     progress: Records  # (1,): a `FastProgress`
 
 
-class Single(NamedTuple):
+class Sdof(NamedTuple):
     """What a single body works with: its numbers and scratch for roots.
 
-    body (1,): a `SingleBody` of `eventpound.solvers.fast.single.body`. rate: of its acceleration.
+    body (1,): an `SdofBody` of `eventpound.solvers.fast.sdof.body`. rate: of its acceleration.
     turns, work: those of `FastSeries`.
     """
 
@@ -193,7 +193,7 @@ class Each(NamedTuple):
     Each has a run of its own.
     """
 
-    body: Any  # (N,): a `SingleBody`
+    body: Any  # (N,): an `SdofBody`
     now: Records  # (N,): a `Now`
     progress: Records  # (N,): a `FastProgress`
     extremes: Floats  # (N, 5, 3): displacement, acceleration, a base shear that nobody looks at
@@ -269,7 +269,7 @@ class FastSeries(NamedTuple):
     turns: Floats  # its roots
     block: Bytes  # all of the above
 
-    single: Single  # of a single body
+    sdof: Sdof  # of a single body
     each: Each  # of bodies that go apart
     followed: FollowedMemories  # z that have series of their own
     tables: SampleTables  # exact steps from sample to sample

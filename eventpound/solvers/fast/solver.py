@@ -75,8 +75,8 @@ from eventpound.solvers.fast.run import (
     FastRun,
     FastState,
 )
-from eventpound.solvers.fast.single.body import has_play, oscillator_of
-from eventpound.solvers.fast.single.oscillator import oscillate_alone
+from eventpound.solvers.fast.sdof.body import has_play, oscillator_of
+from eventpound.solvers.fast.sdof.oscillator import oscillate_alone
 from eventpound.solvers.fast.sliding import settle_sliders
 from eventpound.solvers.supported import with_supports
 from eventpound.tolerances import FORCE

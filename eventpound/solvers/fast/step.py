@@ -18,11 +18,11 @@ from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.evaluate import contact_force_series, observe_at, observe_at_noinline
 from eventpound.solvers.fast.expansion import (
     begin_series,
-    choose_length,
+    choose_step_size,
     defect_error,
     expand,
-    longest_try,
-    shortened,
+    largest_step_size,
+    shortening,
     wrong_way,
 )
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step, take_instant
@@ -83,7 +83,7 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
         if error <= 1.0:
             break
         first = np.inf
-        tau *= shortened(error, order)
+        tau *= shortening(error, order)
     ended = PULL if pulls else audit(error, run)
     if ended != DONE:
         return ended
@@ -101,12 +101,12 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
         keep_followed(first <= tau, run)
     if first <= tau:
         # What happens soon after the last event may be followed as soon by the next.
-        progress.guess = min(progress.guess, max(tau, SOONER * progress.guess))
+        progress.trial = min(progress.trial, max(tau, SOONER * progress.trial))
         _apply(run)
         if fleeting and progress.due == 1:
             restore_record(run)
     else:
-        progress.guess = tau
+        progress.trial = tau
         end_if_over(run)
     endless = t_end == t and now.in_a_row > LONGEST_CASCADE
     return STUCK if endless or progress.stalled > MOST_STALLS else DONE
@@ -116,7 +116,7 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
 def _expansion(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[int, float]:
     """Series of everything; their order, and the length of a step of at most `limit` (s)."""
     most, progress = run.plan.limits.order, run.state.progress[0]
-    longest, tried = longest_try(limit, piece, run)
+    longest, tried = largest_step_size(limit, piece, run)
     order, error = 0, 0.0
     for _again in range(4):
         begin_series(run.state.now[0].t, piece, run)
@@ -124,7 +124,7 @@ def _expansion(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[int, fl
         progress.expansions += 1
         if not wrong_way(order, run):
             break
-    h = choose_length(tried, order, error, longest)
+    h = choose_step_size(tried, order, error, longest)
     if progress.resting > 0:
         contact_force_series(order, run)
     return order, h

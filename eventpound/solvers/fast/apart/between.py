@@ -25,8 +25,8 @@ from eventpound.solvers.fast.extremes import (
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import is_due, write_row
 from eventpound.solvers.fast.run import FastRun
+from eventpound.solvers.fast.sdof.record import acceleration_coefficient
 from eventpound.solvers.fast.search import motion, stays_above
-from eventpound.solvers.fast.single.record import acceleration_coefficient
 
 (U_LOW, U_HIGH, A_LOW, A_HIGH) = range(4)
 """Rows of `Each.box`."""

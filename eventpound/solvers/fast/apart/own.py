@@ -1,6 +1,6 @@
 """What a body does while bodies go apart: a run of its own, by the steps of a single body.
 
-It is that of `eventpound.solvers.fast.single` without barriers, with a clock of its own.
+It is that of `eventpound.solvers.fast.sdof` without barriers, with a clock of its own.
 """
 
 from __future__ import annotations
@@ -17,10 +17,9 @@ from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.extremes import flat_time, take_turn
 from eventpound.solvers.fast.links import turns_back
 from eventpound.solvers.fast.run import GOING_ON, Each, FastRun
-from eventpound.solvers.fast.search import motion
-from eventpound.solvers.fast.single.body import (
-    SingleBody,
-    SingleRun,
+from eventpound.solvers.fast.sdof.body import (
+    SdofBody,
+    SdofRun,
     absolute_acceleration,
     leave_curve,
     observe_end,
@@ -28,14 +27,15 @@ from eventpound.solvers.fast.single.body import (
     spring_state,
     turn_round,
 )
-from eventpound.solvers.fast.single.exact import show_line
-from eventpound.solvers.fast.single.record import (
+from eventpound.solvers.fast.sdof.exact import show_line
+from eventpound.solvers.fast.sdof.record import (
     acceleration_coefficient,
     damped_acceleration,
     take_if_new,
 )
-from eventpound.solvers.fast.single.series import know_piece, pair_at
-from eventpound.solvers.fast.single.step import FREE, arrive, observe_ground, propose
+from eventpound.solvers.fast.sdof.series import know_piece, pair_at
+from eventpound.solvers.fast.sdof.step import FREE, arrive, observe_ground, propose
+from eventpound.solvers.fast.search import motion
 
 _GAUSSIAN = int(Family.GAUSSIAN)
 
@@ -71,7 +71,7 @@ def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
     tables, piece, own = plan.hysteresis.tables, window.piece, running_of_own(b, each)
     # Rows and what belongs to several bodies is taken elsewhere.
     one = by_address(
-        SingleRun(
+        SdofRun(
             each.body[b],
             each.now[b],
             each.progress[b],
@@ -80,7 +80,7 @@ def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
             own,
             tables[plan.hysteresis.at[h] if h >= 0 else 0 :],
             plan,
-            run.series.single,
+            run.series.sdof,
         )
     )
     holds = True
@@ -92,9 +92,9 @@ def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
     elif what == START:
         _start(b, piece, one, run)
     else:
-        _take_up(b, what, now, window, one, run)
+        _begin_step(b, what, now, window, one, run)
     if what == SHOW:
-        _show(b, window, one, each)
+        _expand_exact(b, window, one, each)
     if holds and TAKE_UP <= what <= GO_ON:
         holds = _begin(b, window.end, piece, one, run)
     if h >= 0:
@@ -103,7 +103,7 @@ def go(b: int, what: int, now: float, window: Window, run: FastRun) -> bool:
 
 
 @compiled_noinline
-def _start(b: int, piece: CurrentPiece, one: SingleRun, run: FastRun) -> None:
+def _start(b: int, piece: CurrentPiece, one: SdofRun, run: FastRun) -> None:
     """Make the present state of a body that of its own run."""
     state, each, h, body = run.state, run.series.each, run.plan.links.grounded[b], one.body
     if not body.known:
@@ -125,7 +125,7 @@ def _start(b: int, piece: CurrentPiece, one: SingleRun, run: FastRun) -> None:
 
 
 @compiled_noinline
-def _take_up(b: int, what: int, now: float, window: Window, one: SingleRun, run: FastRun) -> None:
+def _begin_step(b: int, what: int, now: float, window: Window, one: SdofRun, run: FastRun) -> None:
     """Begin a step at a time (s) where the body is, whose velocity an impact may have changed."""
     body, state = one.body, run.state
     body.u, body.v, one.now.t = state.u[b], state.v[b], now
@@ -141,7 +141,7 @@ def _take_up(b: int, what: int, now: float, window: Window, one: SingleRun, run:
 
 
 @compiled_noinline
-def _show(b: int, window: Window, one: SingleRun, each: Each) -> None:
+def _expand_exact(b: int, window: Window, one: SdofRun, each: Each) -> None:
     """Series of a body in an exact step, which ends with the window."""
     body, dt, reach = one.body, window.end - window.start, 0.0
     order = show_line(body.v, body.a - body.even, dt, body)
@@ -154,7 +154,7 @@ def _show(b: int, window: Window, one: SingleRun, each: Each) -> None:
 
 
 @compiled
-def _arrive(b: int, now: float, piece: CurrentPiece, one: SingleRun, each: Each) -> bool:
+def _arrive(b: int, now: float, piece: CurrentPiece, one: SdofRun, each: Each) -> bool:
     """Take a body to a time (s), the end of its step or within it; whether it may go on."""
     body, begun, order = one.body, one.now.t, each.order[b]
     if now < each.until[b]:
@@ -169,7 +169,7 @@ def _arrive(b: int, now: float, piece: CurrentPiece, one: SingleRun, each: Each)
 
 
 @compiled
-def _begin(b: int, stop: float, piece: CurrentPiece, one: SingleRun, run: FastRun) -> bool:
+def _begin(b: int, stop: float, piece: CurrentPiece, one: SdofRun, run: FastRun) -> bool:
     """A step of a body from where it is; whether one holds at its end."""
     each, t, wanted = run.series.each, one.now.t, stop - one.now.t
     if piece.family == _GAUSSIAN:
@@ -182,7 +182,7 @@ def _begin(b: int, stop: float, piece: CurrentPiece, one: SingleRun, run: FastRu
 
 
 @compiled
-def _set_box(b: int, tau: float, order: int, body: SingleBody, each: Each) -> None:
+def _set_box(b: int, tau: float, order: int, body: SdofBody, each: Each) -> None:
     """Bounds of displacement and acceleration of a body in its step, of length tau (s).
 
     It goes one way, but where it all but stands still, and so do the forces of springs. With

@@ -1,7 +1,7 @@
 """Bodies that go apart: each by the steps of a run of its own.
 
 Bodies on springs to the ground have nothing to do with each other but a ground motion, until a
-contact closes. So each takes the steps of a single body (`eventpound.solvers.fast.single`) with a
+contact closes. So each takes the steps of a single body (`eventpound.solvers.fast.sdof`) with a
 clock of its own (`eventpound.solvers.fast.apart.own`): one that passes the knee of its backbone in
 short steps keeps no other from long ones. They go in the order of what happens to them
 (`eventpound.solvers.fast.apart.together`), under a record from sample to sample

@@ -86,7 +86,7 @@ def go_together(budget: int, window: Window, run: FastRun) -> int:
             taken += 1
             if going and now < window.end:
                 _watch_all_of(who, now, run)
-    _meet(closed, now, window, run)
+    _bring_together(closed, now, window, run)
     return taken
 
 
@@ -124,12 +124,12 @@ def _show_all(window: Window, run: FastRun) -> bool:
         return False
     for b in range(each.until.size):
         if each.order[b] == 0:
-            _show(b, window, run)
+            _expand_exact(b, window, run)
     return True
 
 
 @compiled
-def _show(b: int, window: Window, run: FastRun) -> None:
+def _expand_exact(b: int, window: Window, run: FastRun) -> None:
     """Show the motion of a body in an exact step by a series."""
     go(b, SHOW, window.start, window, run)
     each, mass = run.series.each, run.plan.mass[b]
@@ -151,7 +151,7 @@ def _join(b: int, now: float, window: Window, run: FastRun) -> None:
     """
     contacts, each = run.plan.contacts, run.series.each
     if each.order[b] == 0:
-        _show(b, window, run)
+        _expand_exact(b, window, run)
     each.until[b] = window.end
     for j in range(contacts.gap.size):
         if b in (contacts.left[j], contacts.right[j]) and takes_part(j, run):
@@ -268,7 +268,7 @@ def _pass_time(t: float, run: FastRun) -> None:
 
 
 @compiled
-def _meet(closed: int, now: float, window: Window, run: FastRun) -> None:
+def _bring_together(closed: int, now: float, window: Window, run: FastRun) -> None:
     """Bring all bodies to one instant, which is due where contact `closed`, -1 for none, closes."""
     plan, state, each, shortest = run.plan, run.state, run.series.each, np.inf
     for b in range(each.until.size):
@@ -286,7 +286,7 @@ def _meet(closed: int, now: float, window: Window, run: FastRun) -> None:
         if closed < 0 or not _is_of(b, closed, run):
             state.u[b], state.v[b] = body.u, body.v
     if 0.0 < shortest < np.inf:
-        state.progress[0].guess = shortest
+        state.progress[0].trial = shortest
     _pass_time(now, run)
     for j in range(state.gap.size):
         if j == closed:

@@ -1,7 +1,7 @@
 """Bodies that go apart under a record: from one sample to the next, each by steps of its own.
 
 In a *window*, the time dt between two samples, bounds of the accelerations
-(`eventpound.solvers.fast.single.exact`) tell beforehand whose gap may close. A body of no such gap
+(`eventpound.solvers.fast.sdof.exact`) tell beforehand whose gap may close. A body of no such gap
 goes by one exact step where it stays on a line of its backbone and exceeds no extreme. All others
 go by series, in the order of what happens to them (`eventpound.solvers.fast.apart.together`); so do
 all in a part of a window.
@@ -31,9 +31,9 @@ from eventpound.solvers.fast.record import has_room
 from eventpound.solvers.fast.run import FastRun
 from eventpound.solvers.fast.sampled.exact import MOST_TURN
 from eventpound.solvers.fast.sampled.forces import GroundLine, slope_of
-from eventpound.solvers.fast.single.body import set_constants, tangent
-from eventpound.solvers.fast.single.exact import exact_step, fastest_ahead, set_line, turn_in
-from eventpound.solvers.fast.single.series import sample_after
+from eventpound.solvers.fast.sdof.body import set_constants, tangent
+from eventpound.solvers.fast.sdof.exact import exact_step, fastest_ahead, set_line, turn_in
+from eventpound.solvers.fast.sdof.series import sample_after
 from eventpound.tolerances import OWN_GAP
 
 _ANY = 2**62

@@ -22,7 +22,7 @@ from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import leader_of, start_of, stays_within
-from eventpound.solvers.fast.links import CORE, DOWN, UP, elongation, gap_of, place
+from eventpound.solvers.fast.links import CORE, DOWN, UP, elongation, gap_of, xi_at
 from eventpound.solvers.fast.run import FastPlan, FastRun, FastState
 from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.solvers.fast.search import bound_of_pair
@@ -140,9 +140,9 @@ def _keeps_part(
         return False
     if part >= UP or happens == BORDER:
         return True
-    high = low = place(i, along.next_x[a], hysteresis, state)
+    high = low = xi_at(i, along.next_x[a], hysteresis, state)
     if not one_way:
-        at, beyond = place(i, along.x[a], hysteresis, state), sag / hysteresis.scale[i]
+        at, beyond = xi_at(i, along.x[a], hysteresis, state), sag / hysteresis.scale[i]
         high, low = max(at, high) + beyond, min(at, low) - beyond
     core = hysteresis.core[i]
     upper = hysteresis.down[i] if part == DOWN else core

@@ -29,8 +29,8 @@ from eventpound.solvers.fast.links import (
     cross_border,
     elongations,
     gap_of,
-    place,
     reverse,
+    xi_at,
 )
 from eventpound.solvers.fast.record import has_room, write_row
 from eventpound.solvers.fast.run import FastRun
@@ -112,7 +112,7 @@ def _left(a: int, run: FastRun) -> int:
         return REVERSAL
     if part >= UP:
         return NOTHING
-    xi, core = place(i, x, hysteresis, state), hysteresis.core[i]
+    xi, core = xi_at(i, x, hysteresis, state), hysteresis.core[i]
     if xi > (hysteresis.down[i] if part == DOWN else core) or (part == CORE and xi < -core):
         return BORDER
     return NOTHING
@@ -134,9 +134,9 @@ def _when(a: int, kind: int, order: int, h: float, run: FastRun) -> float:
         factor = float(state.branch[a])
         start = factor * (x - plan.links.offset[a])
     else:
-        xi, factor = place(i, x, hysteresis, state), -state.sigma[i] / hysteresis.scale[i]
+        xi, factor = xi_at(i, x, hysteresis, state), -state.sigma[i] / hysteresis.scale[i]
         start = (hysteresis.down[i] if state.part[i] == DOWN else hysteresis.core[i]) - xi
-        if state.part[i] == CORE and place(i, along.next_x[a], hysteresis, state) < 0.0:
+        if state.part[i] == CORE and xi_at(i, along.next_x[a], hysteresis, state) < 0.0:
             start, factor = hysteresis.core[i] + xi, -factor
     set_distance(start, factor, head, tail, order, series)
     return only_root(c, order + 1, h)

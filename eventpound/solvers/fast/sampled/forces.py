@@ -23,8 +23,8 @@ from eventpound.solvers.fast.links import (
     UP,
     elongations,
     hysteretic_variable,
-    place,
     tangent,
+    xi_at,
 )
 from eventpound.solvers.fast.run import FastRun
 from eventpound.solvers.fast.sampled.exact import SampleTables, table_of
@@ -105,7 +105,7 @@ def _set_unmoved(run: FastRun) -> None:
         k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
         force, h = -k * links.offset[a], links.z_of_link[a]
         if h >= 0 and not DOWN <= state.part[h] <= UP:
-            xi = 1.0 if state.part[h] == SATURATED else place(h, 0.0, hysteresis, state)
+            xi = 1.0 if state.part[h] == SATURATED else xi_at(h, 0.0, hysteresis, state)
             z = state.sigma[h] * hysteresis.bound[h] * xi
             force += pull_per_z(a, links.law.memory) * z
         _pull(a, force, links.ends, series.inverse_mass, unmoved)

@@ -33,7 +33,7 @@ from eventpound.solvers.fast.sampled.forces import (
 )
 from eventpound.solvers.fast.sampled.safe_box import set_safe_box, stays_in_safe_box
 from eventpound.solvers.fast.sampled.series import expand_linear
-from eventpound.solvers.fast.single.series import sample_after
+from eventpound.solvers.fast.sdof.series import sample_after
 from eventpound.tolerances import SAME_SAMPLE
 
 
@@ -80,7 +80,7 @@ def table_steps(
 def _arrive(t: float, steps: int, dt: float, run: FastRun) -> None:
     """What goes with the displacements and velocities at t (s), after some steps."""
     plan, state, along = run.plan, run.state, run.series.tables.along
-    state.progress[0].guess = dt
+    state.progress[0].trial = dt
     pass_time(steps * dt, t, steps, state.now[0], state.progress[0])
     elongations(plan.links.ends, state.u, state.v, along.x, along.x_rate)
     set_gaps(plan, state)
@@ -190,7 +190,7 @@ def _accept(step: ProposedStep, t: float, run: FastRun) -> None:
     copy_numbers(bodies.next_acceleration, bodies.acceleration)
     copy_numbers(along.next_x, along.x)
     copy_numbers(along.next_x_rate, along.x_rate)
-    progress.guess = step.h
+    progress.trial = step.h
     pass_time(step.h, t, 1, state.now[0], progress)
     for b in range(state.u.size):
         state.u[b], state.v[b] = bodies.next_u[b], bodies.next_v[b]

@@ -62,10 +62,9 @@ from eventpound.solvers.fast.record import is_due, pass_time
 from eventpound.solvers.fast.run import REST_TERMS
 from eventpound.solvers.fast.sampled.exact import MOST_TURN, put_column
 from eventpound.solvers.fast.sampled.forces import GroundLine, line_at
-from eventpound.solvers.fast.search import release_time
-from eventpound.solvers.fast.single.body import (
-    SingleBody,
-    SingleRun,
+from eventpound.solvers.fast.sdof.body import (
+    SdofBody,
+    SdofRun,
     absolute_acceleration,
     gap_to,
     observe_end,
@@ -76,13 +75,14 @@ from eventpound.solvers.fast.single.body import (
     steepest,
     tangent,
 )
-from eventpound.solvers.fast.single.record import (
+from eventpound.solvers.fast.sdof.record import (
     force_exceeds,
-    sample_single,
+    sample_sdof,
     take_contact_forces,
 )
-from eventpound.solvers.fast.single.series import linear_series, swing
-from eventpound.solvers.fast.single.step import FREE, TURNED, arrive, closed_at, fits
+from eventpound.solvers.fast.sdof.series import linear_series, swing
+from eventpound.solvers.fast.sdof.step import FREE, TURNED, arrive, closed_at, equations_hold
+from eventpound.solvers.fast.search import release_time
 from eventpound.tolerances import SAME_SAMPLE
 
 LONGEST = 1.0
@@ -93,10 +93,10 @@ _SAMPLES = int(Family.SAMPLES)
 
 
 @compiled_noinline
-def rest_step(stop: float, piece: CurrentPiece, run: SingleRun) -> bool:
+def rest_step(stop: float, piece: CurrentPiece, run: SdofRun) -> bool:
     """One step at rest, to `stop` (s) at most; False where the record has no room.
 
-    `SingleBody.released` says then whether the contact force has vanished.
+    `SdofBody.released` says then whether the contact force has vanished.
     """
     body, t, side = run.body, run.now.t, run.body.rests_on
     if piece.family == _SAMPLES:
@@ -112,7 +112,7 @@ def rest_step(stop: float, piece: CurrentPiece, run: SingleRun) -> bool:
     release = _release(h, run.progress.stalled > 0, f, run)
     tau = min(h, release)
     t_end = stop if tau == stop - t else t + tau
-    if not sample_single(t, t_end, 0, piece, run):
+    if not sample_sdof(t, t_end, 0, piece, run):
         return False
     _extremes_inside(t, tau, f, run)
     g = ground_acceleration(piece, t_end)
@@ -125,7 +125,7 @@ def rest_step(stop: float, piece: CurrentPiece, run: SingleRun) -> bool:
 
 
 @compiled
-def _release(h: float, kept: bool, f: Floats, run: SingleRun) -> float:
+def _release(h: float, kept: bool, f: Floats, run: SdofRun) -> float:
     """When the contact force, ``Σ f_k τ^k`` for each unit of mass, falls below zero, or inf.
 
     `kept`: see `release_time`.
@@ -148,7 +148,7 @@ def _release(h: float, kept: bool, f: Floats, run: SingleRun) -> float:
 
 
 @compiled
-def _extremes_inside(t: float, tau: float, f: Floats, run: SingleRun) -> None:
+def _extremes_inside(t: float, tau: float, f: Floats, run: SdofRun) -> None:
     """Turning points of the contact force and of the acceleration of the ground."""
     body, d, running, spread = run.body, run.scratch.rate, run.running, 0.0
     for k in range(REST_TERMS - 1, 0, -1):
@@ -173,7 +173,7 @@ NOT_FREE = -1
 
 
 @compiled
-def swings_freely(body: SingleBody) -> bool:
+def swings_freely(body: SdofBody) -> bool:
     """Whether the body swings as far as it turns or meets a barrier, if the ground stands still."""
     hysteretic = body.hysteretic
     v, a, k = body.v, body.a, tangent(body)
@@ -199,13 +199,13 @@ def swings_freely(body: SingleBody) -> bool:
 
 
 @compiled
-def _way(body: SingleBody) -> float:
+def _way(body: SdofBody) -> float:
     """Direction in which the body moves, or is about to move."""
     return math.copysign(1.0, body.v if body.v != 0.0 else body.a)
 
 
 @compiled_noinline
-def swing_freely(stop: float, piece: CurrentPiece, run: SingleRun) -> int:
+def swing_freely(stop: float, piece: CurrentPiece, run: SdofRun) -> int:
     """Go to the next turn or barrier, or to `stop` (s); GOING_ON, or why not.
 
     `NOT_FREE` says that the forces do not give the acceleration there, and nothing was done.
@@ -235,12 +235,12 @@ def swing_freely(stop: float, piece: CurrentPiece, run: SingleRun) -> int:
     body.next_odd = body.next_g = 0.0
     set_tolerance(body)
     observe_end(run)
-    if not (tau > 0.0 and fits(tau, 1, body)):
+    if not (tau > 0.0 and equations_hold(tau, 1, body)):
         return NOT_FREE
     t_end = stop if tau == left else t + tau
     if is_due(t_end, run.plan.output_times, run.progress):
         # The record has room, which was looked for before.
-        sample_single(t, t_end, 0, piece, run)
+        sample_sdof(t, t_end, 0, piece, run)
     return arrive(tau, t_end, rate == 0.0, event, run)
 
 
@@ -249,7 +249,7 @@ ROW_ORDER = 16
 
 
 @compiled_noinline
-def _fill_table(stiffness: float, dt: float, body: SingleBody, step: Floats) -> None:
+def _fill_table(stiffness: float, dt: float, body: SdofBody, step: Floats) -> None:
     """Numbers of a step of length dt (s): dt, α, β."""
     step[0] = dt
     K, C, work = step[8:9].reshape(1, 1), step[9:10].reshape(1, 1), step[10:13].reshape(3, 1)
@@ -259,13 +259,13 @@ def _fill_table(stiffness: float, dt: float, body: SingleBody, step: Floats) -> 
 
 
 @compiled
-def turn_in(dt: float, body: SingleBody) -> float:
+def turn_in(dt: float, body: SdofBody) -> float:
     """What the divisor of the bound of the acceleration lacks to one, for a time dt (s)."""
     return body.damping * dt + 0.5 * steepest(body) * dt * dt
 
 
 @compiled
-def set_line(dt: float, body: SingleBody) -> None:
+def set_line(dt: float, body: SdofBody) -> None:
     """What an exact step of a length (s) needs to know of the line that a body is on, if it is.
 
     None is taken where it would be too long.
@@ -289,7 +289,7 @@ def set_line(dt: float, body: SingleBody) -> None:
 
 
 @compiled
-def fastest_ahead(a: float, v: float, slope: float, dt: float, body: SingleBody) -> float:
+def fastest_ahead(a: float, v: float, slope: float, dt: float, body: SdofBody) -> float:
     """Bound of the relative acceleration for a time dt (s), in which the ground has one slope."""
     return (abs(a) + dt * (body.steepest * abs(v) + abs(slope))) * body.inverse
 
@@ -310,7 +310,7 @@ class ExactStep(NamedTuple):
 
 @compiled
 def exact_step(
-    u: float, v: float, a: float, ground: GroundLine, dt: float, body: SingleBody, running: Running
+    u: float, v: float, a: float, ground: GroundLine, dt: float, body: SdofBody, running: Running
 ) -> ExactStep:
     """The exact step of a body at u (m) with the velocity v and the absolute acceleration a.
 
@@ -338,7 +338,7 @@ def exact_step(
 
 
 @compiled
-def show_line(v: float, a: float, dt: float, body: SingleBody) -> int:
+def show_line(v: float, a: float, dt: float, body: SdofBody) -> int:
     """Order of the series of an exact step from the velocity v and the relative acceleration a.
 
     Its terms are not needed to a tolerance. The slope of the ground is `odd`.
@@ -350,7 +350,7 @@ def show_line(v: float, a: float, dt: float, body: SingleBody) -> int:
 
 @compiled_deferred_loop
 def sample_steps(
-    budget: int, segment: int, piece_end: float, piece: CurrentPiece, run: SingleRun
+    budget: int, segment: int, piece_end: float, piece: CurrentPiece, run: SdofRun
 ) -> int:
     """Steps from the sample `segment`, where the body is, as far as nothing can happen.
 
@@ -383,7 +383,7 @@ def sample_steps(
             # The body's own ground is not known any more.
             body.odd, body.segment = ground.slope, -1
             order = show_line(v, a - ground.g, dt, body)
-            due = sample_single(t, ground.end, order, piece, run)
+            due = sample_sdof(t, ground.end, order, piece, run)
         if due:
             u, v, a, t = u + step.change, step.v, step.a, ground.end
             segment += 1
@@ -393,7 +393,7 @@ def sample_steps(
 
 
 @compiled
-def _arrive(u: float, v: float, t: float, steps: int, dt: float, run: SingleRun) -> None:
+def _arrive(u: float, v: float, t: float, steps: int, dt: float, run: SdofRun) -> None:
     body = run.body
     body.u, body.v, body.right, body.left = u, v, body.right_gap - u, body.left_gap + u
     pass_time(steps * dt, t, steps, run.now, run.progress)

@@ -50,36 +50,36 @@ from eventpound.solvers.fast.run import (
     FastRecord,
     FastRun,
     FastState,
-    Single,
+    Sdof,
     piece_of,
 )
-from eventpound.solvers.fast.single.body import (
-    SingleRun,
+from eventpound.solvers.fast.sdof.body import (
+    SdofRun,
     absolute_acceleration,
     acceleration_level,
-    enter,
-    leave,
+    load_body,
     reset_body,
     set_force,
     side_closed,
     spring_state,
+    store_body,
     turn_round,
 )
-from eventpound.solvers.fast.single.exact import (
+from eventpound.solvers.fast.sdof.exact import (
     NOT_FREE,
     rest_step,
     sample_steps,
     swing_freely,
     swings_freely,
 )
-from eventpound.solvers.fast.single.record import take_if_new, take_settled, write_present
-from eventpound.solvers.fast.single.series import know_piece, pair_at, sample_after
-from eventpound.solvers.fast.single.step import take_step
+from eventpound.solvers.fast.sdof.record import take_if_new, take_settled, write_present
+from eventpound.solvers.fast.sdof.series import know_piece, pair_at, sample_after
+from eventpound.solvers.fast.sdof.step import take_step
 from eventpound.tolerances import SAME_SAMPLE
 
 
 @compiled_noinline
-def impact_at_barrier(side: float, j: int, run: SingleRun) -> None:
+def impact_at_barrier(side: float, j: int, run: SdofRun) -> None:
     """Newton's law at the barrier on one side, contact j, which the body has met."""
     body, limits, restitution = run.body, run.plan.limits, run.plan.contacts.restitution[j]
     last = last_speed(limits.length / limits.time, False)
@@ -90,7 +90,7 @@ def impact_at_barrier(side: float, j: int, run: SingleRun) -> None:
 
 
 @compiled_deferred
-def stays_closed(side: float, piece: CurrentPiece, run: SingleRun) -> bool:
+def stays_closed(side: float, piece: CurrentPiece, run: SdofRun) -> bool:
     """Whether a body that stands still at a barrier without a contact force stays there.
 
     Parameters
@@ -99,7 +99,7 @@ def stays_closed(side: float, piece: CurrentPiece, run: SingleRun) -> bool:
         1 for a barrier on the right, -1 for one on the left.
     piece : CurrentPiece
         The ground motion from now on.
-    run : SingleRun
+    run : SdofRun
         The run.
     """
     ground, level, t = run.body.work[:], run.body.no_acceleration, run.now.t
@@ -113,7 +113,7 @@ def stays_closed(side: float, piece: CurrentPiece, run: SingleRun) -> bool:
 
 
 @compiled
-def settle_single(g: float, piece: CurrentPiece, run: SingleRun) -> None:
+def settle_sdof(g: float, piece: CurrentPiece, run: SdofRun) -> None:
     """Do the duties of the present instant; `g` is the acceleration of the ground (m/s²)."""
     body = run.body
     side = side_closed(body)
@@ -141,7 +141,7 @@ def settle_single(g: float, piece: CurrentPiece, run: SingleRun) -> None:
 
 
 @compiled_deferred
-def _write_rest(rests: bool, j: int, rate: float, run: SingleRun) -> None:
+def _write_rest(rests: bool, j: int, rate: float, run: SdofRun) -> None:
     """Write down that the body comes to rest on contact j, or no longer rests on it."""
     code = transition_code(not rests, rests, rate)
     write_change(code, j, new_group(run.now), rate, run.now, run.events)
@@ -150,17 +150,15 @@ def _write_rest(rests: bool, j: int, rate: float, run: SingleRun) -> None:
 @compiled_noinline
 def oscillate_alone(budget: int, run: FastRun) -> int:
     """`oscillate` of a run by address."""
-    single = whole(run.series.single)
-    return oscillate(budget, whole(run.plan), whole(run.state), single, whole(run.record))
+    sdof = whole(run.series.sdof)
+    return oscillate(budget, whole(run.plan), whole(run.state), sdof, whole(run.record))
 
 
 _SAMPLES, _GAUSSIAN, _ZERO = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.ZERO)
 
 
 @compiled_loop
-def oscillate(
-    budget: int, plan: FastPlan, state: FastState, single: Single, record: FastRecord
-) -> int:
+def oscillate(budget: int, plan: FastPlan, state: FastState, sdof: Sdof, record: FastRecord) -> int:
     """Carry a single body to the end of its run, or as far as steps and room reach.
 
     Parameters
@@ -178,8 +176,8 @@ def oscillate(
     start = plan.hysteresis.at[0] if plan.hysteresis.at.size > 0 else 0
     at = places_of(1, plan.links.springs, plan.contacts.gap.size)
     run = by_address(
-        SingleRun(
-            single.body[0],
+        SdofRun(
+            sdof.body[0],
             state.now[0],
             state.progress[0],
             record.events,
@@ -187,13 +185,13 @@ def oscillate(
             running_of(record.extremes, at),
             plan.hysteresis.tables[start:],
             plan,
-            single,
+            sdof,
         )
     )
     body, now, progress = run.body, run.now, run.progress
     if not progress.started:
         reset_body(body)
-        enter(plan, state, run)
+        load_body(plan, state, run)
         progress.started = True
     last_step = progress.steps + budget
     code = GOING_ON
@@ -209,12 +207,12 @@ def oscillate(
         if progress.steps >= last_step:
             break
         code = _rest(last_step, run) if body.rests_on != 0.0 else _swing(last_step, run)
-    leave(plan.oscillator, body, state)
+    store_body(plan.oscillator, body, state)
     return code
 
 
 @compiled
-def _settle(run: SingleRun) -> None:
+def _settle(run: SdofRun) -> None:
     """Do the duties of the present instant and write down what follows it."""
     body, ground, t, progress = run.body, run.plan.ground, run.now.t, run.progress
     while progress.due == 1 and ground.ends[progress.piece] <= t:
@@ -222,7 +220,7 @@ def _settle(run: SingleRun) -> None:
     piece = by_address(piece_of(progress.piece, ground))
     g = ground_acceleration(piece, t)
     if progress.due == 1:
-        settle_single(g, piece, run)
+        settle_sdof(g, piece, run)
         progress.due = 0
         body.segment = -1
     set_force(g, body)
@@ -231,7 +229,7 @@ def _settle(run: SingleRun) -> None:
 
 
 @compiled_deferred_loop
-def _rest(last_step: int, run: SingleRun) -> int:
+def _rest(last_step: int, run: SdofRun) -> int:
     """Steps of a body at rest, until something is to be settled."""
     ground, body, now, progress = run.plan.ground, run.body, run.now, run.progress
     i = progress.piece
@@ -253,7 +251,7 @@ def _rest(last_step: int, run: SingleRun) -> int:
 
 
 @compiled
-def _swing(last_step: int, run: SingleRun) -> int:
+def _swing(last_step: int, run: SdofRun) -> int:
     """Steps of a body that moves, until something is to be settled."""
     body, ground, now, progress = run.body, run.plan.ground, run.now, run.progress
     i = progress.piece

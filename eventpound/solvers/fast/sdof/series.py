@@ -29,8 +29,8 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, only_root
 from eventpound.numerics.power_series import integer_power
 from eventpound.solvers.fast.compiled import compiled, compiled_noinline
+from eventpound.solvers.fast.sdof.body import ROOM, SdofBody, tangent
 from eventpound.solvers.fast.search import stays_above
-from eventpound.solvers.fast.single.body import ROOM, SingleBody, tangent
 from eventpound.tolerances import RETRIED, SAME_SAMPLE
 
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, ROOM)])
@@ -44,7 +44,7 @@ SAFETY = 0.95
 
 
 @compiled
-def linear_series(stiffness: float, most: int, body: SingleBody) -> tuple[int, bool]:
+def linear_series(stiffness: float, most: int, body: SdofBody) -> tuple[int, bool]:
     """Coefficients 3 ... p of a linear oscillator; p, and whether the step is good.
 
     x_1 and x_2 stand. p is even, at most `most`.
@@ -79,7 +79,7 @@ def linear_series(stiffness: float, most: int, body: SingleBody) -> tuple[int, b
 
 
 @compiled_noinline
-def curved_series(kappa: float, most: int, body: SingleBody) -> int:
+def curved_series(kappa: float, most: int, body: SdofBody) -> int:
     """The same on a curved part, where ``z' = ξ' (1 - κ P)``, ``P = |z|^n``; z is ``σ y``.
 
     P comes from ``n z' P = z P'``. Each term is written out, for k is a constant.
@@ -101,7 +101,7 @@ def curved_series(kappa: float, most: int, body: SingleBody) -> int:
 
 
 @compiled
-def _term(k: int, kappa: float, over: float, lift: float, most: int, body: SingleBody) -> int:
+def _term(k: int, kappa: float, over: float, lift: float, most: int, body: SdofBody) -> int:
     """P_k, z_{k+1} and x_{k+3}; the order if it is the last one, negative if not small, else 0.
 
     The newest factors come last in every sum, for they are waited for.
@@ -140,7 +140,7 @@ def _term(k: int, kappa: float, over: float, lift: float, most: int, body: Singl
 
 
 @compiled
-def shorter(order: int, body: SingleBody) -> float:
+def shorter(order: int, body: SdofBody) -> float:
     """Length at which the last two terms are within the tolerance (s), at most that of the step."""
     h = body.step
     power = h
@@ -157,7 +157,7 @@ def shorter(order: int, body: SingleBody) -> float:
 
 
 @compiled
-def swing(tau: float, body: SingleBody) -> tuple[float, float]:
+def swing(tau: float, body: SdofBody) -> tuple[float, float]:
     """Change of displacement (m) and velocity (m/s) after tau (s) of a body that swings freely."""
     k = tangent(body)
     omega = math.sqrt(k)
@@ -171,7 +171,7 @@ _ZERO, _SINUSOIDS, _SAMPLES = int(Family.ZERO), int(Family.SINUSOIDS), int(Famil
 
 
 @compiled_noinline
-def know_piece(i: int, piece: CurrentPiece, body: SingleBody) -> None:
+def know_piece(i: int, piece: CurrentPiece, body: SdofBody) -> None:
     """Fill g for a piece where it is the same throughout."""
     family, coefficients = piece.family, piece.coefficients
     body.piece_known = i + 1
@@ -192,7 +192,7 @@ def know_piece(i: int, piece: CurrentPiece, body: SingleBody) -> None:
 
 
 @compiled
-def pair_at(t: float, piece: CurrentPiece, body: SingleBody) -> tuple[float, float]:
+def pair_at(t: float, piece: CurrentPiece, body: SdofBody) -> tuple[float, float]:
     """Acceleration (m/s²) and its rate at t (s), a record's on the line after its `segment`."""
     coefficients, samples, segment = piece.coefficients, piece.samples, body.segment
     if piece.family == _SAMPLES:
@@ -235,7 +235,7 @@ def sample_after(t: float, piece_end: float, piece: CurrentPiece) -> tuple[float
 
 
 @compiled
-def first_turn(order: int, first: int, h: float, body: SingleBody, work: Floats) -> float:
+def first_turn(order: int, first: int, h: float, body: SdofBody, work: Floats) -> float:
     """Time in (0, h] at which the velocity changes its sign, or inf.
 
     x[first] is the lowest coefficient, from 1 on, that differs from zero.
@@ -255,7 +255,7 @@ def first_turn(order: int, first: int, h: float, body: SingleBody, work: Floats)
 
 @compiled_noinline
 def _located_turn(
-    sign: float, degree: int, first: int, h: float, body: SingleBody, work: Floats
+    sign: float, degree: int, first: int, h: float, body: SdofBody, work: Floats
 ) -> float:
     c, swing = body.work[:], 0.0
     for k in range(degree, -1, -1):
@@ -269,7 +269,7 @@ def _located_turn(
 
 @compiled
 def first_reached(
-    distance: float, sign: float, order: int, h: float, body: SingleBody, work: Floats
+    distance: float, sign: float, order: int, h: float, body: SdofBody, work: Floats
 ) -> float:
     """Time in (0, h] at which the motion has gone `distance` (m) in the direction `sign`, or inf.
 
@@ -297,7 +297,7 @@ def first_reached(
 
 
 @compiled
-def _put_distance(distance: float, sign: float, order: int, body: SingleBody) -> None:
+def _put_distance(distance: float, sign: float, order: int, body: SdofBody) -> None:
     """The distance (m) still to go in the direction `sign`, a polynomial, into `work`."""
     body.work[0] = distance
     for k in range(1, order + 1):
@@ -305,7 +305,7 @@ def _put_distance(distance: float, sign: float, order: int, body: SingleBody) ->
 
 
 @compiled_noinline
-def crossing(distance: float, sign: float, order: int, h: float, body: SingleBody) -> float:
+def crossing(distance: float, sign: float, order: int, h: float, body: SdofBody) -> float:
     """The same where the motion goes one way throughout, and further than that within h."""
     _put_distance(distance, sign, order, body)
     return min(only_root(body.work[:], order + 1, h), h)

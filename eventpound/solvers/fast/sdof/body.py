@@ -1,13 +1,13 @@
-"""A single body on springs and dashpots to the ground, seen as one oscillator.
+"""A body on springs and dashpots to the ground: an oscillator of one degree of freedom (SDOF).
 
 All its links together are ``u'' = p - K u - C v - q σ y - a_g`` with ``y = Φ(ξ)`` of the one
 hysteretic link, or none. That is seen along u: σ is the direction of u, and
 ``ξ = ξ_r + σ (u - u_r) / scale``. It changes from one part of the backbone to another by the
 rules of `eventpound.solvers.fast.links`.
 
-All numbers are in one record, a `SingleBody` (`FastSeries.single`): a function given one address,
-not a hundred numbers, costs next to nothing to call. `enter` fills it in from the general
-arrays, `leave` puts back what moves.
+All numbers are in one record, an `SdofBody` (`FastSeries.sdof`): a function given one address,
+not a hundred numbers, costs next to nothing to call. `load_body` fills it in from the general
+arrays, `store_body` puts back what moves.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from eventpound.solvers.fast.run import (
     Limits,
     Links,
     Oscillator,
-    Single,
+    Sdof,
 )
 from eventpound.tolerances import (
     ACCELERATION,
@@ -59,7 +59,7 @@ ROOM = 48
 """Coefficients there is room for in a series."""
 
 
-class SingleBody(NamedNumbers, room=ROOM):
+class SdofBody(NamedNumbers, room=ROOM):
     """All numbers of a single body: one address to hand on."""
 
     known: bool  # whether the rest is filled in
@@ -143,7 +143,7 @@ class SingleBody(NamedNumbers, room=ROOM):
     ground: Floats  # acceleration of the ground (m/s^(2+k)), or what `even` and `odd` multiply
     work: Floats  # polynomial in work
 
-    # Steps from sample to sample; see `eventpound.solvers.fast.single.exact`.
+    # Steps from sample to sample; see `eventpound.solvers.fast.sdof.exact`.
     on_line: Floats  # where the link is on a line, or there is none
     saturated: Floats  # where it is saturated
     line_pull: float  # absolute acceleration at u = v = 0, of the line that the body is on (m/s²)
@@ -154,13 +154,13 @@ class SingleBody(NamedNumbers, room=ROOM):
     stray: float  # of the absolute acceleration from a line between both ends, at most (m/s²)
 
 
-class SingleRun(NamedTuple):
+class SdofRun(NamedTuple):
     """A run of a single body, by address (`eventpound.numerics.by_address`): parts of a `FastRun`.
 
     now, progress: those of `FastState`. table: of its backbone.
     """
 
-    body: SingleBody
+    body: SdofBody
     now: Now
     progress: FastProgress
     events: Floats
@@ -168,17 +168,17 @@ class SingleRun(NamedTuple):
     running: Running
     table: Floats
     plan: FastPlan
-    scratch: Single
+    scratch: Sdof
 
 
 @compiled
-def place_of(u: float, body: SingleBody) -> float:
+def place_of(u: float, body: SdofBody) -> float:
     """ξ of the hysteretic link at the displacement u (m)."""
     return body.xi_r + body.sigma * (u - body.u_r) * body.per_scale
 
 
 @compiled
-def spring_state(u: float, run: SingleRun) -> float:
+def spring_state(u: float, run: SdofRun) -> float:
     """``σ y`` at the displacement u (m), reached without reversal; 0 without hysteresis."""
     body = run.body
     if not body.hysteretic:
@@ -187,33 +187,33 @@ def spring_state(u: float, run: SingleRun) -> float:
 
 
 @compiled
-def tangent(body: SingleBody) -> float:
+def tangent(body: SdofBody) -> float:
     """Tangent stiffness for each unit of mass (1/s²), where the link is on a line."""
     on_line = body.hysteretic and body.part <= UNLOADING
     return body.stiffness + (body.strength * body.per_scale if on_line else 0.0)
 
 
 @compiled
-def steepest(body: SingleBody) -> float:
+def steepest(body: SdofBody) -> float:
     """Largest tangent stiffness for each unit of mass (1/s²)."""
     return body.stiffness + body.strength * body.per_scale * (1.0 + max(0.0, -body.kappa_down))
 
 
 @compiled
-def gap_to(way: float, body: SingleBody) -> float:
+def gap_to(way: float, body: SdofBody) -> float:
     """Gap to the barrier in one direction (m)."""
     return body.right if way > 0.0 else body.left
 
 
 @compiled
-def set_tolerance(body: SingleBody) -> None:
+def set_tolerance(body: SdofBody) -> None:
     """Errors that the step from here may leave."""
     body.of_u = body.atol_u + body.rtol * abs(body.u)
     body.of_v = body.atol_v + body.rtol * abs(body.v)
 
 
 @compiled
-def observe_end(run: SingleRun) -> None:
+def observe_end(run: SdofRun) -> None:
     """What the forces are at the end of the step."""
     body, u = run.body, run.body.u + run.body.change
     body.next_z = spring_state(u, run)
@@ -221,13 +221,13 @@ def observe_end(run: SingleRun) -> None:
 
 
 @compiled
-def absolute_acceleration(u: float, v: float, z: float, body: SingleBody) -> float:
+def absolute_acceleration(u: float, v: float, z: float, body: SdofBody) -> float:
     """Acceleration that the links give the body (m/s²)."""
     return body.pull - body.stiffness * u - body.damping * v - body.strength * z
 
 
 @compiled_noinline
-def turn_round(u: float, run: SingleRun) -> None:
+def turn_round(u: float, run: SdofRun) -> None:
     """Put the link on the curve for the other direction at u (m); ``σ y`` stays."""
     body = run.body
     sigma = -body.sigma
@@ -238,7 +238,7 @@ def turn_round(u: float, run: SingleRun) -> None:
 
 
 @compiled_noinline
-def pass_border(u: float, body: SingleBody) -> None:
+def pass_border(u: float, body: SdofBody) -> None:
     """Move a link that has reached the border of its part to the next."""
     part = body.part
     if part == CORE and place_of(u, body) < 0.0:
@@ -251,14 +251,14 @@ def pass_border(u: float, body: SingleBody) -> None:
 
 
 @compiled
-def reset_body(body: SingleBody) -> None:
+def reset_body(body: SdofBody) -> None:
     """Leave nothing of the run before."""
     body.known, body.piece_known = False, 0
     body.on_line[0] = body.saturated[0] = 0.0
 
 
 @compiled
-def enter(plan: FastPlan, state: FastState, run: SingleRun) -> None:
+def load_body(plan: FastPlan, state: FastState, run: SdofRun) -> None:
     """Fill in the constants of a run and what moves, once: from then on it moves here."""
     body, o, contacts = run.body, plan.oscillator, plan.contacts
     set_constants(0, plan, body)
@@ -277,7 +277,7 @@ def enter(plan: FastPlan, state: FastState, run: SingleRun) -> None:
 
 
 @compiled
-def set_constants(b: int, plan: FastPlan, body: SingleBody) -> None:
+def set_constants(b: int, plan: FastPlan, body: SdofBody) -> None:
     """Constants of body b of a scene, without barriers."""
     links, m, h = plan.links, plan.mass[b], -1
     stiffness, damping, pull = 0.0, 0.0, 0.0
@@ -305,7 +305,7 @@ def set_constants(b: int, plan: FastPlan, body: SingleBody) -> None:
 
 
 @compiled
-def _set_backbone(h: int, plan: FastPlan, body: SingleBody) -> None:
+def _set_backbone(h: int, plan: FastPlan, body: SdofBody) -> None:
     """What of the hysteretic link h a body wants to know."""
     hysteresis = plan.hysteresis
     force = pull_per_z(hysteresis.link[h], plan.links.law.memory)
@@ -318,7 +318,7 @@ def _set_backbone(h: int, plan: FastPlan, body: SingleBody) -> None:
 
 
 @compiled
-def _set_limits(b: int, limits: Limits, body: SingleBody) -> None:
+def _set_limits(b: int, limits: Limits, body: SdofBody) -> None:
     """Tolerances of a step, and what is rounding."""
     body.atol_u, body.atol_v = LOCAL_SHARE * limits.atol_u[b], LOCAL_SHARE * limits.atol_v[b]
     body.rtol = LOCAL_SHARE * limits.rtol
@@ -330,7 +330,7 @@ def _set_limits(b: int, limits: Limits, body: SingleBody) -> None:
 
 
 @compiled
-def leave(o: Oscillator, body: SingleBody, state: FastState) -> None:
+def store_body(o: Oscillator, body: SdofBody, state: FastState) -> None:
     """What moves back to where everyone looks for it."""
     state.u[0], state.v[0] = body.u, body.v
     if o.right >= 0:
@@ -344,14 +344,14 @@ def leave(o: Oscillator, body: SingleBody, state: FastState) -> None:
 
 
 @compiled
-def leave_curve(h: int, body: SingleBody, state: FastState) -> None:
+def leave_curve(h: int, body: SdofBody, state: FastState) -> None:
     """On which curve the hysteretic link h of a body is, back to where everyone looks for it."""
     state.sigma[h], state.part[h] = body.side * body.sigma, body.part
     state.x_r[h], state.xi_r[h] = body.side * body.u_r, body.xi_r
 
 
 @compiled
-def side_closed(body: SingleBody) -> float:
+def side_closed(body: SdofBody) -> float:
     """1 for the barrier on the right, -1 for that on the left, 0 where both are open."""
     if body.right == 0.0:
         return 1.0
@@ -359,13 +359,13 @@ def side_closed(body: SingleBody) -> float:
 
 
 @compiled
-def acceleration_level(body: SingleBody) -> float:
+def acceleration_level(body: SdofBody) -> float:
     """Rounding of the relative acceleration (m/s²), as the acceleration problem has it."""
     return acceleration_noise(body.a, body.no_acceleration)
 
 
 @compiled
-def set_force(g: float, body: SingleBody) -> None:
+def set_force(g: float, body: SdofBody) -> None:
     """Contact forces (N) under the acceleration g of the ground (m/s²)."""
     side = body.rests_on
     body.right_force = body.mass * (body.a - g) if side > 0.0 else 0.0

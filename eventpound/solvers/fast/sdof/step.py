@@ -15,7 +15,7 @@ from eventpound.contact.event_rows import list_all
 from eventpound.contact.impacts import FULL
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
-from eventpound.solvers.fast.expansion import shortened
+from eventpound.solvers.fast.expansion import shortening
 from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.record import is_due, pass_time
@@ -29,10 +29,9 @@ from eventpound.solvers.fast.run import (
     PENETRATION,
     STUCK,
 )
-from eventpound.solvers.fast.search import motion
-from eventpound.solvers.fast.single.body import (
-    SingleBody,
-    SingleRun,
+from eventpound.solvers.fast.sdof.body import (
+    SdofBody,
+    SdofRun,
     acceleration_level,
     gap_to,
     observe_end,
@@ -43,14 +42,14 @@ from eventpound.solvers.fast.single.body import (
     tangent,
     turn_round,
 )
-from eventpound.solvers.fast.single.record import (
+from eventpound.solvers.fast.sdof.record import (
     damped_acceleration,
     force_exceeds,
-    sample_single,
+    sample_sdof,
     take_if_new,
     write_present,
 )
-from eventpound.solvers.fast.single.series import (
+from eventpound.solvers.fast.sdof.series import (
     crossing,
     curved_series,
     expand_ground,
@@ -61,6 +60,7 @@ from eventpound.solvers.fast.single.series import (
     pair_at,
     shorter,
 )
+from eventpound.solvers.fast.search import motion
 from eventpound.tolerances import GAP_COEFFICIENT, OF_BACKBONE
 
 FREE, TURNED, CROSSED, CLOSED_RIGHT, CLOSED_LEFT = 0, 1, 2, 3, 4
@@ -80,15 +80,15 @@ def closed_at(way: float) -> int:
 
 
 @compiled
-def expand_step(a_g: float, run: SingleRun) -> tuple[int, int, float]:
+def expand_step(a_g: float, run: SdofRun) -> tuple[int, int, float]:
     """Series of a step, in the direction in which the body moves.
 
     Parameters
     ----------
     a_g : float
         Acceleration of the ground (m/s²).
-    run : SingleRun
-        The run; the longest step is `SingleBody.step`, and a linear body may have `MORE_TERMS` more
+    run : SdofRun
+        The run; the longest step is `SdofBody.step`, and a linear body may have `MORE_TERMS` more
         than its order.
 
     Returns
@@ -119,7 +119,7 @@ def expand_step(a_g: float, run: SingleRun) -> tuple[int, int, float]:
 
 
 @compiled_noinline
-def _leading(order: int, level: float, body: SingleBody) -> int:
+def _leading(order: int, level: float, body: SdofBody) -> int:
     """First coefficient that differs from rounding, of a body that all but stands still.
 
     One that leaves a barrier from rest has those before made zero.
@@ -140,7 +140,7 @@ def _leading(order: int, level: float, body: SingleBody) -> int:
 
 
 @compiled
-def expected_length(a_g: float, body: SingleBody) -> float:
+def expected_step_size(a_g: float, body: SdofBody) -> float:
     """Time in which the body is sure to have turned or met a barrier, were its pull constant (s).
 
     A shorter step takes fewer terms. One whose link all but stands still does not end
@@ -157,10 +157,10 @@ def expected_length(a_g: float, body: SingleBody) -> float:
 
 
 @compiled
-def first_event(h: float, order: int, first: int, run: SingleRun) -> tuple[float, int, float]:
+def first_event(h: float, order: int, first: int, run: SdofRun) -> tuple[float, int, float]:
     """Length of a step of at most h (s), how it ends, and when the body turns (s), or inf.
 
-    The motion at its end stands in `SingleBody` then: `change`, `rate` and `bend`.
+    The motion at its end stands in `SdofBody` then: `change`, `rate` and `bend`.
     """
     body = run.body
     reach = h * (abs(body.v) + h * abs(body.x[2]))
@@ -178,7 +178,7 @@ def first_event(h: float, order: int, first: int, run: SingleRun) -> tuple[float
 
 
 @compiled
-def _of_one_way(h: float, order: int, first: int, run: SingleRun) -> tuple[float, int, float]:
+def _of_one_way(h: float, order: int, first: int, run: SdofRun) -> tuple[float, int, float]:
     """The same for a step that ends where the body turns; before, it goes one way."""
     body = run.body
     way = 1.0 if body.x[first] > 0.0 else -1.0
@@ -208,7 +208,7 @@ def _of_one_way(h: float, order: int, first: int, run: SingleRun) -> tuple[float
 
 @compiled_deferred
 def _of_standing(
-    h: float, reach: float, order: int, first: int, run: SingleRun
+    h: float, reach: float, order: int, first: int, run: SdofRun
 ) -> tuple[float, int, float]:
     """The same for a body that may turn within the step.
 
@@ -227,7 +227,7 @@ def _of_standing(
 
 
 @compiled
-def _first_unordered(h: float, reach: float, order: int, run: SingleRun) -> tuple[float, int]:
+def _first_unordered(h: float, reach: float, order: int, run: SdofRun) -> tuple[float, int]:
     """First closing or border within h (s), and `reach` (m), of a body that may turn."""
     body, work = run.body, run.scratch.work
     tau, event = h, FREE
@@ -255,19 +255,19 @@ def _first_unordered(h: float, reach: float, order: int, run: SingleRun) -> tupl
 
 @compiled
 def propose(
-    wanted: float, stop: float, piece: CurrentPiece, run: SingleRun
+    wanted: float, stop: float, piece: CurrentPiece, run: SdofRun
 ) -> tuple[int, float, float, int, bool]:
     """A step of at most `wanted` (s), to `stop` (s) at most, that holds at its end.
 
     Returned are the order of its series, 0 where no step holds, its length (s), its end (s), how
-    it ends, and whether the body turns there. The motion at its end stands in `SingleBody`.
+    it ends, and whether the body turns there. The motion at its end stands in `SdofBody`.
     """
     body, t = run.body, run.now.t
     a_g = body.even
     if not body.pair:
         a_g = expand_ground(t, run.plan.limits.order + MORE_TERMS, piece, body.ground[:])
         body.even = body.odd = 1.0
-    body.step = min(wanted, expected_length(a_g, body))
+    body.step = min(wanted, expected_step_size(a_g, body))
     set_tolerance(body)
     order, first, h = expand_step(a_g, run)
     run.progress.expansions += 1
@@ -276,7 +276,7 @@ def propose(
         t_end = stop if tau == stop - t else t + tau
         observe_ground(t_end, piece, body)
         observe_end(run)
-        if fits(tau, order, body):
+        if equations_hold(tau, order, body):
             break
         if halving == MOST_HALVINGS - 1:
             order = 0
@@ -288,7 +288,7 @@ def propose(
 
 
 @compiled
-def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SingleRun) -> int:
+def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SdofRun) -> int:
     """One step of at most `wanted` (s); GOING_ON, or why not."""
     body, t = run.body, run.now.t
     order, tau, t_end, event, turned = propose(wanted, stop, piece, run)
@@ -297,13 +297,13 @@ def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SingleRun) -
     if body.damping > 0.0:
         damped_acceleration(t, tau, order, run)
     due = is_due(t_end, run.plan.output_times, run.progress)
-    if due and not sample_single(t, t_end, order, piece, run):
+    if due and not sample_sdof(t, t_end, order, piece, run):
         return FULL
     return arrive(tau, t_end, turned, event, run)
 
 
 @compiled
-def arrive(tau: float, t_end: float, turned: bool, event: int, run: SingleRun) -> int:
+def arrive(tau: float, t_end: float, turned: bool, event: int, run: SdofRun) -> int:
     """Make the end of a step of length tau (s) the present state, and do what ends it there."""
     body = run.body
     if turned:
@@ -313,14 +313,14 @@ def arrive(tau: float, t_end: float, turned: bool, event: int, run: SingleRun) -
     _move(body)
     code = audit(run.progress.stalled, body)
     if code == GOING_ON and event != FREE:
-        _happen(event, t_end, run)
+        _do_event(event, t_end, run)
     elif is_over(run.now, run.plan.limits.time):
         list_all(run.now, run.events)
     return code
 
 
 @compiled
-def fits(tau: float, order: int, body: SingleBody) -> bool:
+def equations_hold(tau: float, order: int, body: SdofBody) -> bool:
     """Whether the equations of motion hold at the end of a step, of length tau (s).
 
     A defect that grows like τ^(p-1) leaves τ/p of itself in v and τ²/p² in u.
@@ -330,15 +330,15 @@ def fits(tau: float, order: int, body: SingleBody) -> bool:
 
 
 @compiled_noinline
-def _shortened(tau: float, order: int, body: SingleBody) -> float:
+def _shortened(tau: float, order: int, body: SdofBody) -> float:
     """Factor by which a step is to be shortened that does not fit."""
     defect = abs(body.next_a - body.next_g - body.bend) * tau
     error = max(defect / (body.of_v * order), defect * tau / (body.of_u * order))
-    return shortened(error, order)
+    return shortening(error, order)
 
 
 @compiled
-def audit(stalled: int, body: SingleBody) -> int:
+def audit(stalled: int, body: SdofBody) -> int:
     """Invariants after every step: finite numbers, no penetration, progress."""
     if not (abs(body.u) < np.inf and abs(body.v) < np.inf):
         return NOT_FINITE
@@ -348,7 +348,7 @@ def audit(stalled: int, body: SingleBody) -> int:
 
 
 @compiled
-def observe_ground(t: float, piece: CurrentPiece, body: SingleBody) -> None:
+def observe_ground(t: float, piece: CurrentPiece, body: SdofBody) -> None:
     """What the ground is at the end of a step, at t (s)."""
     if body.pair:
         body.next_g, body.next_odd = pair_at(t, piece, body)
@@ -357,7 +357,7 @@ def observe_ground(t: float, piece: CurrentPiece, body: SingleBody) -> None:
 
 
 @compiled
-def _move(body: SingleBody) -> None:
+def _move(body: SdofBody) -> None:
     """Make the end of the step the present state.
 
     A gap that is small is a variable of its own.
@@ -373,7 +373,7 @@ def _move(body: SingleBody) -> None:
 
 
 @compiled
-def _happen(event: int, t: float, run: SingleRun) -> None:
+def _do_event(event: int, t: float, run: SdofRun) -> None:
     """Do what ended the step; an impact is settled next."""
     body = run.body
     if event == TURNED:

@@ -20,20 +20,20 @@ from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.extremes import stays_within, take_turn, turning_times
 from eventpound.solvers.fast.record import is_due, takes_rows
-from eventpound.solvers.fast.search import motion
-from eventpound.solvers.fast.single.body import (
-    SingleBody,
-    SingleRun,
+from eventpound.solvers.fast.sdof.body import (
+    SdofBody,
+    SdofRun,
     absolute_acceleration,
     set_force,
     spring_state,
 )
-from eventpound.solvers.fast.single.series import swing
+from eventpound.solvers.fast.sdof.series import swing
+from eventpound.solvers.fast.search import motion
 
 
 @compiled_noinline
-def write_single_row(
-    t: float, g: float, change: float, v: float, a: float, z: float, run: SingleRun
+def write_sdof_row(
+    t: float, g: float, change: float, v: float, a: float, z: float, run: SdofRun
 ) -> None:
     """Add a line to the history: what `eventpound.solvers.fast.record.write_row` writes.
 
@@ -45,7 +45,7 @@ def write_single_row(
         Displacement beyond the present one (m), velocity, absolute acceleration.
     z : float
         ``σ y``.
-    run : SingleRun
+    run : SdofRun
         The run, with the present gaps and contact forces.
     """
     body, springs = run.body, run.plan.links.springs
@@ -70,15 +70,15 @@ def write_single_row(
 
 
 @compiled
-def write_present(t: float, g: float, run: SingleRun) -> None:
+def write_present(t: float, g: float, run: SdofRun) -> None:
     """Add the present state to the history."""
     body = run.body
     if takes_rows(run.rows):
-        write_single_row(t, g, 0.0, body.v, g if body.rests_on != 0.0 else body.a, body.z, run)
+        write_sdof_row(t, g, 0.0, body.v, g if body.rests_on != 0.0 else body.a, body.z, run)
 
 
 @compiled_noinline
-def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: SingleRun) -> bool:
+def sample_sdof(t: float, t_end: float, order: int, piece: CurrentPiece, run: SdofRun) -> bool:
     """History at the output times of a step; False where the record has no room.
 
     `order` is that of the step's series, 0 for a free swing and a rest.
@@ -92,13 +92,13 @@ def sample_single(t: float, t_end: float, order: int, piece: CurrentPiece, run: 
             g = ground_acceleration(piece, now)
             if body.rests_on != 0.0:
                 set_force(g, body)
-                write_single_row(now, g, 0.0, 0.0, g, body.z, run)
+                write_sdof_row(now, g, 0.0, 0.0, g, body.z, run)
             else:
                 change, v = motion(now - t, order, x)[:2] if order > 0 else swing(now - t, body)
                 u = body.u + change
                 z = spring_state(u, run)
                 a = absolute_acceleration(u, v, z, body)
-                write_single_row(now, g, change, v, a, z, run)
+                write_sdof_row(now, g, change, v, a, z, run)
         progress.output += 1
     return True
 
@@ -115,14 +115,14 @@ def force_exceeds(low: float, high: float, mass: float, running: Running) -> boo
 
 
 @compiled
-def _take_forces(t: float, a: float, shear: float, run: SingleRun) -> None:
+def _take_forces(t: float, a: float, shear: float, run: SdofRun) -> None:
     """Take an acceleration (m/s²) and a base shear (N) into the extremes."""
     update_extreme(run.running.at.acceleration, a, t, run.running)
     update_extreme(run.running.at.base_shear, shear, t, run.running)
 
 
 @compiled_noinline
-def _take_turn(t: float, u: float, a: float, run: SingleRun) -> None:
+def _take_turn(t: float, u: float, a: float, run: SdofRun) -> None:
     """Take a turning point, or the end of a stretch, at t (s) into the extremes."""
     running, near = run.running, run.body.flat_time
     take_turn(running.at.displacement, u, t, near, run.plan, running)
@@ -130,7 +130,7 @@ def _take_turn(t: float, u: float, a: float, run: SingleRun) -> None:
 
 
 @compiled
-def take_if_new(t: float, u: float, a: float, run: SingleRun) -> None:
+def take_if_new(t: float, u: float, a: float, run: SdofRun) -> None:
     """The same where it is beyond, or just at, the extremes so far."""
     running = run.running
     i = running.at.displacement
@@ -141,7 +141,7 @@ def take_if_new(t: float, u: float, a: float, run: SingleRun) -> None:
 
 
 @compiled_noinline
-def take_settled(t: float, a: float, run: SingleRun) -> None:
+def take_settled(t: float, a: float, run: SdofRun) -> None:
     """Take a settled instant: places just put on their constraints, and what jumps in it.
 
     `a` is the absolute acceleration (m/s²): that of the ground where the body rests.
@@ -159,7 +159,7 @@ def take_settled(t: float, a: float, run: SingleRun) -> None:
 
 
 @compiled
-def take_contact_forces(t: float, run: SingleRun) -> None:
+def take_contact_forces(t: float, run: SdofRun) -> None:
     """Take the present contact forces into the extremes."""
     i, o = run.running.at.contact_force, run.plan.oscillator
     if o.right >= 0:
@@ -169,14 +169,14 @@ def take_contact_forces(t: float, run: SingleRun) -> None:
 
 
 @compiled
-def acceleration_coefficient(k: int, body: SingleBody) -> float:
+def acceleration_coefficient(k: int, body: SdofBody) -> float:
     """Coefficient k of the absolute acceleration in a step (m/s^(2+k))."""
     ground = body.ground[k] * (body.odd if k & 1 else body.even)
     return (k + 1) * (k + 2) * body.x[k + 2] + ground
 
 
 @compiled
-def damped_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None:
+def damped_acceleration(t: float, tau: float, order: int, run: SdofRun) -> None:
     """Turning points of acceleration and base shear within a step, and their values at its end."""
     body, d, spread = run.body, run.scratch.rate, 0.0
     for k in range(order - 2, 0, -1):
@@ -188,7 +188,7 @@ def damped_acceleration(t: float, tau: float, order: int, run: SingleRun) -> Non
 
 
 @compiled_deferred
-def _take_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None:
+def _take_acceleration(t: float, tau: float, order: int, run: SdofRun) -> None:
     body, running, at = run.body, run.running, run.running.at
     found = turning_times(run.scratch.rate, order - 2, tau, run.scratch.turns, run.scratch.work)
     for m in range(found + 1):

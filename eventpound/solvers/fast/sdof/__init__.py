@@ -1,0 +1,1 @@
+"""SDOF: a single body, whose kernel is one loop over its numbers; the door is `oscillator`."""

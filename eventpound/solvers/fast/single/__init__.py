@@ -1,1 +1,0 @@
-"""A single body, whose kernel is one loop over its numbers; the door is `oscillator`."""
