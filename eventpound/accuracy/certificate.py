@@ -160,9 +160,9 @@ class Certificate:
     warnings: tuple[str, ...]
 
     def __repr__(self) -> str:
-        held = [q.digits for q in self.quantities if q.certified]
-        worst = f", the worst to {min(held):g} digits" if held else ""
-        return f"<Certificate: {len(held)} of {len(self.quantities)} numbers hold{worst}>"
+        digits = [q.digits for q in self.quantities if q.certified]
+        worst = f", the worst to {min(digits):g} digits" if digits else ""
+        return f"<Certificate: {len(digits)} of {len(self.quantities)} numbers hold{worst}>"
 
     @property
     def refused(self) -> tuple[CertifiedQuantity, ...]:

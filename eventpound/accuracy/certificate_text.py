@@ -42,24 +42,24 @@ def certificate_text(certificate: Certificate) -> str:
 
 def sentence(certificate: Certificate) -> str:
     """What a certificate comes to, in a sentence."""
-    held = [q.digits for q in certificate.quantities if q.certified]
-    return digits_words(held, len(certificate.quantities))
+    digits = [q.digits for q in certificate.quantities if q.certified]
+    return digits_words(digits, len(certificate.quantities))
 
 
-def digits_words(held: Sequence[float], of: int) -> str:
+def digits_words(digits: Sequence[float], of: int) -> str:
     """How many numbers are certified, from the digits of those that are, and to how many digits."""
-    if not held:
+    if not digits:
         return "no number is certified"
-    count = f"all {of}" if len(held) == of else f"{len(held)} of {of}"
-    return f"{count} numbers hold to {math.floor(10.0 * min(held)) / 10.0:g} digits or more"
+    count = f"all {of}" if len(digits) == of else f"{len(digits)} of {of}"
+    return f"{count} numbers hold to {math.floor(10.0 * min(digits)) / 10.0:g} digits or more"
 
 
 def _head(c: Certificate) -> Iterator[str]:
     yield f"case        {c.case}"
     yield f"certificate {'given' if c.certified else 'REFUSED'}"
     if c.reference:
-        held = len(c.quantities) - len(c.refused)
-        yield f"values      of {c.reference}; {held} of {len(c.quantities)} certified"
+        count = len(c.quantities) - len(c.refused)
+        yield f"values      of {c.reference}; {count} of {len(c.quantities)} certified"
     for route in c.solver_routes:
         tight, loose = route.tolerances
         ended = f"failed: {route.message}" if route.message else route.formulation + _shares(route)

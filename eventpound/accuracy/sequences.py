@@ -60,7 +60,7 @@ class _Contact:
     recent: list[int] = field(default_factory=list)
     opened: int | None = None
     loudest: float = math.inf
-    held: float = math.inf
+    before: float = math.inf
 
 
 def speeds_of_events(events: Sequence[Event], brief: float) -> Floats:
@@ -85,18 +85,18 @@ def speeds_of_events(events: Sequence[Event], brief: float) -> Floats:
             speeds[row], at.loudest = 0.0, max(at.loudest, 0.0)
         elif event.kind is EventKind.REST:
             short = at.opened is not None and event.t - events[at.opened].t <= brief
-            silent = 0.0 if short else at.held
+            silent = 0.0 if short else at.before
             speeds[row] = at.loudest if at.loudest >= 0.0 else silent
             if _dies_away([events[i] for i in at.recent]):
                 speeds[row] = 0.0
             if short and at.opened is not None:
                 speeds[at.opened] = min(speeds[row], speeds[at.opened])
             else:
-                at.held = speeds[row]
+                at.before = speeds[row]
             if at.recent and events[at.recent[-1]].kind is EventKind.ACCUMULATION:
                 speeds[at.recent[-1]] = speeds[row]
         elif event.kind in ENDS_OF_REST:
-            speeds[row], at.opened, at.loudest = at.held, row, -math.inf
+            speeds[row], at.opened, at.loudest = at.before, row, -math.inf
         at.recent = [*at.recent[-2:], row]
     return speeds
 

@@ -282,11 +282,11 @@ def _read_scene(
     in_suite = excitation is not None and excitation.suite is not None
     given = tables["support"], tables["force"]
     driven = read_driven(*given, masses, directory, in_suite=in_suite)
-    held = [support.name for support in driven.supports]
-    springs = read_springs(tables["spring"], masses, held)
-    dashpots = [read_dashpot(table, masses, springs, held) for table in tables["dashpot"]]
+    supports = [support.name for support in driven.supports]
+    springs = read_springs(tables["spring"], masses, supports)
+    dashpots = [read_dashpot(table, masses, springs, supports) for table in tables["dashpot"]]
     groups = tables["rayleigh"], tables["modal_damping"]
-    of_groups, warnings = read_damping(*groups, bodies, springs, held)
+    of_groups, warnings = read_damping(*groups, bodies, springs, supports)
     scene = Scene(
         tuple(bodies),
         springs,
@@ -304,7 +304,7 @@ def _read_scene(
         _add_scene_problems(scene, tables, problems, start)
     warnings += scene_warnings(scene) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
-    carried = {} if problems else masses_carried(tables["spring"], springs, masses, held)
+    carried = {} if problems else masses_carried(tables["spring"], springs, masses, supports)
     return scene, warnings, carried, driven, sources
 
 

@@ -290,9 +290,9 @@ def _listed(row: ListedRecord, directory: Path, common: RecordOptions) -> Member
 
 def _unique_names(members: Sequence[Member]) -> list[Member]:
     """The same members; those of one name get a number."""
-    seen: dict[str, int] = {}
+    counts: dict[str, int] = {}
     named = []
     for member in members:
-        count = seen[member.name] = seen.get(member.name, 0) + 1
+        count = counts[member.name] = counts.get(member.name, 0) + 1
         named.append(member if count == 1 else replace(member, name=f"{member.name} ({count})"))
     return named

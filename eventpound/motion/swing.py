@@ -87,8 +87,8 @@ def _series(place: float, rate: float, wh: float, ratio: float, f: Floats, q: Fl
     q[0], q[1] = place, rate
     for k in range(q.size - 2):
         pushed = f[k] if k < f.size else 0.0
-        held = 2.0 * ratio * wh * (k + 1) * q[k + 1] + wh * wh * q[k]
-        q[k + 2] = -(held + pushed) / ((k + 1) * (k + 2))
+        restoring = 2.0 * ratio * wh * (k + 1) * q[k + 1] + wh * wh * q[k]
+        q[k + 2] = -(restoring + pushed) / ((k + 1) * (k + 2))
 
 
 @scalar_kernel

@@ -117,19 +117,19 @@ def _tell() -> None:
 
 def _functions_below(function: Callable[..., Any]) -> int:
     """How many compiled functions a function calls, directly or not, itself among them."""
-    seen: set[CodeType] = set()
+    visited: set[CodeType] = set()
     waiting: list[Any] = [function]
     while waiting:
         each = waiting.pop()
         code = each.__code__
-        if code in seen:
+        if code in visited:
             continue
-        seen.add(code)
+        visited.add(code)
         for name in code.co_names:
             called = each.__globals__.get(name)
             if hasattr(called, "py_func"):
                 waiting.append(called.py_func)
-    return len(seen)
+    return len(visited)
 
 
 @dataclass

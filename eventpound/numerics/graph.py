@@ -71,17 +71,17 @@ def on_directed_cycles(tail: Ints, head: Ints, nodes: int) -> Bools:
     first, leaving = grouped(tail, nodes)
     queue = np.empty(nodes, np.int64)
     for edge in range(tail.size):
-        seen = np.zeros(nodes, np.bool_)
-        seen[head[edge]] = True
+        reached = np.zeros(nodes, np.bool_)
+        reached[head[edge]] = True
         queue[0] = head[edge]
         length, k = 1, 0
-        while k < length and not seen[tail[edge]]:
+        while k < length and not reached[tail[edge]]:
             for i in range(first[queue[k]], first[queue[k] + 1]):
                 other = head[leaving[i]]
-                if not seen[other]:
-                    seen[other] = True
+                if not reached[other]:
+                    reached[other] = True
                     queue[length] = other
                     length += 1
             k += 1
-        result[edge] = seen[tail[edge]]
+        result[edge] = reached[tail[edge]]
     return result

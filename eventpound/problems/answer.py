@@ -64,9 +64,9 @@ def answer_of(
     case = problem.case()
     moments = moments_of(case.run)
     certificate = verify(case, moments=moments, patience=patience, report=report)
-    held = [q for q in certificate.quantities if q.bound is not None]
+    bounded = [q for q in certificate.quantities if q.bound is not None]
     known = {q.quantity: q for q in certificate.quantities}
-    states = [q for q in held if not q.quantity.startswith("events.")]
+    states = [q for q in bounded if not q.quantity.startswith("events.")]
     events = _events(certificate, known)
     model = assemble(case.scene)
     answer: dict[str, object] = {

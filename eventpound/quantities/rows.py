@@ -63,14 +63,14 @@ def rows_at(task: Task, rerun: Rerun, t: Floats, side: str) -> tuple[Recording, 
         within = f"times of the run, {task.start:.6g} to {task.end:.6g} s"
         raise InputError(f"t: found {found}; accepted: {within}")
     after = side == SIDES[0]
-    seen = t if after else np.maximum(np.nextafter(t, -np.inf), task.start)
-    run = rerun(replace(task, output_times=np.unique(np.concatenate([seen, t]))))
+    shown = t if after else np.maximum(np.nextafter(t, -np.inf), task.start)
+    run = rerun(replace(task, output_times=np.unique(np.concatenate([shown, t]))))
     first, end = (np.searchsorted(run.history.t, t, way) for way in ("left", "right"))
     inside = (end - first == 1) & np.isin(t, [event.t for event in run.events]) & (t > task.start)
     if not after and inside.any():
         at = f"'before' at {t[inside][0]:.6g} s, an event inside a step of the solver"
         raise InputError(f"side: found {at}; accepted: 'after'")
-    return run, np.searchsorted(run.history.t, seen, "right" if after else "left") - int(after)
+    return run, np.searchsorted(run.history.t, shown, "right" if after else "left") - int(after)
 
 
 def settled(

@@ -96,7 +96,7 @@ def spring_events(
 def _events_of(i: int, law: LawName, scene: Scene, run: Recording) -> list[SpringEvent]:
     """Those of spring i."""
     h, name = run.history, scene.springs[i].name
-    first, last = _stretches(run)
+    first, last = _segments(run)
     x, rate = motion_of_spring(scene, run, i)
     z = h.z[:, scene.hysteretic_springs.index(name)]
     still = OF_ROWS * np.abs(h.v).max(initial=0.0)
@@ -115,7 +115,7 @@ def _events_of(i: int, law: LawName, scene: Scene, run: Recording) -> list[Sprin
     return found
 
 
-def _stretches(run: Recording) -> tuple[Ints, Ints]:
+def _segments(run: Recording) -> tuple[Ints, Ints]:
     """First and last rows of the history between two events.
 
     The end of a run that reached it is one, too: what begins there is told.
@@ -136,7 +136,7 @@ def _slips(i: int, first: Ints, z: Floats, run: Recording) -> list[int]:
     latest = np.searchsorted([stick.t for stick in own], run.history.t[first], "right") - 1
     sticks = [place >= 0 and own[place].begins for place in latest.tolist()]
     signs = np.sign(z[first]).astype(int).tolist()
-    return [0 if held else sign for held, sign in zip(sticks, signs, strict=True)]
+    return [0 if stuck else sign for stuck, sign in zip(sticks, signs, strict=True)]
 
 
 def _sides(first: Ints, last: Ints, z: Floats, rate: Floats, still: float) -> list[int]:

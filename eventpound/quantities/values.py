@@ -289,8 +289,8 @@ def stands_apart(scene: Scene, i: int) -> bool:
     groups = structures_of(scene)
     joints = [spring.between for spring in scene.springs]
     joints += [dashpot.between for dashpot in scene.dashpots]
-    held = any(GROUND in ends and set(ends) & set(groups[i]) for ends in joints)
-    return held and len(groups) > 1
+    grounded = any(GROUND in ends and set(ends) & set(groups[i]) for ends in joints)
+    return grounded and len(groups) > 1
 
 
 def _of_each(tell: Callable[[Recording, int], float]) -> Value:

@@ -170,7 +170,7 @@ def only_one(directory: str | os.PathLike[str], name: str) -> Iterator[None]:
     path = folder / name
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        held = _locked(path)
+        lock = _locked(path)
     except BlockingIOError:
         raise InputError(
             f"{folder}: another program is at work on it; wait for it to end, "
@@ -182,27 +182,27 @@ def only_one(directory: str | os.PathLike[str], name: str) -> Iterator[None]:
         yield
     finally:
         _remove(path)
-        os.close(held)
+        os.close(lock)
 
 
 def _locked(path: Path) -> int:
     """The descriptor of a file that is locked, made where it is missing."""
     while True:
-        held = os.open(path, os.O_RDWR | os.O_CREAT)
+        lock = os.open(path, os.O_RDWR | os.O_CREAT)
         try:
             import fcntl
 
-            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            os.close(held)
+            os.close(lock)
             raise
         except (ImportError, OSError):
-            return held
+            return lock
         # Whoever held it may have removed the file since it was opened here.
         with suppress(FileNotFoundError):
-            if os.path.samestat(os.fstat(held), path.stat()):
-                return held
-        os.close(held)
+            if os.path.samestat(os.fstat(lock), path.stat()):
+                return lock
+        os.close(lock)
 
 
 @contextmanager

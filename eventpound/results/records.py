@@ -46,12 +46,12 @@ def records_csv(
     rows: list[dict[str, object]] = [{**record.row(), _PROBLEM: ""} for record in records]
     rows += [{"file": file, _PROBLEM: problem} for file, problem in unread.items()]
     for row in rows:
-        row["file"] = _seen_from(folder, str(row["file"]))
+        row["file"] = _relative_to(folder, str(row["file"]))
     names = list(rows[0]) if records else ["file", _PROBLEM]
     return rows_csv([names, *([row.get(name, "") for name in names] for row in rows)])
 
 
-def _seen_from(folder: Path, file: str) -> str:
+def _relative_to(folder: Path, file: str) -> str:
     if Path(file).is_absolute():
         return file
     return Path(os.path.relpath(file, folder)).as_posix()

@@ -140,18 +140,18 @@ WITHIN_BOUND = ("exponent", "beta", "gamma", "initial_z")
 
 
 def _name_problems(elements: Iterable[_Element]) -> Iterator[Problem]:
-    seen: dict[str, int] = {}
+    positions: dict[str, int] = {}
     for element in elements:
         name = element.name
         if not name or not name.isprintable() or not _SEPARATORS.isdisjoint(name):
             yield element.problem("name", name, "some text without comma, semicolon or quote")
         elif name in (GROUND, BARRIER):
             yield element.problem("name", name, f"any name but {GROUND!r} and {BARRIER!r}")
-        elif name in seen:
+        elif name in positions:
             yield element.problem(
-                "name", name, f"a name of its own ({element.kind} {seen[name]} has this one)"
+                "name", name, f"a name of its own ({element.kind} {positions[name]} has this one)"
             )
-        seen.setdefault(name, element.position)
+        positions.setdefault(name, element.position)
 
 
 def _body_problems(scene: Scene) -> Iterator[Problem]:

@@ -98,10 +98,10 @@ def modal_dashpots(
     InputError
         Where springs do not join the group, or it is too large.
     """
-    names, held = [body.name for body in bodies], {GROUND, base, *supports}
+    names, fixed = [body.name for body in bodies], {GROUND, base, *supports}
     own = [
-        replace(spring, between=ends_on_ground(spring.between, held))
-        for spring in springs_on(names, springs, held)
+        replace(spring, between=ends_on_ground(spring.between, fixed))
+        for spring in springs_on(names, springs, fixed)
         if initial_stiffness(spring.law) is not None
     ]
     if len(names) > MOST_BODIES or len(joined_groups(names, [s.between for s in own])) != 1:
@@ -119,10 +119,10 @@ def modal_dashpots(
 
 
 def springs_on(
-    names: Collection[str], springs: Iterable[Spring], held: Collection[str]
+    names: Collection[str], springs: Iterable[Spring], fixed: Collection[str]
 ) -> list[Spring]:
     """Springs inside a group and to what it stands on."""
-    group, all_ends = set(names), {*names, *held}
+    group, all_ends = set(names), {*names, *fixed}
     return [s for s in springs if group.intersection(s.between) and all_ends.issuperset(s.between)]
 
 

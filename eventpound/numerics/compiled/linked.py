@@ -232,13 +232,13 @@ def _callers_first(library: Any) -> list[Any]:
 
     LLVM links what may be dropped only where something linked before asks for it.
     """
-    seen: set[int] = set()
+    visited: set[int] = set()
     found: list[Any] = []
 
     def visit(caller: Any) -> None:
         for each in caller._linking_libraries:
-            if id(each) not in seen:
-                seen.add(id(each))
+            if id(each) not in visited:
+                visited.add(id(each))
                 if isinstance(each, PartLibrary) and not isinstance(each, SealedLibrary):
                     visit(each)
                 found.append(each)
