@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -88,8 +88,7 @@ def _peak(extremes: Extremes, i: int) -> Floats:
 
 def z_of(many: Runs, i: int) -> Floats:
     """Hysteretic variable of a spring at the end."""
-    name = many.scene.springs[i].name
-    return many.z[:, many.scene.hysteretic_springs.index(name)]
+    return many.z[:, many.scene.hysteretic_springs.index(many.scene.springs[i].name)]
 
 
 def by_law(name: str) -> Value:
@@ -125,16 +124,18 @@ def _law_of(many: Runs, i: int, n: int) -> Any:
 
 
 def passive_depth(many: Runs, i: int) -> Floats:
-    """How far the soil of a backfill was pushed in (m)."""
-    laws = (_law_of(many, i, n) for n in range(len(many.t)))
-    return np.maximum([law.offset for law in laws] - many.elongation.minimum[:, i], 0.0)
+    """How far the soil of a backfill was pushed in (m), nothing where it was not touched."""
+    return np.array([law.offset - x if law.z_at(x) < 0.0 else 0.0 for law, x in _soils(many, i)])
 
 
 def passive_force(many: Runs, i: int) -> Floats:
     """Largest force of the soil of a backfill (N), that at its least elongation."""
-    least = many.elongation.minimum[:, i].tolist()
-    laws = ((_law_of(many, i, n), x) for n, x in enumerate(least))
-    return np.array([max(-law.strength * law.z_at(x), 0.0) for law, x in laws])
+    return np.array([max(0.0, -law.strength * law.z_at(x)) for law, x in _soils(many, i)])
+
+
+def _soils(many: Runs, i: int) -> Iterator[tuple[Any, float]]:
+    """The law of spring i and its least elongation (m), of each run."""
+    return ((_law_of(many, i, n), x) for n, x in enumerate(many.elongation.minimum[:, i].tolist()))
 
 
 def slip_path(many: Runs, i: int) -> Floats:
@@ -160,14 +161,12 @@ def motion_of_spring(scene: Scene, run: Recording, i: int) -> Floats:
 
 def friction_work(many: Runs, i: int) -> Floats:
     """Work of the friction of a slider (J)."""
-    force = [_law_of(many, i, n).strength for n in range(len(many.recordings))]
-    return np.asarray(force) * slip_path(many, i)
+    return slip_path(many, i) * [_law_of(many, i, n).strength for n in range(len(many.recordings))]
 
 
 def peak_term(many: Runs, i: int) -> Floats:
     """Largest displacement of a body over the length scale of the motion."""
-    scales = many.scales
-    length = np.nan if scales is None else scales.length
+    length = np.nan if many.scales is None else many.scales.length
     return _peak(many.displacement, i) / length
 
 

@@ -119,6 +119,22 @@ def test_each_of_many_runs_has_the_push_on_its_own_soil() -> None:
         assert found.iloc[1] == pytest.approx(-history["u.deck"].min() - gap, rel=1e-6)
 
 
+def test_soil_that_a_wider_gap_keeps_from_the_deck_is_not_pushed() -> None:
+    scene = Scene(
+        [Body("deck", 1e5, velocity=-0.1)],
+        [
+            Spring("pier", (GROUND, "deck"), Linear(1e7)),
+            Spring("soil", (GROUND, "deck"), Backfill(2e7, 4e5, 0.7, 0.005, initial_gap=0.02)),
+        ],
+        motion=NoMotion(),
+    )
+    response = simulate(scene, duration=1.0)
+    # It swings by v sqrt(m/k) to either side, beyond the gap as built.
+    assert response.peaks["min"]["deck"] == pytest.approx(-0.01, rel=1e-6)
+    names = ("passive_force", "passive_depth")
+    assert [response.quantity(f"springs.soil.{name}") for name in names] == [0.0, 0.0]
+
+
 def test_soil_under_a_slow_push_goes_along_its_loop_by_hand() -> None:
     # K0 = F_ult = R_f = 1: F = y/(1 + y), 1/2 at y = 1, with a residual gap of 1/2.
     law = Backfill(1.0, 1.0, 1.0)

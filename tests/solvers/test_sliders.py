@@ -16,6 +16,7 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.constant import Constant
 from eventpound.response import Response
 from eventpound.scene import (
+    BARRIER,
     GROUND,
     Body,
     Contact,
@@ -211,6 +212,19 @@ def broken_stick() -> Scene:
     )
     contacts = (Contact("face", "ball", "struck", 0.0, 1.0),)
     return Scene(bodies, springs, contacts=contacts, motion=NoMotion())
+
+
+@pytest.mark.parametrize("restitution", [(), (0.5,)])
+@pytest.mark.parametrize(("solver", "events"), SOLVERS)
+def test_friction_pulls_against_the_slip_from_the_first_row_on(
+    solver: str, events: str, restitution: tuple[float, ...]
+) -> None:
+    # Thrown to the left, alone or against a wall that it touches, which turns it round.
+    deck, bearing = on_ground(Slider(0.1, 1000.0 * g), velocity=-0.5)
+    walls = [Contact("wall", BARRIER, "deck", 0.0, e) for e in restitution]
+    scene = Scene((deck,), (bearing,), contacts=walls, motion=NoMotion())
+    history = run(scene, 0.1, solver, events).recording.history
+    assert history.z[history.t == 0.0, 0].tolist() == [-1.0] + [1.0 for _ in walls]
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])

@@ -13,6 +13,7 @@ from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.elements import branch_within
+from eventpound.mechanics.link_law import KIND, SLIDER
 from eventpound.mechanics.model import Model, assemble, with_elements, with_sliders
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.observables import Observed, blank_observed, initial_gaps
@@ -59,24 +60,27 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
         of the settled state says the same.
     """
     gap, rate = initial_gaps(model, scales.length), model.rates(model.v0)
-    if not ((model.elements.kind == NO_LAW) & (gap == 0.0) & (rate < 0.0)).any():
+    struck = (model.elements.kind == NO_LAW) & (gap == 0.0) & (rate < 0.0)
+    if not struck[: model.own_contacts].any():
         return np.empty((0, row_width(model)))
-    elastic, total = model.link_forces(model.u0, model.v0, model.z0)
+    # What friction a slider that does not slip has before it is jerked is not asked.
+    slips = model.law.memory[model.hysteretic, KIND] == SLIDER
+    z = np.where(slips, np.sign(model.elongations(model.v0)[model.hysteretic]), model.z0)
+    elastic, total = model.link_forces(model.u0, model.v0, z)
     force = contact_forces(model.elements, gap, rate, np.zeros(gap.size))
     elastic[model.plain :] = total[model.plain :] = -force[model.laws]
-    line = np.concatenate(
+    return np.concatenate(
         (
             (task.start, ground_acceleration(_first_piece(task), task.start)),
             model.u0,
             model.v0,
             model.pulled(total) / model.mass + _loads(task, model),
-            model.z0,
+            z,
             elastic[: model.springs],
             gap,
             force,
         )
-    )
-    return line.reshape(1, -1)
+    )[np.newaxis]
 
 
 def _loads(task: Task, model: Model) -> Floats:
