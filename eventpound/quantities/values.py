@@ -92,20 +92,17 @@ def z_of(many: Runs, i: int) -> Floats:
 
 
 def by_law(name: str) -> Value:
-    """A number that a law tells from its elongation (m) and internal variables at the end."""
+    """A number that a law tells from its elongation (m) and internal variables in the last row."""
 
     def values(many: Runs, i: int) -> Floats:
         spring, found = many.scene.springs[i], np.full(many.t.shape, np.nan)
-        names = [body.name for body in many.scene.bodies]
         for n, run in enumerate(many.recordings):
-            place = {GROUND: 0.0} | dict(zip(names, run.u, strict=True))
-            if run.supports is not None:
-                own = [support.name for support in many.scene.supports]
-                place |= dict(zip(own, run.supports.s[-1], strict=True))
-            first, second = (float(place[end]) for end in spring.between)
-            memory = zip(many.scene.memory, run.z, strict=True)
-            numbers = [float(z) for (of, _), z in memory if of == spring.name]
-            found[n] = getattr(_law_of(many, i, n), name)(second - first, *numbers)
+            # Of supports a run that was stopped knows no more than its rows.
+            x = float(motion_of_spring(many.scene, run, i)[0, -1])
+            memory = zip(many.scene.memory, run.history.z[-1].tolist(), strict=True)
+            found[n] = getattr(_law_of(many, i, n), name)(
+                x, *(z for (of, _), z in memory if of == spring.name)
+            )
         return found
 
     return values

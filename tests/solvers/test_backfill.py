@@ -9,10 +9,21 @@ import numpy as np
 import pytest
 
 from eventpound import simulate, simulate_many
-from eventpound.errors import InputError
-from eventpound.motion import MavroeidisPapageorgiou, NoMotion
+from eventpound.errors import ComputationError, InputError
+from eventpound.motion import Cosine, MavroeidisPapageorgiou, NoMotion
 from eventpound.response import Response
-from eventpound.scene import GROUND, Backfill, Body, BoucWen, Contact, Linear, Scene, Spring
+from eventpound.scene import (
+    GROUND,
+    Backfill,
+    Body,
+    BoucWen,
+    Contact,
+    Linear,
+    Scene,
+    Spring,
+    Support,
+)
+from eventpound.solvers.base import Task
 from tests.solvers.backfill_oracle import Answer, Soil, solved
 
 SOIL = Backfill("100 MN/m", "5 MN", 0.7, "2 cm")
@@ -133,6 +144,22 @@ def test_soil_that_a_wider_gap_keeps_from_the_deck_is_not_pushed() -> None:
     assert response.peaks["min"]["deck"] == pytest.approx(-0.01, rel=1e-6)
     names = ("passive_force", "passive_depth")
     assert [response.quantity(f"springs.soil.{name}") for name in names] == [0.0, 0.0]
+
+
+def test_soil_of_a_run_that_was_stopped_is_where_its_support_is() -> None:
+    springs = [
+        Spring("pier", ("bank", "deck"), Linear(1e7)),
+        Spring("soil", ("bank", "deck"), Backfill(2e7, 4e5, 0.7, 0.5)),
+    ]
+    bank = Support("bank", motion=Cosine(3.0, 0.8))
+    scene = Scene([Body("deck", 1e5)], springs, motion=NoMotion(), supports=[bank])
+    with pytest.raises(ComputationError, match="limit of 60 steps") as error:
+        simulate(scene, "cvode", max_steps=60, output_step=0.05)
+    assert error.value.recording is not None
+    stopped = Response(Task(scene, 0.0, 4.0, 1e-9), "cvode", error.value.recording)
+    assert stopped.recording.t > stopped.recording.history.t[-1]
+    # It was not touched.
+    assert stopped.quantity("springs.soil.residual_gap") == pytest.approx(0.5, rel=1e-7)
 
 
 def test_soil_under_a_slow_push_goes_along_its_loop_by_hand() -> None:
