@@ -22,6 +22,10 @@ ACCELERATION = 1e-13
 scene's own time, or below what springs and dashpots make of such an acceleration or derivative two
 orders or one before. Bodies without links under the tail of a Gaussian pulse are an exception: they
 have the ground's acceleration alone, whose sign is known however small it is."""
+RISEN = 1e-11
+"""Part of the largest acceleration of a scene by which two of ground and supports have begun to
+differ: above `ACCELERATION`, so that what holds to both can be told to give way, and their travel
+until then is rounding."""
 LENGTH = 1e-13
 """Distances to a kink, as part of L: which side a link is on, and whether it has passed it."""
 GAP = 1e-15

@@ -20,11 +20,9 @@ from eventpound.mechanics.elements import memory_stiffness, pull_per_z
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce, state_vector
-from eventpound.mechanics.reduced_loads import support_of
 from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_taylor
-from eventpound.motion.loads import LOADED, is_sinusoidal, row_of_link
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root
@@ -346,9 +344,7 @@ def _pass_on(rounding: Floats, order: int, system: Reduced, stiffness: Floats) -
 def round_as_the_scene(system: Reduced, forcing: Forcing) -> Bools:
     """Clusters (C,) of whose accelerations an own part of those of the scene is rounding.
 
-    Those on which a link acts, and not those that the tail of a Gaussian pulse alone moves, nor
-    those of supports, which are said to the last digit; but sinusoids pass zero at times that are
-    not.
+    All, but for those that the tail of a Gaussian pulse alone moves, on which no link acts.
     """
     rough = np.full(system.mass.size, forcing.family != _GAUSSIAN)
     for a in range(system.stiffness.size):
@@ -357,11 +353,6 @@ def round_as_the_scene(system: Reduced, forcing: Forcing) -> Bools:
             for c in system.ends[a]:
                 if c >= 0:
                     rough[c] = True
-    if forcing.family == LOADED:
-        for a in range(system.link.size):
-            if support_of(system.link[a], forcing.coefficients) >= 0:
-                row = row_of_link(system.link[a], forcing.coefficients)
-                rough[system.ends[a, 0]] = is_sinusoidal(row, forcing.coefficients)
     return rough
 
 

@@ -46,6 +46,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.box import least_in_box
 from eventpound.numerics.compiled import in_python
+from eventpound.tolerances import LCP_ROUNDING
 
 
 def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Model) -> int:
@@ -96,24 +97,13 @@ def decide_sticks(z: Floats, forcing: Forcing, noise: float, at: Instant, model:
     if force is None:
         return int(in_python(take_rests)(touching.undecided, at.pressed, False, at))
     pressed = _take_sides(members, force, noise, at, model)
-    found = _decide_others(pressed, z, forcing, at, model)
-    if not found[2]:
-        # What of the motion of supports is rounding beside forces is more than that here.
-        slips = model.sliders[(touching.undecided & ~pressed)[own:]]
-        at.branch[slips] *= -1
-        found = _decide_others(pressed, z, forcing, at, model)
+    # Who rests beside what is known to be pressed.
+    touching = in_python(touching_of)(z, forcing, at)
+    touching = touching._replace(undecided=touching.undecided & ~pressed, pressed=pressed)
+    found = in_python(rest_contacts)(_on_sides(touching, at.branch, model))
     ended = in_python(take_rests)(*found, at)
     at.gap[own:][~at.resting[own:]] = np.inf
     return int(ended)
-
-
-def _decide_others(
-    pressed: Bools, z: Floats, forcing: Forcing, at: Instant, model: Model
-) -> tuple[Bools, Bools, bool]:
-    """Who rests beside contacts (K,) that are known to be pressed; returns as `rest_contacts`."""
-    touching = in_python(touching_of)(z, forcing, at)
-    touching = touching._replace(undecided=touching.undecided & ~pressed, pressed=pressed)
-    return in_python(rest_contacts)(_on_sides(touching, at.branch, model))
 
 
 def _end_sticks_and_slips(force: Floats, kinked: Bools, at: Instant, model: Model) -> None:
@@ -124,10 +114,12 @@ def _end_sticks_and_slips(force: Floats, kinked: Bools, at: Instant, model: Mode
     at.branch[turned] *= -1
     stopped = kinked[links]
     if stopped.any():
-        tied = at.resting.copy()
-        tied[own:] |= stopped
-        none = np.zeros_like(tied)
-        clusters = in_python(form_clusters)(at.left, at.right, at.opening, tied, none, at.mass)
+        held = at.resting.copy()
+        held[own:] |= stopped
+        # What a support carries goes on with it where a slip beside it ends.
+        clusters = in_python(form_clusters)(
+            at.left, at.right, at.opening, held, at.resting, at.mass
+        )
         in_python(put_as_one)(clusters.of_body, np.zeros(at.mass.size), at.mass, at.v)
 
 
@@ -151,7 +143,7 @@ def _forces(members: Ints, touching: Touching, at: Instant, model: Model) -> Flo
     """
     W = contact_rows(model)[members]
     low, high = np.zeros(members.size), np.full(members.size, np.inf)
-    (a, *later), start = _accelerations(touching, model.supports), low.copy()
+    (a, noise, given), start = _accelerations(touching, model.supports), low.copy()
     of_sliders = members >= model.own_contacts
     links = model.sliders[members[of_sliders] - model.own_contacts]
     high[of_sliders] = model.law.memory[links, STRENGTH]
@@ -159,15 +151,17 @@ def _forces(members: Ints, touching: Touching, at: Instant, model: Model) -> Flo
     start[of_sliders] = low[of_sliders] * np.sign(at.branch[links])
     # What slips along its branch has been pulled by that force.
     a -= W.T @ start / model.mass
-    supports = slice(model.supports)
-    q = np.column_stack((W @ a, *(W[:, supports] @ further[supports] for further in later)))
+    noise += LCP_ROUNDING * (np.abs(W.T) @ np.abs(start)) / model.mass
+    first = np.where(np.abs(W @ a) > np.abs(W) @ noise, W @ a, 0.0)
+    # Those of supports may be less than the rounding of a sum, and still tell who gives way.
+    q = np.column_stack((first, W[:, : model.supports] @ given.T))
     return least_in_box(W / model.mass @ W.T, q, low, high, start)
 
 
-def _accelerations(touching: Touching, supports: int) -> Floats:
-    """Taylor coefficients of the accelerations of the bodies (orders, N) without contacts (m/s²).
+def _accelerations(touching: Touching, supports: int) -> tuple[Floats, Floats, Floats]:
+    """Accelerations of the bodies (N,) without contacts (m/s²), and their rounding.
 
-    The first, and those after it in which not all of the supports' vanish, these without rounding.
+    And the Taylor coefficients of those of supports, without rounding, where not all vanish.
     """
     mass, none = touching.mass, np.zeros_like(touching.undecided)
     clusters = form_clusters_of_few(touching.left, touching.right, touching.gap, none, none, mass)
@@ -177,7 +171,7 @@ def _accelerations(touching: Touching, supports: int) -> Floats:
     noise = in_python(noise_of)(found, np.zeros(mass.size), rough, system, touching)
     given = found[:, :supports]
     given[np.abs(given) <= noise[:, :supports]] = 0.0
-    return found[np.append(True, given[1:].any(axis=1))]
+    return found[0], noise[0], given[given.any(axis=1)]
 
 
 def _take_sides(members: Ints, force: Floats, noise: float, at: Instant, model: Model) -> Bools:

@@ -15,10 +15,12 @@ from eventpound.motion.base import Family, GroundMotion, Piece, Scales
 from eventpound.motion.delayed import travelled
 from eventpound.motion.record import integrals
 from eventpound.numerics.arrays import Floats
-from eventpound.tolerances import DIRECT
+from eventpound.tolerances import RISEN
 
 FIRST_ROW, ROW_WIDTH = 3, 10
 """Where the rows of a LOADED piece begin in its coefficients, and numbers in each."""
+_WIDTHS = np.linspace(-7.0, 7.0, 113)
+"""Where a Gaussian is looked at, in its widths; beyond, it is below 1e-19 of its peak."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,8 @@ class LoadedMotion:
         And at whose ends supports begin to move apart, on which a body may have rested until then.
         """
         signals = [self.ground.pieces(), *(load.signal.pieces() for load in self.loads)]
-        ends = {piece.end for pieces in signals for piece in pieces} | _partings(self._moved)
+        ends = {piece.end for pieces in signals for piece in pieces}
+        ends |= _partings(self._moved, RISEN * max(self.own.a_g if self.own else 0.0, self.push))
         return [
             self._together(start, end, [next(p for p in each if p.end > start) for each in signals])
             for start, end in pairwise([-np.inf, *sorted(ends)])
@@ -137,17 +140,24 @@ class LoadedMotion:
         return Piece(start, end, Family.LOADED, np.concatenate(numbers), np.concatenate(samples))
 
 
-def _partings(moved: Sequence[GroundMotion]) -> set[float]:
-    """Samples (s) at which two motions begin to differ that have been the same."""
-    pieces = [piece for motion in moved for piece in motion.pieces()]
-    sampled = [piece for piece in pieces if piece.family is Family.SAMPLES]
-    if len(moved) == 1 or not sampled:
+def _partings(moved: Sequence[GroundMotion], level: float) -> set[float]:
+    """Times after zero (s) at which two motions begin to differ, by more than a level (m/s²).
+
+    Of records that is a sample. A Gaussian is looked at eight times in its width.
+    """
+    times: list[Floats] = []
+    for piece in (piece for motion in moved for piece in motion.pieces()):
+        first, second = piece.coefficients[:2] if piece.coefficients.size > 1 else (0.0, 0.0)
+        if piece.family is Family.SAMPLES:
+            times.append(first + np.arange(piece.samples.size) * second)
+        elif piece.family is Family.GAUSSIAN and second > 0.0:
+            times.append(first + _WIDTHS / np.sqrt(second))
+    if len(moved) == 1 or not times:
         return set()
-    times = [p.coefficients[0] + np.arange(p.samples.size) * p.coefficients[1] for p in sampled]
     t, found = np.unique(np.concatenate(times)), set[float]()
     for one, other in combinations([motion.acceleration(t) for motion in moved], 2):
-        same = np.abs(one - other) <= DIRECT * np.abs(one)
-        found.update(t[1:-1][same[:-2] & same[1:-1] & ~same[2:]].tolist())
+        apart = np.abs(one - other) > level
+        found.update(t[:-1][apart[1:] & ~apart[:-1] & (t[:-1] > 0.0)].tolist())
     return found
 
 

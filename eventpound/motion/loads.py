@@ -58,13 +58,6 @@ def is_driven(row: int, coefficients: Floats) -> bool:
 
 
 @scalar_kernel
-def is_sinusoidal(row: int, coefficients: Floats) -> bool:
-    """Whether a load beside the ground, which is row 0, has a sum of sinusoids in it."""
-    ground, own = coefficients[FIRST_ROW], coefficients[FIRST_ROW + ROW_WIDTH * row]
-    return bool(ground == _SINUSOIDS or own == _SINUSOIDS)
-
-
-@scalar_kernel
 def support_motion(row: int, piece: Formula, t: float) -> tuple[float, float]:
     """Displacement (m) and velocity (m/s) of a support relative to the ground at the time t (s)."""
     d, v = _travel(row, piece, t)

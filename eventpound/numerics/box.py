@@ -43,8 +43,10 @@ def least_in_box(G: Floats, q: Floats, low: Floats, high: Floats, start: Floats)
             return None
         P = np.flatnonzero(passive)
         if P.size > 0:
-            A = ~passive
-            x[P] = -np.linalg.solve(G[np.ix_(P, P)], q[P] + G[np.ix_(P, A)] @ x[A])
+            to_bounds, inverse = G[P] * ~passive, np.linalg.inv(G[np.ix_(P, P)])
+            terms = np.abs(q[P]) + np.abs(to_bounds) @ np.abs(x)
+            found = -inverse @ (q[P] + to_bounds @ x)
+            x[P] = _without_rounding(found, LCP_ROUNDING * np.abs(inverse) @ terms)
     return None
 
 

@@ -68,10 +68,11 @@ def power_coefficient(z: Floats, power: Floats, n: float, k: int) -> float:
 def _power_at_zero(z: Floats, n: float, k: int) -> float:
     """Coefficient k of |z|^n where z starts from zero: z = τ^m (z_m + ...)."""
     leading = 1
-    while leading < k and z[leading] == 0.0:
+    # In the first of a tail's coefficients rounding is most, and the recurrence divides by it.
+    while leading < k and abs(z[leading]) <= NO_Z:
         leading += 1
     rest = k - leading * n
-    if rest < 0.0 or rest != int(rest) or z[leading] == 0.0:
+    if rest < 0.0 or rest != int(rest) or abs(z[leading]) <= NO_Z:
         return 0.0
     # |z|^n = τ^(m n) |z_m|^n (1 + z_(m+1)/z_m τ + ...)^n: the same recurrence again.
     depth = int(rest)

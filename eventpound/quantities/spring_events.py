@@ -21,7 +21,7 @@ from eventpound.quantities.values import motion_of_spring
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Hysteretic, LawName
 from eventpound.solvers.base import Recording
-from eventpound.tolerances import OF_ROWS
+from eventpound.tolerances import OF_ROWS, SAME_INSTANT
 
 
 class SpringEventKind(StrEnum):
@@ -125,7 +125,7 @@ def _segments(run: Recording) -> tuple[Ints, Ints]:
     first, last = np.append(0, cuts), np.append(cuts, t.size) - 1
     if t.size == 0:
         return first[:0], last[:0]
-    lasts = t[last] > t[first]
+    lasts = t[last] > t[first] * (1.0 + SAME_INSTANT)
     lasts[-1] |= run.success
     return first[lasts], last[lasts]
 

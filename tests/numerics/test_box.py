@@ -90,3 +90,17 @@ def test_a_number_that_nothing_moves_stays_at_its_start() -> None:
     G, low, high = np.ones((2, 2)), np.full(2, -1.0), np.ones(2)
     x = least_in_box(G, np.zeros((2, 1)), low, high, np.array([1.0, -1.0]))
     assert x == pytest.approx([1.0, -1.0])
+
+
+def test_rounding_of_unknowns_that_vanish_does_not_decide() -> None:
+    # Two contacts and three sliders, which may all let go; next, two supports part.
+    mass = np.array([1.2692422401767902, 1.5612784402796849, 1.7015906954878348])
+    W = np.array([[1.0, 0.0, 0.0], [1.0, -1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0, -1, 1]])
+    bound = np.array([0.0, 0.0, 0.29824614543211375, 4.986009876809242, 0.4319888918413696])
+    high = np.where(bound > 0.0, bound, np.inf)
+    q = np.column_stack((np.zeros(5), [1.5, 0.0, -1.5, 0.0, 0.0]))
+    x = least_in_box(W / mass @ W.T, q, -bound, high, -bound)
+    assert x is not None
+    np.testing.assert_allclose(x @ W, 0.0, rtol=0.0, atol=1e-14)
+    # What the first slider is pulled by tells of its slip.
+    assert x[2] == bound[2]

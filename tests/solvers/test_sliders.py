@@ -480,6 +480,77 @@ def test_deck_held_by_ground_and_pier_goes_with_the_one_that_tells(
     np.testing.assert_allclose(h.u[:, 0], np.maximum.accumulate(np.maximum(pier, 0.0)), atol=1e-8)
 
 
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+@pytest.mark.parametrize("ground", [5.0, 20.0])
+def test_deck_goes_with_the_stronger_of_two_that_a_tail_moves_apart(
+    solver: str, ground: float
+) -> None:
+    # As the run begins there is no motion yet that a number could hold.
+    wavelet = Ricker(4.0, 0.3, center=3.0)
+    scene = Scene(
+        (Body("deck", 1.0),),
+        (
+            Spring("pier bearing", ("pier", "deck"), Slider(1.0, 10.0)),
+            Spring("ground bearing", (GROUND, "deck"), Slider(1.0, ground)),
+        ),
+        motion=wavelet,
+        supports=(Support("pier", delay=0.4),),
+    )
+    response = simulate(scene, solver, 1e-8, duration=6.0, events=["slip"])
+    h, listed = response.recording.history, response.spring_events
+    pier = wavelet.displacement(h.t - 0.4) - wavelet.displacement(h.t)
+    deck = np.zeros_like(pier) if ground > 10.0 else pier
+    np.testing.assert_allclose(h.u[:, 0], deck, rtol=0.0, atol=1e-8)
+    weaker = "pier bearing" if ground > 10.0 else "ground bearing"
+    assert listed is not None
+    assert listed["spring"].tolist() == 3 * [weaker]
+    assert listed["kind"].tolist() == 3 * ["slip"]
+    # The pier is far behind as the ground is in the middle of its wavelet, and far ahead later.
+    away = 1.0 if ground < 10.0 else -1.0
+    assert listed["direction"].tolist() == [away, -away, away]
+    assert listed["time_s"][1:].tolist() == pytest.approx([3.0, 3.4], abs=1e-6)
+    assert 2.0 < listed["time_s"][0] < 2.8
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+def test_deck_at_a_wall_stays_there_while_a_tail_pushes_it(solver: str) -> None:
+    wavelet = Ricker(4.0, 0.3, center=3.0)
+    scene = Scene(
+        (Body("deck", 1.0),),
+        (Spring("bearing", ("pier", "deck"), Slider(1.0, 10.0)),),
+        contacts=(Contact("wall", "deck", "barrier", 0.0, 0.0),),
+        motion=wavelet,
+        supports=(Support("pier", delay=0.4),),
+    )
+    response = simulate(scene, solver, 1e-8, duration=6.0, events=["slip"])
+    h, listed = response.recording.history, response.spring_events
+    pier = wavelet.displacement(h.t - 0.4) - wavelet.displacement(h.t)
+    # From its way back on the deck goes with the pier.
+    deck = np.minimum(0.0, pier - np.maximum.accumulate(pier))
+    np.testing.assert_allclose(h.u[:, 0], deck, rtol=0.0, atol=1e-8)
+    assert listed is not None
+    assert listed["kind"].tolist() == ["slip", "stick"]
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+@pytest.mark.parametrize("pull", [-0.2, 0.0])
+def test_deck_comes_to_rest_between_ground_and_what_a_tail_still_moves(
+    solver: str, pull: float
+) -> None:
+    scene = Scene(
+        (Body("deck", 1.0, velocity=1.0),),
+        (
+            Spring("one", (GROUND, "deck"), Slider(1.0, 0.13)),
+            Spring("two", ("pier", "deck"), Slider(1.0, 0.16)),
+        ),
+        motion=NoMotion(),
+        supports=(Support("pier", motion=Ricker(0.5, 0.5, center=1.0)),),
+        forces=(Force("deck", Constant(pull)),),
+    )
+    response = run(scene, 4.0, solver)
+    assert response.recording.u[0] == pytest.approx(0.5 / (0.29 - pull), abs=1e-8)
+
+
 def test_what_supports_squeeze_without_a_way_out_is_refused_by_name() -> None:
     scene = Scene(
         (Body("deck", 1.0),),

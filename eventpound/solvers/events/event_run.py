@@ -34,7 +34,7 @@ from eventpound.solvers.events.recorder import PASSED, WRITTEN, Journal, history
 from eventpound.solvers.events.run import Located, LoopProgress, Rules, Run, RunRecord, State
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.events.step_check import broken_contact, contact_error
-from eventpound.tolerances import FLAT_WITHIN, FORCE, GAP, LENGTH
+from eventpound.tolerances import DRIFTED, FLAT_WITHIN, FORCE, GAP, LENGTH
 
 SPARE_ROWS = 64
 """Lines of the history for which there is room at first beside those at output times, and
@@ -168,6 +168,26 @@ class EventRun:
             self.unique_forces[mode.clusters.resting] &= unique
             # Those of sliders are no part of what the history is told.
             self.unique_forces[model.own_contacts :] = True
+
+    def check_held(self) -> None:
+        """See that what the forces of others are to keep closed is closed.
+
+        Raises
+        ------
+        ComputationError
+            Where it has moved apart: on ground and on a support that do not move alike.
+        """
+        clusters, model, u = self.mode.clusters, self.model, self.state.u
+        if clusters.tree:
+            return
+        strays = np.abs(model.rates(u) + self.arrays.instant.opening)[clusters.resting]
+        strays[~clusters.redundant] = 0.0
+        if strays.max() > DRIFTED * max(self.scales.length, np.abs(u).max()):
+            name = self.names[clusters.resting[strays.argmax()]]
+            raise ComputationError(
+                f"{name!r} is held still while its ends move apart, by {strays.max():.3g} m by now",
+                self.t,
+            )
 
     def take_closing_speeds(self, mode: Mode) -> None:
         """What the damping of elements that depends on how they closed is in this mode."""

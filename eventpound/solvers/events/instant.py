@@ -46,7 +46,7 @@ IMPACTS, RESTS, HISTORY, SHORT_STEP = range(4)
 SETTLE, SEARCH, SET_STATE, READY, LAST = range(5)
 """What `proceed` is asked for: all that an instant demands; to search a step of an
 integrator; to make the state vector of the run the present state; to make the present instant
-ready for a step; to put it, the last, into the history."""
+ready for a step; to put it, the last of a piece, into the history."""
 (OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, IN_PYTHON) = range(20, 25)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
 steps are used up; links have no branch yet; what is to be done is that of

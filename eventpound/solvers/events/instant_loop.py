@@ -160,8 +160,8 @@ def set_present(run: EventRun, piece: CurrentPiece, y: Floats, t: float) -> None
     proceed(SET_STATE, 0, run.arrays, run.mode.dynamics, piece, NOWHERE._replace(end=t))
 
 
-def put_last_instant(run: EventRun, piece: CurrentPiece) -> None:
-    """Put the last instant of a run into the history and the extremes."""
+def put_present_instant(run: EventRun, piece: CurrentPiece) -> None:
+    """Put the present instant, the end of a piece or of the run, into history and extremes."""
     proceed(LAST, 0, run.arrays, run.mode.dynamics, piece, NOWHERE)
 
 

@@ -22,7 +22,7 @@ from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work
 from eventpound.solvers.events.event_run import EventRun
 from eventpound.solvers.events.instant_loop import (
-    put_last_instant,
+    put_present_instant,
     search_step,
     set_present,
     settle_instant,
@@ -256,17 +256,21 @@ class EventLoop:
             while run.t < stop:
                 if self._follow(piece, frame):
                     settle_instant(run, piece)
+            if stop == end or run.state.resting[run.model.own_contacts :].any():
+                # At a corner of the motion a stick may end: it has two sides.
+                put_present_instant(run, piece)
             if stop == end:
                 break
-        put_last_instant(run, piece)
 
     def _follow(self, piece: CurrentPiece, frame: Floats) -> bool:
         """A segment, whose time is that of the integrator; whether something happened."""
         run, begun = self.event_run, self.event_run.t
         try:
-            return Segment(run, self.integrator, piece, frame).run()
+            something = Segment(run, self.integrator, piece, frame).run()
         finally:
             self._integrated += run.t - begun
+        run.check_held()
+        return something
 
     def _energy(self) -> Energy | None:
         """The ledger of the present state, where it is kept."""

@@ -91,6 +91,9 @@ def carry_on(budget: int, run: FastRun) -> int:
         if ended != DONE:
             return ended
         if now.t >= ground.ends[i]:
+            if any_slider(run) and progress.resting > 0 and progress.due == 0:
+                # At a corner of the motion a stick may end: it has two sides.
+                write_row(now.t, run)
             progress.due = 1
     return GOING_ON
 

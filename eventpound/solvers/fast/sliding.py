@@ -9,6 +9,8 @@ What an instant demands `eventpound.contact.sliders` tells, in Python: some mill
 
 from __future__ import annotations
 
+import numpy as np
+
 from eventpound.contact.impacts import DONE
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.modes import ends_of_stick
@@ -87,9 +89,13 @@ def set_margin(j: int, end: int, order: int, run: FastRun) -> None:
 def end_of_slip(order: int, h: float, limit: float, a: int, side: float, run: FastRun) -> float:
     """When the slip of link a to a side ends within h, up to `limit` (s), or inf.
 
-    One that has only just begun goes on with the first coefficient that is not rounding.
+    One that has only just begun goes on with the first coefficient that is not rounding. One that
+    sticks because others hold its ends does not slip, whatever these do within rounding.
     """
     limits, series, c = run.plan.limits, run.series, run.series.c
+    for j in range(run.state.gap.size):
+        if run.state.resting[j] and of_slider(j, run) and _link_of(j, run) == a:
+            return np.inf
     still = still_rate(limits.length, limits.time)
     head, tail = series.ends[a, 0], series.ends[a, 1]
     for k in range(order):
