@@ -7,11 +7,13 @@ instants is over. Whichever integrator comes to an instant calls `settle_impacts
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from eventpound.contact.cascade import end_flight
 from eventpound.contact.event_rows import write_changes
-from eventpound.contact.impacts import DONE, NO_FORCES, end_impacts, settle_closed
+from eventpound.contact.impacts import DONE, MEANING, NO_FORCES, end_impacts, settle_closed
 from eventpound.contact.kinks import still_rate, turn_at_kinks
 from eventpound.contact.modes import ACCELERATION, duty
 from eventpound.contact.rest import Touching, rest_contacts
@@ -157,3 +159,12 @@ def take_rests(resting: Bools, pressed: Bools, solved: bool, at: Instant) -> int
         if resting[j]:
             at.gap_rate[j] = 0.0
     return DONE
+
+
+def no_forces_message(resting: Bools, names: Sequence[str], supports: int) -> str:
+    """What to say where no forces keep the `resting` contacts (K,) closed."""
+    unsolved = ", ".join(repr(names[j]) for j in np.flatnonzero(resting).tolist())
+    message = f"{MEANING[NO_FORCES]}: {unsolved}"
+    if supports:
+        message += "; something between ground and supports has to give way where these meet"
+    return message

@@ -551,7 +551,8 @@ def test_deck_comes_to_rest_between_ground_and_what_a_tail_still_moves(
     assert response.recording.u[0] == pytest.approx(0.5 / (0.29 - pull), abs=1e-8)
 
 
-def test_what_supports_squeeze_without_a_way_out_is_refused_by_name() -> None:
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+def test_what_supports_squeeze_without_a_way_out_is_refused_by_name(solver: str) -> None:
     scene = Scene(
         (Body("deck", 1.0),),
         (Spring("bearing", (GROUND, "deck"), Slider(2.0, 1.0)),),
@@ -563,7 +564,7 @@ def test_what_supports_squeeze_without_a_way_out_is_refused_by_name() -> None:
         supports=(Support("pier", motion=Sine(1.0, 1.0, reverse=True)),),
     )
     with pytest.raises(ComputationError, match="could not be found: 'joint', 'wall', 'bearing'; "):
-        simulate(scene, duration=1.0)
+        simulate(scene, solver, duration=1.0)
 
 
 @pytest.mark.parametrize("solver", ["moreau", "penalty"])

@@ -6,6 +6,7 @@ import numpy as np
 
 from eventpound.contact.cascade import endless_message, long_message
 from eventpound.contact.impacts import DONE, ENDLESS, FULL, MEANING, NO_FORCES
+from eventpound.contact.instant import no_forces_message
 from eventpound.contact.kinks import choose_branches, choose_clear_branches, lacks_branch
 from eventpound.contact.points import decide_at_points, settle_at_points
 from eventpound.contact.rest import ORDER
@@ -122,10 +123,7 @@ def _failure(ended: int, run: EventRun) -> ComputationError:
     if ended == ENDLESS:
         return ComputationError(endless_message(run.events(), run.task.scene.contacts), run.t)
     if ended == NO_FORCES:
-        names = ", ".join(repr(run.names[j]) for j in np.flatnonzero(run.state.resting))
-        message = f"{MEANING[NO_FORCES]}: {names}"
-        if run.model.supports:
-            message += "; something between ground and supports has to give way where these meet"
+        message = no_forces_message(run.state.resting, run.names, run.model.supports)
         return ComputationError(message, run.t)
     if ended == UNENDING:
         return ComputationError(long_message(run.events(), run.task.scene.contacts), run.t)

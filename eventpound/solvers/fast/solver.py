@@ -16,7 +16,8 @@ from eventpound.contact.cascade import (
     long_message,
 )
 from eventpound.contact.event_rows import EVENT_WIDTH, events_of, events_wanted
-from eventpound.contact.impacts import ENDLESS, FULL
+from eventpound.contact.impacts import ENDLESS, FULL, NO_FORCES
+from eventpound.contact.instant import no_forces_message
 from eventpound.errors import ComputationError
 from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.model import Model, assemble, shape_of, with_sliders
@@ -327,6 +328,9 @@ class Left(NamedTuple):
         message = MESSAGES.get(self.ended, "left before its end")
         if self.ended == ENDLESS:
             message = endless_message(events, self.contacts)
+        elif self.ended == NO_FORCES:
+            names = [contact.name for contact in self.contacts]
+            message = no_forces_message(state.resting, names, self.model.supports)
         elif self.ended == STUCK and now["in_a_row"][0] > LONGEST_CASCADE:
             message = long_message(events, self.contacts)
         elif self.ended == CROWDED:
