@@ -2,7 +2,8 @@
 
 A run keeps a table of extremes (5, M). Its columns are the monitored quantities, one kind after
 the other as in `Places`, the only place that knows their order; whoever takes or reads an extreme
-asks there. Kinds of which two rates are known (motions) come before those with one (forces).
+asks there. Kinds of which two rates are known (distances) come before those with one (forces);
+first come distances that need no spring, which bodies have among them that go by themselves, too.
 """
 
 from __future__ import annotations
@@ -22,9 +23,9 @@ from eventpound.tolerances import ATTAINED_ANEW, SETTLED
 class Places(NamedTuple):
     """First column of each kind of quantity in a table of extremes, and their number M at last."""
 
+    gap: int
     displacement: int
     elongation: int
-    gap: int
     acceleration: int
     base_shear: int
     contact_force: int
@@ -41,13 +42,13 @@ SCALES = ("length", "length", "length", "acceleration", "force", "force")
 @scalar_kernel
 def places_of(bodies: int, springs: int, contacts: int) -> Places:
     """Columns of the extremes of a scene with N bodies, S springs and K contacts."""
-    elongation = bodies
-    gap = elongation + springs
-    acceleration = gap + contacts
+    displacement = contacts
+    elongation = displacement + bodies
+    acceleration = elongation + springs
     base_shear = acceleration + bodies
     contact_force = base_shear + 1
     end = contact_force + contacts
-    return Places(0, elongation, gap, acceleration, base_shear, contact_force, end)
+    return Places(0, displacement, elongation, acceleration, base_shear, contact_force, end)
 
 
 def places_in(model: Model) -> Places:
@@ -55,18 +56,23 @@ def places_in(model: Model) -> Places:
     return in_python(places_of)(model.bodies, model.springs, model.contacts)
 
 
-def distances_of(model: Model) -> Ints:
-    """Of the first D monitored quantities, between whom they are distances: ends (D, 2).
+class Distances(NamedTuple):
+    """Of the first D quantities, which are distances, from whom to whom (D,), -1 the ground.
 
-    They are displacements, elongations and gaps; -1 is the ground.
+    With one end there a distance turns where its body does.
     """
-    at = places_in(model)
-    elongation, gap, end = (place - at.displacement for place in at[1:4])
-    ends = np.empty((end, 2), np.int64)
-    ends[:elongation, 0], ends[:elongation, 1] = -1, np.arange(model.bodies)
-    ends[elongation:gap] = model.link_ends[: model.springs]
-    ends[gap:, 0], ends[gap:, 1] = model.left, model.right
-    return ends
+
+    first: Ints
+    second: Ints
+
+
+def distances_of(model: Model) -> Distances:
+    """Gaps, displacements and elongations, in the order of their columns."""
+    bodies, springs = np.arange(model.bodies), model.link_ends[: model.springs]
+    return Distances(
+        np.concatenate((model.left, np.full_like(bodies, -1), springs[:, 0])),
+        np.concatenate((model.right, bodies, springs[:, 1])),
+    )
 
 
 def columns_of_kind(kind: str, at: Places) -> slice:
@@ -90,12 +96,12 @@ def contact_pressed(i: int, at: Places) -> int:
 @scalar_kernel
 def value_of(i: int, at: Places, observed: Observed) -> float:
     """Quantity i (SI)."""
+    if i < at.displacement:
+        return observed.gap[0, i - at.gap]
     if i < at.elongation:
         return observed.u[i - at.displacement]
-    if i < at.gap:
-        return observed.elongation[0, i - at.elongation]
     if i < at.acceleration:
-        return observed.gap[0, i - at.gap]
+        return observed.elongation[0, i - at.elongation]
     if i < at.base_shear:
         return observed.acceleration[0, i - at.acceleration]
     if i < at.contact_force:
@@ -106,15 +112,15 @@ def value_of(i: int, at: Places, observed: Observed) -> float:
 @scalar_kernel
 def motion_of(i: int, at: Places, observed: Observed) -> tuple[float, float, float]:
     """Quantity i with its first two rates (SI); the second is 0 where it `is_motion` not."""
+    if i < at.displacement:
+        x, j = observed.gap, i - at.gap
+        return x[0, j], x[1, j], x[2, j]
     if i < at.elongation:
         b = i - at.displacement
         return observed.u[b], observed.v[b], observed.a[b]
-    if i < at.gap:
+    if i < at.acceleration:
         x, s = observed.elongation, i - at.elongation
         return x[0, s], x[1, s], x[2, s]
-    if i < at.acceleration:
-        x, j = observed.gap, i - at.gap
-        return x[0, j], x[1, j], x[2, j]
     if i < at.base_shear:
         x, b = observed.acceleration, i - at.acceleration
         return x[0, b], x[1, b], 0.0
@@ -237,5 +243,5 @@ def update_turning_point(i: int, value: float, t: float, near: float, running: R
 @scalar_kernel
 def update_extremes(observed: Observed, t: float, running: Running) -> None:
     """Take all values of one instant into the extremes."""
-    for i in range(running.at.displacement, running.at.end):
+    for i in range(running.at.gap, running.at.end):
         update_extreme(i, value_of(i, running.at, observed), t, running)

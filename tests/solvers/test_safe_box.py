@@ -49,7 +49,7 @@ def test_a_step_that_stays_in_its_box_meets_nothing() -> None:
         if any(DOWN <= part <= UP for part in state.part):
             continue
         linear += 1
-        sizes = np.array([0.3, 0.3, 0.3, 0.3, 0.6, 0.3, 1.0, 0.7, 9.0, 9.0, 15.0, 1.0, 1.0])
+        sizes = np.array([1.0, 0.7, 0.3, 0.3, 0.3, 0.3, 0.6, 0.3, 9.0, 9.0, 15.0, 1.0, 1.0])
         sizes = rng.uniform(0.2, 1.0, 13)[: running.maximum.size] * sizes
         running.maximum[:], running.minimum[:] = sizes, -sizes
         bodies = tables.bodies

@@ -189,7 +189,7 @@ def inspect_step(
     _inspect_contacts(a, b, h, watched, marks)
     _inspect_kinks(a, b, h, watched, marks)
     at = running.at
-    for i in range(at.displacement, at.end):
+    for i in range(at.gap, at.end):
         j = contact_pressed(i, at)
         marks.peak[i] = not (j >= 0 and watched.open_contacts[j]) and _may_peak(i, a, b, h, running)
     some = marks.closing.any() or marks.detaching.any() or marks.kink.any() or marks.peak.any()

@@ -353,9 +353,9 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
     for i in range(PARTS + 1):
         times[i] = start + (end - start) * i / PARTS if i < PARTS else end
         observe_at(times[i], step)
-        for k in range(running.at.displacement, running.at.end):
+        for k in range(running.at.gap, running.at.end):
             samples[0, i, k], samples[1, i, k], _ = motion_of(k, running.at, step.observed)
-    for k in range(running.at.displacement, running.at.end):
+    for k in range(running.at.gap, running.at.end):
         if not peak[k]:
             continue
         g = EventFunction(_MONITORED, k, running.rounding[k], 0.0)

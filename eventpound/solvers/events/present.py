@@ -138,7 +138,7 @@ def put_present(run: Run, settled: bool) -> None:
     observed = run.observations[0]
     if settled:
         at = record.running.at
-        for i in range(at.displacement, at.acceleration):
+        for i in range(at.gap, at.acceleration):
             update_settled(i, value_of(i, at, observed), t, record.running)
     put_instant(t, observed, record)
 

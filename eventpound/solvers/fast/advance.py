@@ -168,8 +168,8 @@ def _settle_instant(run: FastRun) -> int:
         run.located.released[:] = False
     observe_at_noinline(0.0, order, g, run)
     write_row(t, run)
-    for k in range(plan.distances.shape[0]):
-        there = distance_now(k, observed.u, observed.gap, plan)
-        update_settled(run.running.at.displacement + k, there, t, run.running)
+    for k in range(plan.distances.first.size):
+        there = distance_now(k, observed.u, observed.gap, plan.distances)
+        update_settled(run.running.at.gap + k, there, t, run.running)
     take_instant(t, run)
     return DONE

@@ -246,11 +246,12 @@ def _blank_each(plan: FastPlan, loaded: bool) -> Each:
         and (yielding.size > 0 or (plan.ground.family == int(Family.SAMPLES)).any())
         and not plan.limits.ledger
     )
-    return _each_of(n, contacts) if fits else _NOBODY
+    joint = in_python(places_of)(n, plan.links.springs, contacts)
+    return _each_of(n, contacts, joint.displacement - joint.gap) if fits else _NOBODY
 
 
-def _each_of(n: int, contacts: int) -> Each:
-    """The arrays of n bodies."""
+def _each_of(n: int, contacts: int, joint: int) -> Each:
+    """The arrays of n bodies with some distances, those of contacts among them."""
     at = in_python(places_of)(1, 0, 0)
     extremes = np.zeros((n, 5, at.end))
     # The base shear of a body by itself is not looked at.
@@ -266,13 +267,13 @@ def _each_of(n: int, contacts: int) -> Each:
         event=np.zeros(n, np.int64),
         turned=np.zeros(n, np.bool_),
         box=np.zeros((4, n)),
-        since=np.zeros(contacts),
+        since=np.zeros(joint),
         outside=np.zeros(4),
         closing=np.zeros(contacts),
     )
 
 
-_NOBODY = _each_of(0, 0)
+_NOBODY = _each_of(0, 0, 0)
 """Of scenes whose bodies never go apart."""
 
 

@@ -8,18 +8,20 @@ how much.
 from __future__ import annotations
 
 from eventpound.mechanics.monitored import (
+    Distances,
+    Places,
     Running,
     update_all,
     update_extreme,
     update_turning_point,
 )
 from eventpound.mechanics.observables import difference
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, only_root, value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.links import CORE
-from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries
+from eventpound.solvers.fast.run import Contacts, FastPlan, FastRun, FastSeries
 from eventpound.solvers.fast.search import (
     bound_of_pair,
     distance_coefficient,
@@ -42,33 +44,31 @@ def take_instant(t: float, run: FastRun) -> None:
 def take_all(u: Floats, a: Floats, gap: Floats, shear: float, t: float, run: FastRun) -> None:
     """Take distances, accelerations and the base shear into the extremes."""
     running, at = run.running, run.running.at
-    for k in range(run.plan.distances.shape[0]):
-        update_extreme(at.displacement + k, distance_now(k, u, gap, run.plan), t, running)
+    for k in range(run.plan.distances.first.size):
+        update_extreme(at.gap + k, distance_now(k, u, gap, run.plan.distances), t, running)
     update_all(at.acceleration, a, t, running)
     update_extreme(at.base_shear, shear, t, running)
 
 
 @compiled
-def start_of(k: int, plan: FastPlan) -> float:
-    """Distance k at no displacement (m)."""
-    gaps = plan.distances.shape[0] - plan.contacts.gap.size
-    return plan.contacts.gap[k - gaps] if k >= gaps else 0.0
+def start_of(k: int, contacts: Contacts) -> float:
+    """Distance k at no displacement (m); the first are gaps."""
+    return contacts.gap[k] if k < contacts.gap.size else 0.0
 
 
 @compiled
-def distance_now(k: int, u: Floats, gap: Floats, plan: FastPlan) -> float:
+def distance_now(k: int, u: Floats, gap: Floats, distances: Distances) -> float:
     """Distance k by the displacements (m); gaps are variables of their own."""
-    gaps = plan.distances.shape[0] - gap.size
-    if k >= gaps:
-        return float(gap[k - gaps])
-    return difference(u, plan.distances[k, 0], plan.distances[k, 1])
+    if k < gap.size:
+        return float(gap[k])
+    return difference(u, distances.first[k], distances.second[k])
 
 
 @compiled
-def leader_of(k: int, distances: Ints) -> int:
-    """Distance with which distance k turns: of its body from the ground, or itself."""
-    first, second = distances[k, 0], distances[k, 1]
-    return k if min(first, second) >= 0 else max(first, second)
+def leader_of(k: int, at: Places, distances: Distances) -> int:
+    """Distance with which distance k turns: the displacement of its only body, or itself."""
+    first, second = distances.first[k], distances.second[k]
+    return k if min(first, second) >= 0 else at.displacement - at.gap + max(first, second)
 
 
 @compiled
@@ -139,10 +139,11 @@ def shift(c: Floats, size: int, x: float) -> None:
 @compiled
 def inside_step(tau: float, order: int, run: FastRun) -> None:
     """Turning points of distances within a step of length tau (s)."""
-    plan, state, of_body = run.plan, run.state, run.series.of_body
-    for k in range(plan.distances.shape[0]):
-        first, second = plan.distances[k, 0], plan.distances[k, 1]
-        if leader_of(k, plan.distances) != k:
+    plan, state, of_body, at = run.plan, run.state, run.series.of_body, run.running.at
+    distances = plan.distances
+    for k in range(distances.first.size):
+        first, second = distances.first[k], distances.second[k]
+        if leader_of(k, at, distances) != k:
             continue
         if first < 0:
             # A spring to the ground that yields or unloads ends the step where it reverses.
@@ -150,8 +151,8 @@ def inside_step(tau: float, order: int, run: FastRun) -> None:
             if h >= 0 and state.part[h] != CORE:
                 continue
         head, tail = of_body[first] if first >= 0 else -1, of_body[second]
-        value = distance_now(k, state.u, state.gap, plan)
-        _pair(run.running.at.displacement + k, head, tail, value, tau, order, run)
+        value = distance_now(k, state.u, state.gap, distances)
+        _pair(at.gap + k, head, tail, value, tau, order, run)
 
 
 @compiled
@@ -204,17 +205,14 @@ def take_turns(i: int, c: Floats, order: int, start: float, tau: float, run: Fas
 def take_turn(
     i: int, value: float, t: float, near: float, plan: FastPlan, running: Running
 ) -> None:
-    """Take a turning point of quantity i into the extremes, and of the distances it leads.
-
-    A distance leads others only if it is a displacement; they stand behind it.
-    """
+    """Take a turning point of quantity i into the extremes, and of the distances it leads."""
     distances, at = plan.distances, running.at
+    leader, b = i - at.gap, i - at.displacement
     update_turning_point(i, value, t, near, running)
-    b = i - at.displacement
-    for k in range(b + 1, at.acceleration - at.displacement):
-        if leader_of(k, distances) == b:
-            there = start_of(k, plan) + (value if distances[k, 1] == b else -value)
-            update_turning_point(at.displacement + k, there, t, near, running)
+    for k in range(at.acceleration - at.gap):
+        if k != leader and leader_of(k, at, distances) == leader:
+            there = start_of(k, plan.contacts) + (value if distances.second[k] == b else -value)
+            update_turning_point(at.gap + k, there, t, near, running)
 
 
 @compiled

@@ -72,7 +72,7 @@ _SHARED = frozenset(
         *("hysteresis.link", "hysteresis.tables", "hysteresis.followed"),
         *("contacts.left", "contacts.right"),
         *("limits.rtol", "limits.order", "limits.ledger", "output_times"),
-        *("oscillator.right", "oscillator.left", "distances"),
+        *("oscillator.right", "oscillator.left", "distances.first", "distances.second"),
     )
 )
 """Fields of a plan that are the same in every run; `ground` is made by `_ground_of`."""

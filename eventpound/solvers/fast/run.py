@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from eventpound.contact.impacts import ENDLESS, MEANING
 from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.link_law import LinkLaw
-from eventpound.mechanics.monitored import Running
+from eventpound.mechanics.monitored import Distances, Running
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.arrays import Bools, Bytes, Floats, Ints, Records
 from eventpound.numerics.records import NamedNumbers
@@ -121,7 +121,7 @@ class Oscillator(NamedTuple):
 
 
 class FastPlan(NamedTuple):
-    """Constants of a run; distances (D, 2): of `eventpound.mechanics.monitored.distances_of`."""
+    """Constants of a run."""
 
     mass: Floats
     links: Links
@@ -131,7 +131,7 @@ class FastPlan(NamedTuple):
     limits: Limits
     output_times: Floats
     oscillator: Oscillator
-    distances: Ints
+    distances: Distances
 
 
 class FastProgress(NamedNumbers):
@@ -203,7 +203,7 @@ class Each(NamedTuple):
     event: Ints  # (N,): how the step ends
     turned: Bools  # (N,): whether the body turns there
     box: Floats  # (4, N): bounds of displacement (m) and acceleration (m/s²) within the step
-    since: Floats  # (K,): until when extremes of a gap have been looked for (s)
+    since: Floats  # until when extremes of the distances before displacements are known (s)
     closing: Floats  # (K,): when it closes (s)
 
     # Under a record some go by exact steps, and have no end of one.

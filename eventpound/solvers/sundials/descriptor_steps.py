@@ -201,7 +201,7 @@ def _short_turns(
     It begins at t and is h long (s).
     """
     at = running.at
-    for i in range(at.displacement, at.end):
+    for i in range(at.gap, at.end):
         if is_motion(i, at):
             start, end = motion_of(i, at, before), motion_of(i, at, after)
             _turn(i, start[:2], end[:2], t, h, slow, running)

@@ -1,4 +1,4 @@
-"""What concerns several bodies that go apart: gaps, the base shear, rows of the history.
+"""What concerns several bodies that go apart: distances, the base shear, rows of the history.
 
 It follows from the steps that the bodies are taking, each a series good from where it began to
 where it ends; what the boxes in which they stay exclude is passed over.
@@ -18,13 +18,14 @@ from eventpound.solvers.fast.extremes import (
     flat_time,
     set_rate,
     shift,
+    start_of,
     stays_within,
     take_turns,
     turning_times,
 )
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import is_due, write_row
-from eventpound.solvers.fast.run import FastRun
+from eventpound.solvers.fast.run import Contacts, FastRun
 from eventpound.solvers.fast.sdof.record import acceleration_coefficient
 from eventpound.solvers.fast.search import motion, stays_above
 
@@ -36,38 +37,39 @@ window, and how far it strays from between these at most (N)."""
 
 
 @compiled
-def bounds_of_gap(j: int, row: int, start: float, run: FastRun) -> tuple[float, float]:
-    """Bounds of a gap (m), or of its second derivative (m/s²), by those of its bodies.
+def bounds_of_distance(k: int, row: int, start: float, run: FastRun) -> tuple[float, float]:
+    """Bounds of a distance (m), or of its second derivative (m/s²), by those of its bodies.
 
-    They stand in `Each.box` from a row on. The gap is `start` at no displacement.
+    They stand in `Each.box` from a row on. The distance is `start` at no displacement.
     """
-    left, right, box = run.plan.contacts.left[j], run.plan.contacts.right[j], run.series.each.box
+    distances, box = run.plan.distances, run.series.each.box
+    first, second = distances.first[k], distances.second[k]
     low = high = start
-    if right >= 0:
-        low, high = low + box[row, right], high + box[row + 1, right]
-    if left >= 0:
-        low, high = low - box[row + 1, left], high - box[row, left]
+    if second >= 0:
+        low, high = low + box[row, second], high + box[row + 1, second]
+    if first >= 0:
+        low, high = low - box[row + 1, first], high - box[row, first]
     return low, high
 
 
 @compiled
-def takes_part(j: int, run: FastRun) -> bool:
-    """Whether no body of a contact goes by an exact step."""
-    contacts, until = run.plan.contacts, run.series.each.until
-    left, right = contacts.left[j], contacts.right[j]
-    return (left < 0 or until[left] < np.inf) and (right < 0 or until[right] < np.inf)
+def takes_part(k: int, run: FastRun) -> bool:
+    """Whether no body of a distance goes by an exact step."""
+    distances, until = run.plan.distances, run.series.each.until
+    first, second = distances.first[k], distances.second[k]
+    return (first < 0 or until[first] < np.inf) and (second < 0 or until[second] < np.inf)
 
 
 @compiled
-def gap_at(j: int, t: float, run: FastRun) -> tuple[float, float]:
-    """A gap (m) and its rate (m/s) at a time (s) that the series of its bodies reach."""
-    contacts, each = run.plan.contacts, run.series.each
-    gap, rate = contacts.gap[j], 0.0
-    for b, side in ((contacts.right[j], 1.0), (contacts.left[j], -1.0)):
+def distance_at(k: int, t: float, run: FastRun) -> tuple[float, float]:
+    """A distance (m) and its rate (m/s) at a time (s) that the series of its bodies reach."""
+    distances, each = run.plan.distances, run.series.each
+    there, rate = start_of(k, run.plan.contacts), 0.0
+    for b, side in ((distances.second[k], 1.0), (distances.first[k], -1.0)):
         if b >= 0:
             change, v, _ = motion(t - each.now[b].t, each.order[b], each.body[b].x[:])
-            gap, rate = gap + side * (each.body[b].u + change), rate + side * v
-    return gap, rate
+            there, rate = there + side * (each.body[b].u + change), rate + side * v
+    return there, rate
 
 
 @compiled
@@ -75,18 +77,18 @@ def time_of_closing(j: int, now: float, run: FastRun) -> float:
     """When a gap closes, as far as both series reach (s)."""
     contacts, until, c = run.plan.contacts, run.series.each.until, run.series.c
     end = np.inf
-    if bounds_of_gap(j, U_LOW, contacts.gap[j], run)[0] > 0.0:
+    if bounds_of_distance(j, U_LOW, contacts.gap[j], run)[0] > 0.0:
         return np.inf
     for b in (contacts.left[j], contacts.right[j]):
         if b >= 0:
             end = min(end, until[b])
-    h, (gap, rate) = end - now, gap_at(j, now, run)
+    h, (gap, rate) = end - now, distance_at(j, now, run)
     # What the ground does is the same for two bodies; a barrier goes with it.
-    low, _ = bounds_of_gap(j, A_LOW, 0.0, run)
+    low, _ = bounds_of_distance(j, A_LOW, 0.0, run)
     two = min(contacts.left[j], contacts.right[j]) >= 0
     if two and stays_above(gap, rate, 0.5 * low, 0.0, h):
         return np.inf
-    order, rest = set_gap(j, now, run), 0.0
+    order, rest = set_distance(j, now, run), 0.0
     for k in range(order, 2, -1):
         rest = (rest + abs(c[k])) * h
     if c[0] <= 0.0:
@@ -97,15 +99,15 @@ def time_of_closing(j: int, now: float, run: FastRun) -> float:
 
 
 @compiled
-def set_gap(j: int, now: float, run: FastRun) -> int:
-    """Coefficients of a gap about a time (s) into `series.c`; their highest power."""
-    contacts, c, order = run.plan.contacts, run.series.c, 3
+def set_distance(k: int, now: float, run: FastRun) -> int:
+    """Coefficients of a distance about a time (s) into `series.c`; their highest power."""
+    distances, c, order = run.plan.distances, run.series.c, 3
     c[:] = 0.0
-    c[0] = contacts.gap[j]
-    if contacts.right[j] >= 0:
-        order = max(order, _add_body(contacts.right[j], 1.0, now, run))
-    if contacts.left[j] >= 0:
-        order = max(order, _add_body(contacts.left[j], -1.0, now, run))
+    c[0] = start_of(k, run.plan.contacts)
+    if distances.second[k] >= 0:
+        order = max(order, _add_body(distances.second[k], 1.0, now, run))
+    if distances.first[k] >= 0:
+        order = max(order, _add_body(distances.first[k], -1.0, now, run))
     return order
 
 
@@ -131,40 +133,47 @@ def _add_later(order: int, factor: float, since: float, c: Floats, d: Floats) ->
 
 
 @compiled
-def take_gaps_of(who: int, now: float, run: FastRun) -> None:
-    """Extremes of the gaps between a body, or any for -1, and others, up to a time (s).
+def take_distances_of(who: int, now: float, run: FastRun) -> None:
+    """Extremes of the distances of a body, or any for -1, from others, up to a time (s).
 
-    That they are open is known, and all bodies are that take part.
+    That gaps are open is known, and all are whose bodies take part.
     """
     each, contacts, running = run.series.each, run.plan.contacts, run.running
-    first = running.at.gap
-    for j in range(contacts.gap.size):
-        left, right = contacts.left[j], contacts.right[j]
-        if min(left, right) < 0 or (who >= 0 and who not in (left, right)):
+    for k in range(each.since.size):
+        first, second = run.plan.distances.first[k], run.plan.distances.second[k]
+        if min(first, second) < 0 or (who >= 0 and who not in (first, second)):
             continue
-        if not takes_part(j, run):
+        if not takes_part(k, run):
             continue
-        low, high = bounds_of_gap(j, U_LOW, contacts.gap[j], run)
-        low = max(low, 0.0)
-        if each.since[j] < now and not stays_within(first + j, low, high, running):
-            _take_gap(first + j, j, now, run)
-        each.since[j] = now
+        low, high = bounds_of_distance(k, U_LOW, start_of(k, run.plan.contacts), run)
+        low = max(low, least_of(k, 0.0, contacts))
+        i = running.at.gap + k
+        if each.since[k] < now and not stays_within(i, low, high, running):
+            _take_distance(i, k, now, run)
+        each.since[k] = now
 
 
 @compiled
-def _take_gap(place: int, j: int, now: float, run: FastRun) -> None:
-    """Turning points of a gap since it was looked at last, and its value at a time (s)."""
-    series, running, since = run.series, run.running, run.series.each.since[j]
+def least_of(k: int, least: float, contacts: Contacts) -> float:
+    """What distance k is not to be less than (m): `least` for a gap."""
+    return least if k < contacts.gap.size else -np.inf
+
+
+@compiled
+def _take_distance(i: int, k: int, now: float, run: FastRun) -> None:
+    """Turning points of a distance since it was looked at last, and its value at a time (s)."""
+    series, running, since = run.series, run.running, run.series.each.since[k]
     h, (_, rate), (low, high) = (
         now - since,
-        gap_at(j, since, run),
-        bounds_of_gap(j, A_LOW, 0.0, run),
+        distance_at(k, since, run),
+        bounds_of_distance(k, A_LOW, 0.0, run),
     )
     if not (rate + min(low, 0.0) * h > 0.0 or rate + max(high, 0.0) * h < 0.0):
-        order = set_gap(j, since, run)
+        order = set_distance(k, since, run)
         set_rate(series.c, order, series.d)
-        take_turns(place, series.c, order, since, h, run)
-    update_extreme(place, max(gap_at(j, now, run)[0], 0.0), now, running)
+        take_turns(i, series.c, order, since, h, run)
+    there = max(distance_at(k, now, run)[0], least_of(k, 0.0, run.plan.contacts))
+    update_extreme(i, there, now, running)
 
 
 @compiled

@@ -28,10 +28,10 @@ from eventpound.solvers.fast.apart.between import (
     BEFORE,
     COUNT,
     STRAY,
-    gap_at,
-    set_gap,
+    distance_at,
+    set_distance,
     shear_stays,
-    take_gaps_of,
+    take_distances_of,
     take_shear,
     take_shear_at,
     takes_part,
@@ -61,8 +61,8 @@ def go_together(budget: int, window: Window, run: FastRun) -> int:
     for b in range(each.until.size):
         if each.until[b] < np.inf:
             going = go(b, TAKE_UP, now, window, run) and going
-    for j in range(each.closing.size):
-        _watch(j, now, run)
+    for k in range(each.since.size):
+        _watch(k, now, run)
     while going and now < window.end and taken < budget:
         who, j = _first(each.until), _first(each.closing)
         tau = each.closing[j] if j >= 0 else np.inf
@@ -81,7 +81,7 @@ def go_together(budget: int, window: Window, run: FastRun) -> int:
                 closed = j
                 break
         elif now == each.until[who]:
-            take_gaps_of(who, now, run)
+            take_distances_of(who, now, run)
             going = go(who, GO_ON if now < window.end else STAY, now, window, run)
             taken += 1
             if going and now < window.end:
@@ -101,18 +101,20 @@ def _first(times: Floats) -> int:
 
 
 @compiled
-def _watch(j: int, now: float, run: FastRun) -> None:
-    """Look from a time (s) on when a gap closes, and for its extremes."""
-    each, part = run.series.each, takes_part(j, run)
-    each.since[j], each.closing[j] = now, time_of_closing(j, now, run) if part else np.inf
+def _watch(k: int, now: float, run: FastRun) -> None:
+    """Look from a time (s) on for the extremes of a distance, and when it closes, if it can."""
+    each = run.series.each
+    each.since[k] = now
+    if k < each.closing.size:
+        each.closing[k] = time_of_closing(k, now, run) if takes_part(k, run) else np.inf
 
 
 @compiled
 def _watch_all_of(who: int, now: float, run: FastRun) -> None:
     """Look when the gaps of a body close that has begun another step."""
-    contacts, each = run.plan.contacts, run.series.each
+    each = run.series.each
     for j in range(each.closing.size):
-        if who in (contacts.left[j], contacts.right[j]) and takes_part(j, run):
+        if _is_of(who, j, run) and takes_part(j, run):
             each.closing[j] = time_of_closing(j, now, run)
 
 
@@ -147,16 +149,16 @@ def _expand_exact(b: int, window: Window, run: FastRun) -> None:
 def _join(b: int, now: float, window: Window, run: FastRun) -> None:
     """Let a body that goes by an exact step take part from a time (s) on.
 
-    Before, its gaps had no extremes but where they are then: bounds say so.
+    Before, its distances had no extremes but where they are then: bounds say so.
     """
-    contacts, each = run.plan.contacts, run.series.each
+    each, first = run.series.each, run.running.at.gap
     if each.order[b] == 0:
         _expand_exact(b, window, run)
     each.until[b] = window.end
-    for j in range(contacts.gap.size):
-        if b in (contacts.left[j], contacts.right[j]) and takes_part(j, run):
-            update_extreme(run.running.at.gap + j, gap_at(j, now, run)[0], now, run.running)
-            _watch(j, now, run)
+    for k in range(each.since.size):
+        if _is_of(b, k, run) and takes_part(k, run):
+            update_extreme(first + k, distance_at(k, now, run)[0], now, run.running)
+            _watch(k, now, run)
 
 
 @compiled_noinline
@@ -170,17 +172,17 @@ def _impact(j: int, tau: float, window: Window, run: FastRun) -> bool:
     row = takes_rows(run.record.rows)
     if row:
         _show_all(window, run)
-    rate = gap_at(j, tau, run)[1]
+    rate = distance_at(j, tau, run)[1]
     still = still_rate(limits.length, limits.time)
     slowest = max(still, LISTED_SPEED * now.fastest)
     simple = -contacts.restitution[j] * rate > slowest and now.in_a_row <= TIRED
     simple = _is_of_two(j, tau, window, run) and simple and has_room(run)
     for b in (contacts.left[j], contacts.right[j]):
         if b >= 0:
-            take_gaps_of(b, tau, run)
+            take_distances_of(b, tau, run)
     for i in range(state.gap.size):
         if row or takes_part(i, run):
-            gap, state.gap_rate[i] = gap_at(i, tau, run)
+            gap, state.gap_rate[i] = distance_at(i, tau, run)
             state.gap[i] = max(gap, 0.0)
     state.gap[j] = 0.0
     update_extreme(run.running.at.gap + j, 0.0, tau, run.running)
@@ -230,14 +232,14 @@ def _is_of_two(j: int, tau: float, window: Window, run: FastRun) -> bool:
         for b in (left, right):
             if b >= 0 and each.until[b] == np.inf:
                 _join(b, tau, window, run)
-        alone = alone and gap_at(i, tau, run)[0] >= OWN_GAP * limits.length
+        alone = alone and distance_at(i, tau, run)[0] >= OWN_GAP * limits.length
     return alone
 
 
 @compiled
 def _is_of(b: int, j: int, run: FastRun) -> bool:
-    """Whether contact j has body b, which may be none."""
-    return b >= 0 and b in (run.plan.contacts.left[j], run.plan.contacts.right[j])
+    """Whether contact, or distance, j has body b, which may be none."""
+    return b >= 0 and b in (run.plan.distances.first[j], run.plan.distances.second[j])
 
 
 @compiled
@@ -254,7 +256,7 @@ def _time_of_opening(j: int, tau: float, rate: float, run: FastRun) -> float:
     if not tau + wait < end:
         return np.inf
     bend = 0.0
-    for k in range(set_gap(j, tau, run), 1, -1):
+    for k in range(set_distance(j, tau, run), 1, -1):
         bend = (bend + k * abs(c[k])) * wait
     return tau + wait if bend <= 0.5 * rate else np.inf
 
@@ -274,7 +276,7 @@ def _bring_together(closed: int, now: float, window: Window, run: FastRun) -> No
     for b in range(each.until.size):
         if now < window.end and each.until[b] == np.inf:
             _join(b, now, window, run)
-    take_gaps_of(-1, now, run)
+    take_distances_of(-1, now, run)
     for b in range(each.until.size):
         body = each.body[b]
         if each.until[b] == np.inf:

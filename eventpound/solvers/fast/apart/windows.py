@@ -20,13 +20,14 @@ from eventpound.solvers.fast.apart.between import (
     BEFORE,
     COUNT,
     STRAY,
-    bounds_of_gap,
+    bounds_of_distance,
+    least_of,
 )
 from eventpound.solvers.fast.apart.own import Window, running_of_own
 from eventpound.solvers.fast.apart.together import go_together
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
-from eventpound.solvers.fast.extremes import stays_within
-from eventpound.solvers.fast.links import gap_of
+from eventpound.solvers.fast.extremes import start_of, stays_within
+from eventpound.solvers.fast.links import elongation
 from eventpound.solvers.fast.record import has_room
 from eventpound.solvers.fast.run import FastRun
 from eventpound.solvers.fast.sampled.exact import MOST_TURN
@@ -79,15 +80,11 @@ def go_by_windows(budget: int, stop: float, piece: CurrentPiece, run: FastRun) -
 def _choose(dt: float, whole: bool, window: Window, run: FastRun) -> bool:
     """Let those bodies take part in a window that may meet, or do not go by an exact step.
 
-    So do those whose gap may exceed its extremes, and all where the window is not `whole`. False:
-    a gap is a variable of its own, and no body goes by itself.
+    So do those whose distance may exceed its extremes, and all where the window is not `whole`.
+    False: a gap is a variable of its own, and no body goes by itself.
     """
     contacts, state, each = run.plan.contacts, run.state, run.series.each
-    samples, least, first = (
-        window.piece.samples,
-        OWN_GAP * run.plan.limits.length,
-        run.running.at.gap,
-    )
+    samples, least = window.piece.samples, OWN_GAP * run.plan.limits.length
     slope, box = slope_of(window.segment, dt, samples), each.box
     ground = GroundLine(window.end, 0.0, samples[window.segment], slope)
     each.outside[:] = 0.0
@@ -98,19 +95,21 @@ def _choose(dt: float, whole: bool, window: Window, run: FastRun) -> bool:
         spread = fastest_ahead(a, body.v, slope, dt, body) - abs(a)
         box[A_LOW, b], box[A_HIGH, b] = a - spread, a + spread
         each.until[b] = np.inf if whole else window.start
-    for j in range(contacts.gap.size):
-        left, right = contacts.left[j], contacts.right[j]
-        gap, rate = gap_of(j, contacts, state.u, state.v)
-        if gap < least:
+    for k in range(each.since.size):
+        first, second = run.plan.distances.first[k], run.plan.distances.second[k]
+        x, rate = elongation(first, second, state.u, state.v)
+        x, allowed = x + start_of(k, contacts), least_of(k, least, contacts)
+        if x < allowed:
             return False
-        down, up = bounds_of_gap(j, A_LOW, 0.0, run)
+        down, up = bounds_of_distance(k, A_LOW, 0.0, run)
         down, up = dt * min(0.0, down), dt * max(0.0, up)
-        low, high = gap + dt * min(0.0, rate + 0.5 * down), gap + dt * max(0.0, rate + 0.5 * up)
-        # Where a gap goes one way its extreme is yet to come.
-        settled = min(left, right) < 0 or rate + down > 0.0 or rate + up < 0.0
-        if low >= least and (settled or stays_within(first + j, low, high, run.running)):
+        low, high = x + dt * min(0.0, rate + 0.5 * down), x + dt * max(0.0, rate + 0.5 * up)
+        # Where a distance goes one way its extreme is yet to come.
+        settled = min(first, second) < 0 or rate + down > 0.0 or rate + up < 0.0
+        i = run.running.at.gap + k
+        if low >= allowed and (settled or stays_within(i, low, high, run.running)):
             continue
-        for b in (left, right):
+        for b in (first, second):
             if b >= 0:
                 each.until[b] = window.start
     for b in range(each.until.size):

@@ -171,16 +171,16 @@ def _covered(k: int, now: float, then: float, spread: float, running: Running) -
 @compiled
 def places_unseen(h: float, tables: SampleTables, run: FastRun) -> bool:
     """Whether no distance can exceed its extremes inside the step; some turn with others."""
-    plan, state, bodies = run.plan, run.state, tables.bodies
-    for k in range(plan.distances.shape[0]):
-        if leader_of(k, plan.distances) != k:
+    plan, state, bodies, at = run.plan, run.state, tables.bodies, run.running.at
+    for k in range(plan.distances.first.size):
+        if leader_of(k, at, plan.distances) != k:
             continue
-        first, second, start = plan.distances[k, 0], plan.distances[k, 1], start_of(k, plan)
+        first, second = plan.distances.first[k], plan.distances.second[k]
+        start, sag = start_of(k, plan.contacts), bound_of_pair(first, second, bodies.sag)
         x, rate = elongation(first, second, state.u, state.v)
         x_1, rate_1 = elongation(first, second, bodies.next_u, bodies.next_v)
-        i, sag = run.running.at.displacement + k, bound_of_pair(first, second, bodies.sag)
         if not (
-            _covered(i, start + x, start + x_1, sag, run.running)
+            _covered(at.gap + k, start + x, start + x_1, sag, run.running)
             or pair_goes_one_way(h, first, second, rate, rate_1, plan, tables)
         ):
             return False

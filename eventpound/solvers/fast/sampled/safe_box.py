@@ -28,10 +28,10 @@ def set_safe_box(tables: SampleTables, run: FastRun) -> None:
     for b in range(n):
         for c in range(b, n):
             box.low[b, c], box.high[b, c], box.way[b, c] = -np.inf, np.inf, 0.0
-    for k in range(distances.shape[0]):
-        i, start = running.at.displacement + k, start_of(k, plan)
+    for k in range(distances.first.size):
+        i, start = running.at.gap + k, start_of(k, contacts)
         low, high = running.minimum[i] - start, running.maximum[i] - start
-        _narrow(distances[k, 0], distances[k, 1], low, high, 0.0, tables)
+        _narrow(distances.first[k], distances.second[k], low, high, 0.0, tables)
     for a in range(links.offset.size):
         low, high, way = _box_of_link(a, plan, state)
         _narrow(links.ends[a, 0], links.ends[a, 1], low, high, way, tables)

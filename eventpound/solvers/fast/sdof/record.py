@@ -147,8 +147,8 @@ def take_settled(t: float, a: float, run: SdofRun) -> None:
     `a` is the absolute acceleration (m/s²): that of the ground where the body rests.
     """
     body, at, o, distances = run.body, run.running.at, run.plan.oscillator, run.plan.distances
-    for i in range(at.displacement, at.gap):
-        there = body.u if distances[i - at.displacement, 1] >= 0 else -body.u
+    for i in range(at.displacement, at.acceleration):
+        there = body.u if distances.second[i - at.gap] >= 0 else -body.u
         update_settled(i, there, t, run.running)
     if o.right >= 0:
         update_settled(at.gap + o.right, body.right, t, run.running)
