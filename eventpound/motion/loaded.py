@@ -141,23 +141,26 @@ class LoadedMotion:
 
 
 def _partings(moved: Sequence[GroundMotion], level: float) -> set[float]:
-    """Times after zero (s) at which two motions begin to differ, by more than a level (m/s²).
+    """Times after zero (s) at which motions that were the same begin to differ by a level (m/s²).
 
     Of records that is a sample. A Gaussian is looked at eight times in its width.
     """
     times: list[Floats] = []
     for piece in (piece for motion in moved for piece in motion.pieces()):
-        first, second = piece.coefficients[:2] if piece.coefficients.size > 1 else (0.0, 0.0)
         if piece.family is Family.SAMPLES:
-            times.append(first + np.arange(piece.samples.size) * second)
-        elif piece.family is Family.GAUSSIAN and second > 0.0:
-            times.append(first + _WIDTHS / np.sqrt(second))
+            start, dt = piece.coefficients[:2]
+            times.append(start + np.arange(piece.samples.size) * dt)
+        elif piece.family is Family.GAUSSIAN and piece.coefficients[1] > 0.0:
+            center, decay = piece.coefficients[:2]
+            times.append(center + _WIDTHS / np.sqrt(decay))
     if len(moved) == 1 or not times:
         return set()
     t, found = np.unique(np.concatenate(times)), set[float]()
     for one, other in combinations([motion.acceleration(t) for motion in moved], 2):
-        apart = np.abs(one - other) > level
-        found.update(t[:-1][apart[1:] & ~apart[:-1] & (t[:-1] > 0.0)].tolist())
+        same = np.abs(one - other) <= level
+        # At a single sample two records may be the same by chance.
+        parting = same[:-2] & same[1:-1] & ~same[2:] & (t[1:-1] > 0.0)
+        found.update(t[1:-1][parting].tolist())
     return found
 
 

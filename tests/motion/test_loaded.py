@@ -101,6 +101,31 @@ def test_supports_are_where_their_motions_take_them(ground: GroundMotion) -> Non
                 assert np.abs(np.subtract(found, np.subtract(own, still))).max() <= 2e-14
 
 
+def ends_beside(ground: GroundMotion, moved: GroundMotion) -> list[float]:
+    """Where pieces of ground and support end, of a scene whose largest acceleration is 1 m/s²."""
+    motion = LoadedMotion(ground, (Load(0, moved, driven=True),), 7, None, 1.0)
+    own = {piece.end for each in (ground, moved) for piece in each.pieces()}
+    return sorted({piece.end for piece in motion.pieces()} - own)
+
+
+def test_a_piece_ends_where_motions_that_were_the_same_part() -> None:
+    one, other = np.array([[0, 1, 2, 1, 2, 3, 1, 2], [0, 1, 2, 1, 0, 3, 0, 1]]) / 10.0
+    # They are the same once more, by chance.
+    assert ends_beside(Record(one, 0.5), Record(other, 0.5)) == [1.5]
+    assert ends_beside(Record(one, 0.5), Record(one, 0.5)) == []
+
+
+@pytest.mark.parametrize("kind", [Ricker, AntisymmetricRicker])
+def test_a_piece_ends_where_a_tail_has_begun(kind: type[Ricker | AntisymmetricRicker]) -> None:
+    wavelet = kind(1.0, 0.5, center=5.0)
+    for ground, moved in ((NoMotion(), wavelet), (wavelet, Delayed(wavelet, 0.2))):
+        (end,) = ends_beside(ground, moved)
+        apart = abs(float(ground.acceleration(np.array(end)) - moved.acceleration(np.array(end))))
+        assert 1e-13 < apart <= 1e-11
+    # As a run begins it is late for that.
+    assert ends_beside(NoMotion(), kind(1.0, 0.5, center=0.5)) == []
+
+
 @pytest.mark.parametrize("q", [0.0, 0.4])
 def test_integrals_of_any_cubic_beside_a_gaussian(q: float) -> None:
     """Its own differences over h err by h²/12 of a derivative, and by rounding over h."""
