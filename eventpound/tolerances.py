@@ -78,6 +78,9 @@ ZERO_SINGULAR_VALUE = 1e-9
 DEPENDENT = 1e-9
 """Part of its length, in the metric of the masses, below which what a row has beside the others
 is their rounding."""
+TAKEN_OVER = 1e-3
+"""Part of its bound by which friction that has just come to it is below it again where forces that
+are not unique are shared anew: far more than the error of a located force."""
 OF_DENSE_OUTPUT = 8.0 * EPS
 """Part of the largest value of a coordinate below which a coefficient of its dense output is
 rounding."""

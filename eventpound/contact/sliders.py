@@ -46,7 +46,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.box import least_in_box
 from eventpound.numerics.compiled import in_python
-from eventpound.tolerances import LCP_ROUNDING
+from eventpound.tolerances import LCP_ROUNDING, TAKEN_OVER
 
 
 def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Model) -> int:
@@ -183,7 +183,9 @@ def _take_sides(members: Ints, force: Floats, noise: float, at: Instant, model: 
             pressed[j] = value > noise and not at.released[j]
             continue
         link = model.sliders[j - own]
-        pressed[j] = not at.released[j] and model.law.memory[link, STRENGTH] - abs(value) > noise
+        bound = model.law.memory[link, STRENGTH]
+        # One that has just come to its bound may stick on where others take over its share.
+        pressed[j] = bound - abs(value) > (TAKEN_OVER * bound if at.released[j] else noise)
         if not pressed[j]:
             at.branch[link] = -np.sign(value)
     return pressed

@@ -535,6 +535,30 @@ def test_deck_at_a_wall_stays_there_while_a_tail_pushes_it(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+@pytest.mark.parametrize("bounds", [(1.0, 2.0), (2.0, 1.0)])
+def test_bearings_on_ground_and_pier_carry_together_more_than_one_can(
+    solver: str, bounds: tuple[float, float]
+) -> None:
+    ends = (GROUND, "pier")
+    bearings = [
+        Spring(f"on {end}", (end, "deck"), Slider(1.0, bound))
+        for end, bound in zip(ends, bounds, strict=True)
+    ]
+    scene = Scene(
+        (Body("deck", 1.0),),
+        bearings,
+        motion=Ricker(0.5, 0.5, center=12.0),
+        supports=(Support("pier", delay=0.3),),
+        forces=(Force("deck", Sine(2.5, 4.0)),),
+    )
+    response = simulate(scene, solver, 1e-9, duration=6.0, events=["slip"])
+    # Of a push of 2.5 and bounds of 1 and 2 no share is told, but that it is carried.
+    assert not response.recording.history.u.any()
+    assert response.spring_events is not None
+    assert response.spring_events.empty
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 @pytest.mark.parametrize("pull", [-0.2, 0.0])
 def test_deck_comes_to_rest_between_ground_and_what_a_tail_still_moves(
     solver: str, pull: float
