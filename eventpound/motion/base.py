@@ -36,6 +36,10 @@ class Family(IntEnum):
     """The ground and loads on bodies, each of a formula above; see `eventpound.motion.loaded`."""
 
 
+QUIET = 8.0
+"""Distance from its center, in its own time 1/sqrt(q), at which a Gaussian is nothing: 1.6e-28."""
+
+
 @dataclass(frozen=True, slots=True)
 class Piece:
     """One smooth stretch of a ground motion.

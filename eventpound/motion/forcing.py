@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Protocol
 
-from eventpound.motion.base import Family
+from eventpound.motion.base import QUIET, Family
 from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
@@ -30,8 +30,6 @@ _SAMPLES = int(Family.SAMPLES)
 _LOADED = int(Family.LOADED)
 GAUSSIAN_STEP = 0.5
 """Longest step under a Gaussian pulse, in its own time 1/sqrt(q)."""
-_QUIET = 8.0
-"""Distance from its center, in the same time, at which a Gaussian is nothing yet: 1.6e-28."""
 _SAMPLES_AT_ONCE = 8
 """Time steps of a record that one step may pass over."""
 
@@ -207,9 +205,9 @@ def _safe_step_of_signal(family: int, coefficients: Floats, t: float) -> float:
     if family != _GAUSSIAN or coefficients[1] <= 0.0:
         return math.inf
     width, to_center = 1.0 / math.sqrt(coefficients[1]), coefficients[0] - t
-    if abs(to_center) < (_QUIET + GAUSSIAN_STEP) * width:
+    if abs(to_center) < (QUIET + GAUSSIAN_STEP) * width:
         return GAUSSIAN_STEP * width
-    return to_center - _QUIET * width if to_center > 0.0 else math.inf
+    return to_center - QUIET * width if to_center > 0.0 else math.inf
 
 
 @scalar_kernel

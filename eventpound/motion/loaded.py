@@ -11,7 +11,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from eventpound.motion.base import Family, GroundMotion, Piece, Scales
+from eventpound.motion.base import QUIET, Family, GroundMotion, Piece, Scales
 from eventpound.motion.delayed import travelled
 from eventpound.motion.record import integrals
 from eventpound.numerics.arrays import Floats
@@ -19,8 +19,8 @@ from eventpound.tolerances import RISEN
 
 FIRST_ROW, ROW_WIDTH = 3, 10
 """Where the rows of a LOADED piece begin in its coefficients, and numbers in each."""
-_WIDTHS = np.linspace(-7.0, 7.0, 113)
-"""Where a Gaussian is looked at, in its widths; beyond, it is below 1e-19 of its peak."""
+_WIDTHS = np.arange(-QUIET, QUIET, 0.125)
+"""Where a Gaussian is looked at, from its center in its own time."""
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ class LoadedMotion:
 def _partings(moved: Sequence[GroundMotion], level: float) -> set[float]:
     """Times after zero (s) at which motions that were the same begin to differ by a level (m/s²).
 
-    Of records that is a sample. A Gaussian is looked at eight times in its width.
+    Of records that is a sample.
     """
     times: list[Floats] = []
     for piece in (piece for motion in moved for piece in motion.pieces()):
