@@ -44,7 +44,7 @@ from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.box import least_in_box
+from eventpound.numerics.box import least_in_box, without_rounding
 from eventpound.numerics.compiled import in_python
 from eventpound.tolerances import LCP_ROUNDING, TAKEN_OVER
 
@@ -152,7 +152,7 @@ def _forces(members: Ints, touching: Touching, at: Instant, model: Model) -> Flo
     # What slips along its branch has been pulled by that force.
     a -= W.T @ start / model.mass
     noise += LCP_ROUNDING * (np.abs(W.T) @ np.abs(start)) / model.mass
-    first = np.where(np.abs(W @ a) > np.abs(W) @ noise, W @ a, 0.0)
+    first = without_rounding(W @ a, np.abs(W) @ noise)
     # Those of supports may be less than the rounding of a sum, and still tell who gives way.
     q = np.column_stack((first, W[:, : model.supports] @ given.T))
     return least_in_box(W / model.mass @ W.T, q, low, high, start)
@@ -169,8 +169,7 @@ def _accelerations(touching: Touching, supports: int) -> tuple[Floats, Floats, F
     found = in_python(accelerations)(y, system, ORDER if supports else 1, touching)
     rough = in_python(round_as_the_scene)(system, touching.forcing)
     noise = in_python(noise_of)(found, np.zeros(mass.size), rough, system, touching)
-    given = found[:, :supports]
-    given[np.abs(given) <= noise[:, :supports]] = 0.0
+    found[:, :supports] = given = without_rounding(found[:, :supports], noise[:, :supports])
     return found[0], noise[0], given[given.any(axis=1)]
 
 

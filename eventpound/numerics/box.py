@@ -34,7 +34,7 @@ def least_in_box(G: Floats, q: Floats, low: Floats, high: Floats, start: Floats)
     x[:, 0] = start
     for _ in range(50 * low.size + 50):
         terms = np.abs(q) + np.abs(G) @ np.abs(x)
-        w = _without_rounding(G @ x + q, LCP_ROUNDING * terms)
+        w = without_rounding(G @ x + q, LCP_ROUNDING * terms)
         ways = np.where(x[:, 0] <= low, -1.0, 1.0) * [_sign(row) for row in w]
         wrong = np.flatnonzero(~passive & (ways > 0.0))
         if wrong.size == 0:
@@ -46,7 +46,7 @@ def least_in_box(G: Floats, q: Floats, low: Floats, high: Floats, start: Floats)
             to_bounds, inverse = G[P] * ~passive, np.linalg.inv(G[np.ix_(P, P)])
             terms = np.abs(q[P]) + np.abs(to_bounds) @ np.abs(x)
             found = -inverse @ (q[P] + to_bounds @ x)
-            x[P] = _without_rounding(found, LCP_ROUNDING * np.abs(inverse) @ terms)
+            x[P] = without_rounding(found, LCP_ROUNDING * np.abs(inverse) @ terms)
     return None
 
 
@@ -63,7 +63,7 @@ def _enter(
         P = np.flatnonzero(passive)
         along = np.zeros(passive.size)
         along[P], along[j] = -np.linalg.solve(G[np.ix_(P, P)], G[P, j]) * way, way
-        along = _without_rounding(along, LCP_ROUNDING * np.abs(along).max())
+        along = without_rounding(along, LCP_ROUNDING * np.abs(along).max())
         curvature = float(G[j] @ along) * way
         stops = []
         if curvature > SINGULAR * G[j, j]:
@@ -109,7 +109,8 @@ def _first(
     return blocking, bound, slack / speed
 
 
-def _without_rounding(values: Floats, noise: Floats) -> Floats:
+def without_rounding(values: Floats, noise: Floats) -> Floats:
+    """Values, those within their noise zero; arrays of one shape."""
     return np.where(np.abs(values) <= noise, 0.0, values)
 
 
