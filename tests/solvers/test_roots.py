@@ -376,3 +376,27 @@ def test_rows_of_a_step_with_a_root_at_its_end_are_on_its_polynomial(seed: int) 
     noise = 1e-9 * np.abs(u).max()
     assert np.all(u <= extremes.maximum + noise)
     assert np.all(u >= extremes.minimum - noise)
+
+
+def test_what_is_done_meanwhile_changes_no_direction(monkeypatch) -> None:
+    """Another thread may take free memory as soon as the library is called."""
+    found = library.ida_library()
+    told = []
+
+    class Busy:
+        def __getattr__(self, name: str) -> Any:
+            return getattr(found.ida, name)
+
+        def IDASetRootDirection(self, memory: int, ways: int) -> int:
+            others = [np.full(n, 7, np.intc) for n in range(1, 9) for _ in range(20)]
+            told.append(len(others))
+            return found.ida.IDASetRootDirection(memory, ways)
+
+    task = Task(pounding_pair(), 0.0, 6.0, 1e-8)
+    alone = solver_named("ida").solve(task)
+    monkeypatch.setattr(library, "ida_library", lambda: found._replace(ida=Busy()))
+    beside = solver_named("ida").solve(task)
+    assert told
+    assert alone.events
+    assert beside.events == alone.events
+    np.testing.assert_array_equal(beside.history.u, alone.history.u)

@@ -144,8 +144,9 @@ class _Memory:
         own, count = self._own, len(directions)
         flag = getattr(own, self.prefix + "RootInit")(self.address, count, callback)
         if flag == 0 and count:
-            ways = np.array(directions, ctypes.c_int).ctypes.data
-            flag = getattr(own, self.prefix + "SetRootDirection")(self.address, ways)
+            # Held by a name: a call lets other threads run, which take memory that is free.
+            ways = np.array(directions, ctypes.c_int)
+            flag = getattr(own, self.prefix + "SetRootDirection")(self.address, ways.ctypes.data)
         self._set_up((flag,))
 
     def _set_up(self, flags: Iterable[int]) -> None:
