@@ -35,7 +35,7 @@ def describe_scene(scene: Scene) -> dict[str, object]:
         "dashpots": [asdict(dashpot) for dashpot in scene.dashpots],
         "contacts": [_contact(contact) for contact in scene.contacts],
         "motion": scene.motion.kind,
-        **_driven(scene),
+        **driven(scene),
     }
 
 
@@ -45,7 +45,7 @@ def _contact(contact: Contact) -> dict[str, object]:
     return row if contact.law is not None else {k: v for k, v in row.items() if k != "law"}
 
 
-def _driven(scene: Scene) -> dict[str, object]:
+def driven(scene: Scene) -> dict[str, object]:
     """Supports and forces, of a scene that has some: kinds of motion, and hashes of their numbers.
 
     A hash is of the smooth pieces: of their ends, formulas and samples.
@@ -57,7 +57,7 @@ def _driven(scene: Scene) -> dict[str, object]:
                 "name": support.name,
                 "delay": support.delay,
                 "motion": support.moved_by(scene.motion).kind,
-                "pieces_sha256": _pieces_hash(support.moved_by(scene.motion)),
+                "pieces_sha256": pieces_hash(support.moved_by(scene.motion)),
             }
             for support in scene.supports
         ]
@@ -67,14 +67,14 @@ def _driven(scene: Scene) -> dict[str, object]:
                 "body": force.body,
                 "kind": force.history.kind,
                 "per_mass": force.per_mass,
-                "pieces_sha256": _pieces_hash(force.history),
+                "pieces_sha256": pieces_hash(force.history),
             }
             for force in scene.forces
         ]
     return found
 
 
-def _pieces_hash(motion: GroundMotion) -> str:
+def pieces_hash(motion: GroundMotion) -> str:
     """SHA-256 of the pieces of a motion."""
     whole = sha256()
     for piece in motion.pieces():

@@ -9,16 +9,13 @@ from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 
-import numpy as np
-
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.case.options import FAST
 from eventpound.case.suite import Member
 from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
-from eventpound.motion.record import Record
-from eventpound.results.description import describe_scene
+from eventpound.results.description import driven, pieces_hash
 from eventpound.results.jsontext import canonical
 from eventpound.results.manifest import versions
 from eventpound.scene.scene import Scene
@@ -150,22 +147,17 @@ def base_of(
 def described(base: Base) -> Base:
     """The same, told by its scene as it is, which need not be that of the file any more."""
     case = base.case
-    scene = describe_scene(case.scene)
     found = understood_case("", _motion(case.scene.motion), case.scene, case.run, case.solver)
-    found |= {key: scene[key] for key in ("supports", "forces") if key in scene}
     return replace(base, case=replace(case, understood=found))
 
 
 def _motion(motion: GroundMotion) -> dict[str, object]:
-    """A motion made in Python by all that decides it."""
+    """A motion made in Python by its numbers; the samples of a record are in its pieces."""
     numbers = {
         field.name: getattr(motion, field.name)
         for field in fields(motion)  # type: ignore[arg-type]
         if field.name not in ("samples", "source")
     }
-    if isinstance(motion, Record):
-        samples = np.ascontiguousarray(motion.samples, "<f8").tobytes()
-        numbers["samples_sha256"] = hashlib.sha256(samples).hexdigest()
     return {"kind": motion.kind, **numbers}
 
 
@@ -287,12 +279,13 @@ def _deciding(understood: Mapping[str, object]) -> dict[str, object]:
 
 
 def _described(base: Base) -> dict[str, object]:
-    pi = base.case.pi
-    record = base.case.record
+    pi, scene = base.case.pi, base.case.scene
     return {
         "labels": base.labels,
         "case": _deciding(base.case.understood),
-        "record_sha256": None if record is None else record.sha256,
+        # Files that the case names are in these as they were read.
+        "pieces_sha256": pieces_hash(scene.motion),
+        **driven(scene),
         "pi": None
         if pi is None
         else {

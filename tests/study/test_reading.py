@@ -59,6 +59,25 @@ def test_rows_are_a_product_the_last_axis_fastest(make_study):
     assert rows.lengths == pytest.approx(6 * 2 * np.pi, rel=1e-15)
 
 
+@pytest.mark.parametrize(
+    "driven",
+    [
+        '[[force]]\nbody = "left"\nfile = "beside.csv"',
+        '[[support]]\nname = "pier"\n[support.excitation]\nkind = "record"\n'
+        'file = "beside.csv"\nunits = "g"',
+    ],
+)
+def test_a_file_that_a_case_names_decides_its_study(make_study, tmp_path, driven):
+    digests = []
+    for value in ("1", "2", "1"):
+        (tmp_path / "case").mkdir(exist_ok=True)
+        rows = "".join(f"{0.01 * i:.2f},{value}\n" for i in range(9))
+        (tmp_path / "case" / "beside.csv").write_text(rows)
+        axis = '[study]\nquantities = ["impacts"]\n[[study.axis]]\nkey = "contact.joint.gap"\n'
+        digests.append(make_study(f"{PAIR}{driven}\n{axis}values = [0.01]\n").study.digest)
+    assert digests[0] == digests[2] != digests[1]
+
+
 def test_terms_are_met_at_the_amplitude_and_period_of_their_row(make_study):
     text = (
         ELASTOPLASTIC
