@@ -158,9 +158,18 @@ def test_a_killed_study_gives_the_identical_table(make_study, tmp_path):
     assert not list(out.rglob("*.partial"))
 
 
-def start(directory):
+def test_processes_end_with_a_study_that_is_killed(make_study):
+    case = make_study(MANY)
+    process = start(case.directory, "--processes", "2", stdout=subprocess.PIPE)
+    wait_for_a_chunk(Store(case.directory / "results", case.study), {}, process)
+    process.kill()
+    # Its end is where the last of all that may write to it is gone.
+    process.communicate(timeout=60)
+
+
+def start(directory, *options, stdout=subprocess.DEVNULL):
     command = [sys.executable, "-m", "eventpound", "study", str(directory), "--no-figures"]
-    return subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    return subprocess.Popen([*command, *options], stdout=stdout)
 
 
 def files(store):

@@ -6,6 +6,7 @@ computes one run at a time, and is given processes.
 
 from __future__ import annotations
 
+import os
 import signal
 import warnings
 from collections.abc import Callable, Iterable, Iterator
@@ -18,7 +19,8 @@ from concurrent.futures import (
 )
 from concurrent.futures.process import BrokenProcessPool
 from itertools import chain
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
+from threading import Thread
 
 from eventpound.case.options import FAST
 from eventpound.errors import ComputationError
@@ -142,10 +144,19 @@ def computed(
 def _begin(study: Plan) -> None:
     """Keep the study in a new process, so that a chunk is all that is sent."""
     global _study
+    Thread(target=_end_with_parent, daemon=True).start()
     # Ctrl-C reaches every process of a terminal; the one that asked for the chunks answers it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.showwarning = show_warning
     _study = study
+
+
+def _end_with_parent() -> None:
+    """End once the one that asked is gone: killed, it cannot say that there are no more chunks."""
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
 
 
 def _compute(chunk: Chunk) -> bytes:
