@@ -84,11 +84,13 @@ class Terminable:
 
 
 def is_interruption(error: BaseException) -> bool:
-    """Whether an error is a Ctrl-C, or the complaint of compiled code that one came.
+    """Whether an error is a Ctrl-C, or the complaint of compiled code or of a lock that one came.
 
     Compiled code may take the exception for a fault of what it called, and complains of it
-    with a `SystemError`; through some layers, of its own complaint again.
+    with a `SystemError`; through some layers, of its own complaint again. A lock of Python that
+    one came to while it was taken complains that it is not taken.
     """
-    while isinstance(error, SystemError) and error.__cause__ is not None:
-        error = error.__cause__
-    return isinstance(error, KeyboardInterrupt)
+    found: BaseException | None = error
+    while isinstance(found, (SystemError, RuntimeError)):
+        found = found.__cause__ or found.__context__
+    return isinstance(found, KeyboardInterrupt)

@@ -6,6 +6,7 @@ import re
 import shlex
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -72,15 +73,23 @@ def test_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
     assert "interrupted" in capsys.readouterr().err
 
 
-def test_interruption_that_compiled_code_overlooked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interruption_that_others_complain_of(monkeypatch: pytest.MonkeyPatch) -> None:
     def overlooked(_: Path) -> None:
         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
+
+    def not_taken(_: Path) -> None:
+        lock = threading.Lock()
+        try:
+            raise KeyboardInterrupt
+        finally:
+            lock.release()
 
     def broken(_: Path) -> None:
         raise SystemError("broken")
 
-    monkeypatch.setattr(eventpound.cli.arguments, "load", overlooked)
-    assert main(["run", ".", "--export", "out"]) == 130
+    for complain in (overlooked, not_taken):
+        monkeypatch.setattr(eventpound.cli.arguments, "load", complain)
+        assert main(["run", ".", "--export", "out"]) == 130
     monkeypatch.setattr(eventpound.cli.arguments, "load", broken)
     with pytest.raises(SystemError, match="broken"):
         main(["run", ".", "--export", "out"])

@@ -90,8 +90,7 @@ def _run(options: Options) -> int:
     except (InputError, ComputationError) as error:
         complain(f"{located(str(error))}")
         return error.exit_code
-    except (KeyboardInterrupt, SystemError) as error:
-        # Compiled code of some package may return as if nothing had been raised.
+    except (KeyboardInterrupt, SystemError, RuntimeError) as error:
         if not is_interruption(error):
             raise
         complain("interrupted")
