@@ -268,3 +268,18 @@ def test_an_impulse_passed_on_opens_nothing(solver: str, seeds: range) -> None:
         kinds = [event.kind for event in recording.events if event.contact == 0]
         assert kinds == [EventKind.REST, EventKind.IMPACT]
         assert recording.v[0] == 0.0
+
+
+def test_bodies_without_springs_part_from_a_third_together(solver: str) -> None:
+    # Both contact forces are parts of one spring force, so they vanish in one instant, in which
+    # rounding has hold of the smaller first. What is left of it is nothing that parts b from c.
+    bodies = tuple(
+        Body(name, mass, -0.05) for name, mass in zip("abc", (0.6, 4.5, 0.15), strict=True)
+    )
+    contacts = (Contact("ab", "a", "b", 0.0, 0.0), Contact("bc", "b", "c", 0.0, 0.0))
+    spring, dashpot = Spring("s", (GROUND, "a"), Linear(80.0)), Dashpot((GROUND, "a"), 0.7)
+    scene = Scene(bodies, (spring,), (dashpot,), contacts)
+    for rtol in np.geomspace(1e-5, 1e-11, 61):
+        recording = solver_named(solver).solve(Task(scene, 0.0, 0.5, rtol))
+        told = [(e.kind, e.contact) for e in recording.events if e.t > 0.0]
+        assert told == [(EventKind.DETACHMENT, 0)], rtol

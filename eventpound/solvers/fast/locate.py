@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.kinks import still_rate
-from eventpound.contact.modes import force_vanishes
+from eventpound.contact.modes import force_vanishes, release_reach
 from eventpound.contact.rest import closing_time
 from eventpound.mechanics.elements import (
     branch_ends,
@@ -285,7 +285,6 @@ def _zero_of_z(order: int, limit: float, z: int, run: FastRun) -> float:
 def _releases(order: int, h: float, first: float, run: FastRun) -> float:
     plan, state, series, located = run.plan, run.state, run.series, run.located
     limits, forces = plan.limits, series.contact_force
-    any_released = False
     level = force_level(state.progress[0].clusters, limits, series)
     for end in range(2 * state.resting.size):
         j = end // 2
@@ -303,16 +302,27 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
             _drop_rounding(force, order, level, plan, series)
         tau = release_time(force, order - 1, h, min(h, first), level, kept, series.work)
         first = _note(tau, first, j, located.released, located)
-        any_released = any_released or located.released[j]
-    if any_released:
+    reach = -1.0
+    for end in range(2 * state.resting.size):
+        if located.released[end // 2] and _has_end(end, order, run):
+            _, slope = _margin_and_slope(end, first, order, run)
+            reach = max(reach, release_reach(slope, level, limits.time))
+    if reach >= 0.0:
         for end in range(2 * state.resting.size):
             j = end // 2
             if state.unlocked[j] and _has_end(end, order, run):
-                force = series.d if of_slider(j, run) else forces[j]
-                value, slope = value_and_slope(force[: order - 1], first)
-                vanishes = force_vanishes(value, slope, level, limits.time)
+                value, slope = _margin_and_slope(end, first, order, run)
+                vanishes = force_vanishes(value, slope, level, reach, limits.time)
                 located.released[j] = located.released[j] or vanishes
     return first
+
+
+@compiled
+def _margin_and_slope(end: int, tau: float, order: int, run: FastRun) -> tuple[float, float]:
+    """The contact force at tau (s), or what `_has_end` has set of a slider's, and its rate."""
+    j, series = end // 2, run.series
+    force = series.d if of_slider(j, run) else series.contact_force[j]
+    return value_and_slope(force[: order - 1], tau)
 
 
 @compiled
