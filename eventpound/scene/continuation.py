@@ -11,22 +11,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from eventpound.errors import InputError
 from eventpound.given import number
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.check import check_scene, starts_of_supports
 from eventpound.scene.contact import BARRIER, opening
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Backfill, BoucWen, DegradingBoucWen
+from eventpound.scene.spring import GROUND, Hysteretic
 from eventpound.units import Dimension
 
 FinalState = Mapping[str, Mapping[str, float]]
 """As `eventpound.Response.final`: u and v of each body (m, m/s), variables of each memory."""
 _DIMENSIONS = {"u": Dimension.LENGTH, "v": Dimension.VELOCITY}
-_BEYOND = 0.1
-"""Part of its bound by which z may exceed it at the end of a run of the largest tolerance."""
 
 
 def state_of(scene: Scene, u: Floats, v: Floats, z: Floats) -> FinalState:
@@ -66,18 +62,9 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
     springs = []
     for spring in scene.springs:
         law = spring.law
-        if isinstance(law, Backfill):
+        if isinstance(law, Hysteretic):
             first, second = (places.get(end, 0.0) for end in spring.between)
-            gap = law.residual_gap(second - first, state[spring.name]["z"])
-            law = replace(law, initial_gap=max(gap, law.gap))
-        if isinstance(law, BoucWen):
-            z = state[spring.name]["z"]
-            # What a tolerance leaves beyond the bound is a spring that has yielded.
-            within = float(np.clip(z, -law.bound, law.bound))
-            law = replace(law, initial_z=within if abs(z - within) <= _BEYOND * law.bound else z)
-        if isinstance(law, DegradingBoucWen):
-            lost = law.lost(law.initial_z, state[spring.name][law.second])
-            law = replace(law, initial_loss=max(lost, 0.0))
+            law = law.going_on(second - first, state[spring.name])
         springs.append(replace(spring, law=law))
     later = replace(scene, bodies=tuple(bodies), springs=tuple(springs))
     check_scene(later, start)

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, replace
 from enum import StrEnum
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 
@@ -46,6 +46,8 @@ _WIDER = Accepted("a length of at least gap (m), or 0", lambda s, g: g in (0.0, 
 _Stiffness = Annotated[Number, Dimension.STIFFNESS, _NOT_BELOW]
 _Force = Annotated[Number, Dimension.FORCE, Accepted("a positive force (N)", above_zero)]
 _Loss = Annotated[Number, Dimension.NUMBER, Accepted("a number >= 0", not_negative)]
+_BEYOND = 0.1
+"""Part of its bound by which z may exceed it at the end of a run of the largest tolerance."""
 DRAWN = 40
 """Parts of a curve that stands for a law."""
 
@@ -160,6 +162,10 @@ class Hysteretic:
         """The z of a start at an elongation (m)."""
         raise NotImplementedError
 
+    def going_on(self, elongation: float, state: Mapping[str, float]) -> Self:
+        """The same law where a run ended, at an elongation (m), its memory in that state."""
+        raise NotImplementedError
+
     def drawn(self) -> tuple[list[float], list[float]]:
         """Elongations (m) and forces (N) of a loop that shows what it does."""
         raise NotImplementedError
@@ -223,6 +229,13 @@ class BoucWen(Hysteretic):
     def z_at(self, elongation: float) -> float:
         """The z of a start at an elongation (m)."""
         return self.initial_z
+
+    def going_on(self, elongation: float, state: Mapping[str, float]) -> Self:
+        """The same law where a run ended, its memory in that state."""
+        # What a tolerance leaves beyond the bound is a spring that has yielded.
+        z, bound = state["z"], self.bound
+        within = min(max(z, -bound), bound)
+        return replace(self, initial_z=within if abs(z - within) <= _BEYOND * bound else z)
 
     @property
     def bound(self) -> float:
@@ -335,6 +348,12 @@ class DegradingBoucWen(BoucWen):
         lost = self.lost(z, epsilon) - self.initial_loss
         return self.strength * self.yield_displacement * lost
 
+    def going_on(self, elongation: float, state: Mapping[str, float]) -> Self:
+        """The same law where a run ended, its memory in that state."""
+        later = BoucWen.going_on(self, elongation, state)
+        lost = self.lost(later.initial_z, state[self.second])
+        return replace(later, initial_loss=max(lost, 0.0))
+
     def lost(self, z: float, epsilon: float) -> float:
         """What of epsilon is lost, in parts of ``Q u_y``."""
         a = 0.5 * self.stiffness_degradation * z**2
@@ -428,6 +447,10 @@ class Backfill(Hysteretic):
         z = (elongation + max(self.initial_gap, self.gap)) / self.yield_displacement
         depth = self.offset - elongation
         return max(z, -self.push(depth) / self.strength) if depth > 0.0 else z
+
+    def going_on(self, elongation: float, state: Mapping[str, float]) -> Self:
+        """The same law where a run ended, at an elongation (m), its memory in that state."""
+        return replace(self, initial_gap=max(self.residual_gap(elongation, state["z"]), self.gap))
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -547,6 +570,10 @@ class Slider(Hysteretic):
     def z_at(self, elongation: float) -> float:
         """The z of a start: its sign is on the branches of the law."""
         return 1.0
+
+    def going_on(self, elongation: float, state: Mapping[str, float]) -> Self:
+        """The same law: forces tell whether a slider sticks."""
+        return self
 
     def drawn(self) -> tuple[list[float], list[float]]:
         """Elongations (m) and forces (N) of a slip there and back."""

@@ -13,7 +13,7 @@ from eventpound import modal_damping
 from eventpound.case import load_case
 from eventpound.cli import main
 from eventpound.report.law_panel import laws_of
-from eventpound.report.model_figure import _LAWS, model_figure
+from eventpound.report.model_figure import _CALLED, _LAWS, model_figure
 from eventpound.report.model_layout import HIGH, LEVEL, Layout, layout_of
 from eventpound.report.model_links import LinkPath, crosses, routes_of
 from eventpound.report.style import PALETTE
@@ -33,6 +33,7 @@ from eventpound.scene import (
     Slider,
     Spring,
 )
+from eventpound.scene.spring import LawName
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -329,3 +330,7 @@ def test_corners_of_one_joint_are_named_one_above_the_other() -> None:
     axes = model_figure(Scene(bodies, springs, contacts=tuple(joint))).axes[0]
     (said,) = [text.get_text() for text in axes.texts if "acute" in text.get_text()]
     assert said.split("\n")[::2] == ["acute", "obtuse"]
+
+
+def test_every_law_has_its_look() -> None:
+    assert {_CALLED.get(word, word) for word in LawName} <= set(_LAWS)

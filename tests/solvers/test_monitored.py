@@ -18,6 +18,7 @@ from eventpound.mechanics.monitored import (
     Sizes,
     blank_extremes,
     columns_of_kind,
+    distances_of,
     places_in,
 )
 from eventpound.motion.record import Record
@@ -171,3 +172,13 @@ def _run(scene: Scene, solver: str) -> Recording:
     task = Task(scene, 0.0, 1.5, 1e-5, settings=settings)
     with nullcontext() if solver in ("cvode", "ida") else by_python():
         return solver_named(solver).solve(task)
+
+
+def test_a_distance_of_two_bodies_stands_before_displacements_or_is_a_spring() -> None:
+    # Bodies that go by themselves look at what stands before; a spring keeps two from doing so.
+    model = assemble(shaken())
+    at, distances = places_in(model), distances_of(model)
+    assert at.gap == 0
+    ends = list(zip(distances.first.tolist(), distances.second.tolist(), strict=True))
+    behind = {pair for pair in ends[at.displacement :] if min(pair) >= 0}
+    assert behind <= {(int(first), int(second)) for first, second in model.link_ends}

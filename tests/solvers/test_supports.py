@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,7 +37,7 @@ from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.pi_terms import pi_terms
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import EventKind, Recording, Task
+from eventpound.solvers.base import EventKind, Extremes, Recording, Task
 from tests.properties.transforms import scaled
 from tests.solvers.scenes import pounding_pair
 from tests.solvers.ways import WAYS, directly_and_by
@@ -737,3 +737,22 @@ def test_complete_similarity(solver: str, factors: tuple[float, float, float]) -
     else:
         assert apart <= 1e-8 * scale
         assert np.abs(second.u / length - first.u).max() <= 1e-8 * scale
+
+
+def _sizes(recording: Recording) -> dict[str, tuple[int, ...]]:
+    """Shapes of what a recording has of the whole run."""
+    found = {field.name: getattr(recording, field.name) for field in fields(recording)}
+    sizes = {name: value.shape for name, value in found.items() if isinstance(value, np.ndarray)}
+    extremes = {name: value for name, value in found.items() if isinstance(value, Extremes)}
+    return sizes | {name: value.maximum.shape for name, value in extremes.items()}
+
+
+def test_nothing_in_a_recording_is_of_a_support(solver: str) -> None:
+    scene = pounding_pair()
+    spring, *others = scene.springs
+    moved = replace(spring, between=tuple("p" if e == GROUND else e for e in spring.between))
+    beside = replace(scene, springs=(moved, *others), supports=(Support("p", 0.1),))
+    on_ground, on_support = (
+        solver_named(solver).solve(Task(each, 0.0, 1.0, 1e-6)) for each in (scene, beside)
+    )
+    assert _sizes(on_support) == _sizes(on_ground)
