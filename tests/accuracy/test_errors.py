@@ -11,8 +11,9 @@ import pytest
 
 from eventpound import load_case
 from eventpound.accuracy.quantities import FINAL, PEAKS, errors_of
-from eventpound.accuracy.reference import reference_of
+from eventpound.accuracy.reference import StatedBounds, reference_of
 from eventpound.errors import InputError
+from eventpound.score import ScaledValue
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Extremes
@@ -106,10 +107,19 @@ def test_loose_runs_have_larger_errors(pair):
 
 
 def test_a_certificate_that_contradicts_the_case(pair, tmp_path):
-    from eventpound.accuracy.reference import StatedBounds
-
     case, truth = pair
     (value,) = (q.value for q in truth.truth.quantities if q.name == "final.stiff.u")
     stated = StatedBounds(tmp_path / "c.json", {"final.stiff.u": (value + 1e-3, 1e-6)})
     with pytest.raises(InputError, match=r"c\.json: final\.stiff\.u = .* run eventpound verify"):
         reference_of(case, case.run, stated)
+
+
+@pytest.mark.parametrize(("off", "taken"), [(1e-5, True), (1e-3, False)])
+def test_a_certificate_beside_a_run_that_nothing_checked(tmp_path, off, taken) -> None:
+    own = ScaledValue("final.stiff.u", 0.02, 0.05, "m", np.nan)
+    stated = StatedBounds(tmp_path / "c.json", {own.name: (own.value + off, 1e-6)})
+    if taken:
+        assert stated.instead_of([own])[0].value == own.value + off
+    else:
+        with pytest.raises(InputError, match="run eventpound verify again"):
+            stated.instead_of([own])
