@@ -117,9 +117,10 @@ LAST_SPEED = 1e-15
 """Closing speeds below this part of the scene's own, L/T, are taken as plastic. The fastest of
 the run would depend on where it begins: a run continued from a state of another must go on as
 that does."""
-LAST_SPEED_OF_SLIDERS = 1e-12
+LAST_SPEED_OF_SLIDERS = 1e-11
 """The same in a scene with sliders: near `SPEED` friction has no direction any more, and would let
-what loses nothing bounce on."""
+what loses nothing bounce on. The flights between slower ones are one instant (`TOGETHER`): a body
+that friction stopped again after each would go on for ever."""
 LISTED_SPEED = 1e-9
 """Impacts slower than this part of the fastest are counted, not listed."""
 FADED = 1e-12
