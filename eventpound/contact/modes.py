@@ -65,22 +65,13 @@ def ends_of_stick(slip: float) -> tuple[float, float]:
 
 
 @scalar_kernel
-def release_reach(rate: float, level: float, time: float) -> float:
-    """Time (s) by which the instant in which a contact force vanishes is unknown.
+def force_vanishes(force: float, rate: float, level: float, slowest: float, time: float) -> bool:
+    """Whether a contact force (N) vanishes in the instant in which others do.
 
-    In it the force passes its own rounding. Arguments as below.
+    Such forces do so within rounding of each other, the smaller one first to be no more than that:
+    the instant is known to the time in which the slowest of the others passes its own. One that
+    dies away is small, but does not vanish. rate (N/s); level: rounding of the forces (N);
+    slowest: smallest |rate| of the others (N/s); time: the scene's own (s).
     """
-    longest = RELEASED_AT * time
-    return level / abs(rate) if level < abs(rate) * longest else longest
-
-
-@scalar_kernel
-def force_vanishes(force: float, rate: float, level: float, reach: float, time: float) -> bool:
-    """Whether a contact force (N) vanishes in the instant in which another does.
-
-    Such forces do so within rounding of each other, the smaller one first to be no more than that;
-    one that dies away is small, but does not vanish. rate (N/s); level: rounding of the force (N);
-    reach: of that instant, by `release_reach` of the other; time: the scene's own (s).
-    """
-    near = max(level, abs(rate) * reach)
-    return abs(force) <= near and abs(force) <= abs(rate) * RELEASED_AT * time
+    near = abs(force) <= level or abs(force) * slowest <= level * abs(rate)
+    return near and abs(force) <= abs(rate) * RELEASED_AT * time

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.contact.kinks import passes_kink
-from eventpound.contact.modes import force_vanishes, release_reach
+from eventpound.contact.modes import force_vanishes
 from eventpound.mechanics.monitored import Running, motion_of, update_turning_point
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools
@@ -309,16 +309,16 @@ def add_vanished(observed: Observed, watched: Watched, rules: Rules, located: Lo
 
     Of links that pass their kink in it, what follows is told by the other branch.
     """
-    reach, level = -1.0, watched.force_noise
+    slowest, level = np.inf, watched.force_noise
     for j in range(located.released.size):
         if located.released[j]:
             _, rate = margin_at_rest(j, watched, observed.contact_force)
-            reach = max(reach, release_reach(rate, level, rules.time))
-    if reach < 0.0:
+            slowest = min(slowest, abs(rate))
+    if slowest == np.inf:
         return
     for j in range(located.released.size):
         force, rate = margin_at_rest(j, watched, observed.contact_force)
-        if watched.unlocked[j] and force_vanishes(force, rate, level, reach, rules.time):
+        if watched.unlocked[j] and force_vanishes(force, rate, level, slowest, rules.time):
             located.released[j] = True
     for a in range(located.kinked.size):
         margin, rate = margin_on_branch(a, watched, observed.elongation)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.kinks import still_rate
-from eventpound.contact.modes import force_vanishes, release_reach
+from eventpound.contact.modes import force_vanishes
 from eventpound.contact.rest import closing_time
 from eventpound.mechanics.elements import (
     branch_ends,
@@ -302,17 +302,17 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
             _drop_rounding(force, order, level, plan, series)
         tau = release_time(force, order - 1, h, min(h, first), level, kept, series.work)
         first = _note(tau, first, j, located.released, located)
-    reach = -1.0
+    slowest = np.inf
     for end in range(2 * state.resting.size):
         if located.released[end // 2] and _has_end(end, order, run):
             _, slope = _margin_and_slope(end, first, order, run)
-            reach = max(reach, release_reach(slope, level, limits.time))
-    if reach >= 0.0:
+            slowest = min(slowest, abs(slope))
+    if slowest < np.inf:
         for end in range(2 * state.resting.size):
             j = end // 2
             if state.unlocked[j] and _has_end(end, order, run):
                 value, slope = _margin_and_slope(end, first, order, run)
-                vanishes = force_vanishes(value, slope, level, reach, limits.time)
+                vanishes = force_vanishes(value, slope, level, slowest, limits.time)
                 located.released[j] = located.released[j] or vanishes
     return first
 
