@@ -24,6 +24,7 @@ from threading import Thread
 
 from eventpound.case.options import FAST
 from eventpound.errors import ComputationError
+from eventpound.interruption import Deferred
 from eventpound.study.engines.base import Engine
 from eventpound.study.plan import Chunk, Plan
 from eventpound.study.sweep import cores
@@ -31,6 +32,8 @@ from eventpound.study.table import Keep, compute
 from eventpound.warned import show_warning
 
 _MOST_BREAKS = 8
+_LOOK = 0.1
+"""How long a signal waits at most (s) while all chunks are being computed."""
 _study: Plan | None = None
 
 
@@ -124,21 +127,31 @@ def computed(
     room: Callable[[], int],
     flight: dict[Chunk, Future[bytes] | None],
 ) -> Iterator[tuple[Chunk, bytes]]:
-    """Chunks as they are done, as many in `flight` as there is room for, which holds them."""
-    while True:
-        while len(flight) < room() and (chunk := next(waiting, None)) is not None:
-            flight[chunk] = None
-            flight[chunk] = submit(chunk)
-        running = {future: chunk for chunk, future in flight.items() if future is not None}
-        if not running:
-            return
-        done = wait(running, return_when=FIRST_COMPLETED).done
-        # In the order of the chunks, where several are done.
-        for future, chunk in running.items():
-            if future in done:
-                rows = future.result()
-                del flight[chunk]
-                yield chunk, rows
+    """Chunks as they are done, as many in `flight` as there is room for, which holds them.
+
+    A signal that ends the program is answered when what is done by then has been handed over.
+    """
+    with Deferred(patient=False) as signals:
+        while True:
+            ending = signals.noted is not None
+            room_left = not ending
+            while room_left and len(flight) < room() and (chunk := next(waiting, None)) is not None:
+                flight[chunk] = None
+                flight[chunk] = submit(chunk)
+            running = {future: chunk for chunk, future in flight.items() if future is not None}
+            if not running:
+                return
+            if not ending:
+                wait(running, _LOOK, FIRST_COMPLETED)
+            # In the order of the chunks, where several are done.
+            for future, chunk in running.items():
+                # The same signal may have ended the processes.
+                if future.done() and not (signals.noted and future.exception()):
+                    rows = future.result()
+                    del flight[chunk]
+                    yield chunk, rows
+            if ending:
+                return
 
 
 def _begin(study: Plan) -> None:
