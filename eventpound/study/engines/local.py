@@ -133,15 +133,14 @@ def computed(
     """
     with Deferred(patient=False) as signals:
         while True:
-            ending = signals.noted is not None
-            room_left = not ending
-            while room_left and len(flight) < room() and (chunk := next(waiting, None)) is not None:
+            going_on = signals.noted is None
+            while going_on and len(flight) < room() and (chunk := next(waiting, None)) is not None:
                 flight[chunk] = None
                 flight[chunk] = submit(chunk)
             running = {future: chunk for chunk, future in flight.items() if future is not None}
             if not running:
                 return
-            if not ending:
+            if going_on:
                 wait(running, _LOOK, FIRST_COMPLETED)
             # In the order of the chunks, where several are done.
             for future, chunk in running.items():
@@ -150,7 +149,7 @@ def computed(
                     rows = future.result()
                     del flight[chunk]
                     yield chunk, rows
-            if ending:
+            if not going_on:
                 return
 
 
