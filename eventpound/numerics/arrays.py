@@ -12,8 +12,12 @@ Bytes = NDArray[np.uint8]
 Records = NDArray[np.void]
 
 
-def longer(rows: Floats, times: int) -> Floats:
-    """The rows with room behind them, `times` as many in all."""
-    result = np.empty((times * rows.shape[0], rows.shape[1]))
+GROWTH = 4
+"""Times the room there was, where it is too little."""
+
+
+def longer(rows: Floats, wanted: int) -> Floats:
+    """The rows with room behind them, for as many as are wanted at the least."""
+    result = np.empty((max(GROWTH * rows.shape[0], wanted), rows.shape[1]))
     result[: rows.shape[0]] = rows
     return result

@@ -230,6 +230,16 @@ def test_pauses_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert 0.0 < seen[0] < seen[-1] < END
 
 
+def test_room_of_a_shorter_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run in the arrays of one with few output times makes room for all of its own at once."""
+    forget_arrays(monkeypatch)
+    seen: list[float] = []
+    solver_named("fast").solve(Task(PAIR, 0.0, END, 1e-8, output_times=np.array([END])))
+    times = np.linspace(0.0, END, 50_000)
+    solver_named("fast").solve(Task(PAIR, 0.0, END, 1e-8, output_times=times, progress=seen.append))
+    assert seen.count(0.0) == 1
+
+
 def test_a_failure_keeps_what_was_computed(monkeypatch: pytest.MonkeyPatch) -> None:
     # The kernel is called four times for forty steps each, then says that it failed.
     calls: list[int] = []

@@ -205,13 +205,14 @@ class EventRun:
         located.closing[:], located.released[:], located.kinked[:] = closing, released, kinked
 
     def make_room(self) -> None:
-        """Double the room for lines and for events, where it is half full."""
+        """Make room for more lines and events, where it is half full."""
         record, journal = self.record, self.record.journal
-        written, taken = int(journal.cursor[WRITTEN]), int(self.state.now["events"][0])
-        if 2 * (written + journal.times.size - journal.cursor[PASSED]) > journal.rows.shape[0]:
-            record = record._replace(journal=journal._replace(rows=longer(journal.rows, 2)))
-        if 2 * taken > record.events.shape[0]:
-            record = record._replace(events=longer(record.events, 2))
+        written, passed = int(journal.cursor[WRITTEN]), int(journal.cursor[PASSED])
+        lines, events = written + journal.times.size - passed, int(self.state.now["events"][0])
+        if 2 * lines > journal.rows.shape[0]:
+            record = record._replace(journal=journal._replace(rows=longer(journal.rows, lines)))
+        if 2 * events > record.events.shape[0]:
+            record = record._replace(events=longer(record.events, events))
         self.record = with_address(record)
         instant = with_address(self.arrays.instant._replace(events=record.events))
         self.arrays = with_address(self.arrays._replace(record=self.record, instant=instant))

@@ -86,8 +86,6 @@ BUDGET = 20_000
 """Steps between two reports of progress."""
 FIRST_ROOM = 256
 """Events for which there is room at first."""
-GROWTH = 4
-"""Times the room there was, where it is too little."""
 MOST_EVENTS = 2_000_000
 """Events after which a run gives up, before they fill the memory."""
 SHAPES_KEPT = 8
@@ -404,9 +402,11 @@ def _enlarged(record: FastRecord, plan: FastPlan, state: FastState) -> FastRecor
     rows, events = record.rows, record.events
     wanted = in_python(events_wanted)(plan.contacts.left.size, state.now[0])
     if wanted > events.shape[0]:
-        events = longer(events, GROWTH)
-    if in_python(rows_wanted)(plan.output_times.size, state.progress[0]) > rows.shape[0]:
-        rows = longer(rows, GROWTH)
+        events = longer(events, wanted)
+    # A run before may have left room for much fewer output times.
+    wanted = in_python(rows_wanted)(plan.output_times.size, state.progress[0])
+    if wanted > rows.shape[0]:
+        rows = longer(rows, wanted + 2 * FIRST_ROOM)
     return record._replace(events=events, rows=rows)
 
 
