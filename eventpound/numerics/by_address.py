@@ -243,33 +243,24 @@ class WithAddress:
         Where there is anything else in it.
     """
 
-    __slots__ = ("_first", "_numba_type_", "_table", "address", "group")
+    __slots__ = ("_numba_type_", "_parts", "_table", "address", "group")
 
     def __init__(self, group: Any) -> None:
-        self._first: Any = None
+        self._parts: Any = None
         self._numba_type_, self._table = _listed(group)
         self.address = self._table.buffer_info()[0]
         self.group = group
 
-    def change_to(self, group: Any) -> None:
-        """Put another group of the same kind at the same address."""
-        kind, table = _listed(group)
-        if kind is not self._numba_type_:
-            raise TypeError(f"{type(group).__name__} is of another kind than before")
-        # Of the same length, so that it is filled where it is.
-        self._table[:] = table
-        self.group = group
+    def change_to(self, group: Any, *, first: bool = False) -> None:
+        """Put another group of the same kind at the same address, or into the first field.
 
-    def change_first(self, group: Any) -> None:
-        """Put another group of the same kind into the first field, at the same address.
-
-        Of its own fields only those that are others are listed anew.
+        Only fields that are others are listed anew. Of one group it is always the same of the two.
         """
-        own, *others = self.group
-        if self._first is None:
-            self._first = [_marked(each) for each in own]
+        present = self.group[0] if first else self.group
+        if self._parts is None:
+            self._parts = [_marked(each) for each in present]
         begin = 0
-        for known, was, now in zip(self._first, own, group, strict=True):
+        for known, was, now in zip(self._parts, present, group, strict=True):
             end = begin + len(known[1])
             if now is not was:
                 marks, words = _marked(now)
@@ -277,7 +268,7 @@ class WithAddress:
                     raise TypeError(f"{type(group).__name__} is of another kind than before")
                 self._table[begin:end] = array("q", words)
             begin = end
-        self.group = type(self.group)(group, *others)
+        self.group = type(self.group)(group, *self.group[1:]) if first else group
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.group, name)
@@ -297,7 +288,7 @@ def change_group(addressed: Group, group: Group) -> None:
 
 def change_first(addressed: Any, group: Any) -> None:
     """Put another group of the same kind into the first field of one with an address."""
-    addressed.change_first(group)
+    addressed.change_to(group, first=True)
 
 
 def fields_of(addressed: Any) -> tuple[Any, ...]:

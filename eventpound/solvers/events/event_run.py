@@ -23,7 +23,7 @@ from eventpound.motion.base import Piece
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Bools, Floats, Ints, longer
-from eventpound.numerics.by_address import with_address
+from eventpound.numerics.by_address import change_group, fields_of, with_address
 from eventpound.numerics.compiled import in_python
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Event, History, LawRecording, Task, steps_used_up
@@ -33,12 +33,14 @@ from eventpound.solvers.events.modes import Mode, ModeTable
 from eventpound.solvers.events.recorder import PASSED, WRITTEN, Journal, history_of, row_width
 from eventpound.solvers.events.run import Located, LoopProgress, Rules, Run, RunRecord, State
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
-from eventpound.solvers.events.step_check import broken_contact, contact_error
+from eventpound.solvers.events.step_check import Examination, broken_contact, contact_error
 from eventpound.tolerances import DRIFTED, FLAT_WITHIN, FORCE, GAP, LENGTH
 
 SPARE_ROWS = 64
 """Lines of the history for which there is room at first beside those at output times, and
 rows of events."""
+Z_EXCESS = 10.0
+"""Multiples of rtol by which |z| may exceed its bound at the end of a step."""
 
 
 def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
@@ -111,8 +113,6 @@ class EventRun:
         What compiled code works on, with an address.
     rules, state, record : Rules, State, RunRecord
         Parts of it.
-    step_observations : tuple of Observed
-        Those of `eventpound.solvers.events.step_check.Examination`, the same for every segment.
     mode : Mode
         The present one; `enter_mode` brings it up to date.
     unique_forces : ndarray of bool, shape (K,)
@@ -130,7 +130,9 @@ class EventRun:
         self.record = _record_of(task, model, self.scales)
         self.arrays = _run_of(self.rules, self.state, self.record, model)
         # What lies between the ends of a step is looked at anew whenever it is asked for.
-        self.step_observations = blank_observations(model, 2) + self.arrays.observations
+        self._observations = blank_observations(model, 2) + self.arrays.observations
+        self._forcing: Forcing
+        self._examinations: dict[int, Examination] = {}
         self.enter_mode()
 
     @property
@@ -216,6 +218,7 @@ class EventRun:
         self.record = with_address(record)
         instant = with_address(self.arrays.instant._replace(events=record.events))
         self.arrays = with_address(self.arrays._replace(record=self.record, instant=instant))
+        self._examinations.clear()
 
     def events(self) -> list[Event]:
         """Everything listed so far, in order of time."""
@@ -234,19 +237,47 @@ class EventRun:
         return history_of(rows, self.unique_forces, self.model)
 
     def piece(self, piece: Piece, stop: float) -> CurrentPiece:
-        """A piece of the ground motion up to `stop` (s), with an address."""
-        return with_address(
-            CurrentPiece(
-                int(piece.family),
-                np.ascontiguousarray(piece.coefficients),
-                np.ascontiguousarray(piece.samples),
-                stop,
-            )
-        )
+        """Begin a piece of the ground motion up to `stop` (s), with an address."""
+        family, coefficients = int(piece.family), np.ascontiguousarray(piece.coefficients)
+        samples = np.ascontiguousarray(piece.samples)
+        self._forcing = with_address(Forcing(family, coefficients, samples, self.t))
+        self._examinations.clear()
+        return with_address(CurrentPiece(family, coefficients, samples, stop))
 
-    def forcing(self, piece: CurrentPiece) -> Forcing:
-        """The ground motion from the present instant on."""
-        return Forcing(piece.family, piece.coefficients, piece.samples, self.t)
+    def forcing(self) -> Forcing:
+        """The ground motion from the present instant on, at the same address in all of a piece."""
+        change_group(self._forcing, self._forcing._replace(start=self.t))
+        return self._forcing
+
+    def examination(self, frame: Floats, *, finds_events: bool) -> Examination:
+        """What steps of the present mode are examined with, the present instant as their start.
+
+        It is made once in a piece. Where the integrator `finds_events` itself only extremes are
+        looked for.
+        """
+        mode, size, arrays = self.mode, self.mode.system.size, self.arrays
+        if id(mode) not in self._examinations:
+            self._examinations[id(mode)] = with_address(
+                Examination(
+                    mode.unwatched if finds_events else mode.dynamics,
+                    self._forcing,
+                    frame,
+                    self._observations,
+                    np.zeros((2, size)),
+                    np.zeros((2, size)),
+                    self.record,
+                    arrays.marks,
+                    self.scales.z_bound,
+                    Z_EXCESS * self.task.rtol,
+                )
+            )
+        e = self._examinations[id(mode)]
+        # The instant was made ready where it was settled.
+        e.y[0], e.rate[0] = arrays.y[:size], arrays.rate[:size]
+        both = e.observations[0], arrays.observations[0]
+        for observed, values in zip(*map(fields_of, both), strict=True):
+            observed[...] = values
+        return e
 
     def report_time(self, t: float) -> None:
         """Report the time reached (s).

@@ -16,7 +16,6 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.by_address import fields_of, with_address
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work
@@ -39,14 +38,11 @@ from eventpound.solvers.events.step_check import (
     EVENT_FOUND,
     MARKED,
     NOT_FINITE,
-    Examination,
     check_energy,
 )
 from eventpound.solvers.events.step_search import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.tolerances import FRAMED, STOP_AT_SAMPLES
 
-Z_EXCESS = 10.0
-"""Multiples of rtol by which |z| may exceed its bound at the end of a step."""
 MOST_HALVINGS = 40
 """Times a step is halved before the run gives up."""
 STEPS_AT_ONCE = 256
@@ -82,37 +78,21 @@ class Segment:
         self.event_run, self.integrator, self.piece, self.frame = run, integrator, piece, frame
         self.mode, self.origin = run.mode, run.t
         self.start = self.end = self.reached = 0.0
-        self.forcing = run.forcing(piece)
+        self.forcing = run.forcing()
         self._first = self._reached_row = 0
         self._excess = -1.0
         self._length = piece.stop - self.origin
         run.state.progress["finder"][0] = INTEGRATOR if integrator.finds_events else OURSELVES
         pressed = self.mode.bodies.resting.size > 0
-        _, sinusoid, _ = in_python(shortest_times)(piece.family, piece.coefficients)
-        self._longest = SINUSOID_STEP * sinusoid if pressed else np.inf
+        self._longest = np.inf
+        if pressed:
+            _, sinusoid, _ = in_python(shortest_times)(piece.family, piece.coefficients)
+            self._longest = SINUSOID_STEP * sinusoid
         # In a moving frame a step is inspected from sample to sample.
         close = (pressed and frame.shape[1] == 0) or run.task.rtol < STOP_AT_SAMPLES
         self._stops = piece.family >= Family.SAMPLES and close
         size = self.mode.system.size
-        e = self._examined = with_address(
-            Examination(
-                self.mode.unwatched if integrator.finds_events else self.mode.dynamics,
-                self.forcing,
-                frame,
-                run.step_observations,
-                np.zeros((2, size)),
-                np.zeros((2, size)),
-                run.record,
-                run.arrays.marks,
-                run.scales.z_bound,
-                Z_EXCESS * run.task.rtol,
-            )
-        )
-        # The instant was made ready where it was settled.
-        e.y[0], e.rate[0] = run.arrays.y[:size], run.arrays.rate[:size]
-        both = e.observations[0], run.arrays.observations[0]
-        for observed, values in zip(*map(fields_of, both), strict=True):
-            observed[...] = values
+        e = self._examined = run.examination(frame, finds_events=integrator.finds_events)
         self.atol = run.arrays.atol[:size].copy()
         self._start = Start(self.mode, self.forcing, frame, e.y[0].copy(), self.atol)
         integrator.start(self._start)

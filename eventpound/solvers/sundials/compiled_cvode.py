@@ -261,6 +261,8 @@ class DirectCvode(Direct):
     def __init__(self, library: Any, rtol: float, method: str) -> None:
         super().__init__()
         self.library, self.rtol, self.method = library, rtol, method
+        # What a mode and a frame are integrated in, told sooner than by its layout.
+        self._served: dict[tuple[int, bool], tuple[CvodeMemory, CvodeHandles]] = {}
 
     def _meaning(self, flag: int) -> str:
         # Only a run that fails pays for scikit-sundae, which brings SciPy.
@@ -273,7 +275,10 @@ class DirectCvode(Direct):
         system = mode.directed
         system.direction[:] = 0.0
         self._hand(CvodeData(self._calls, system, mode.bodies, forcing, frame, roots))
-        memory, self._handles = self._memory_for(layout(system, frame, self.rtol, atol))
+        served = id(mode), frame.shape[1] > 0
+        if served not in self._served:
+            self._served[served] = self._memory_for(layout(system, frame, self.rtol, atol))
+        memory, self._handles = self._served[served]
         # The first step begins anew.
         self._handles.reached[TURNED] = tau
         if self._roots is not None:
