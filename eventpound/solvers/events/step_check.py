@@ -36,7 +36,7 @@ is allowed; something may have happened; an event that the integrator found, at 
 
 
 class Examination(NamedTuple):
-    """What an examination works on, kept from step to step of a segment; with an address.
+    """What an examination works on, kept for all steps of a mode in a piece; with an address.
 
     dynamics, record, marks: the mode, what the run leaves and marks, with addresses. frame:
     the moving frame. observations: both ends, two between, and any other. y, rate (2, size):
