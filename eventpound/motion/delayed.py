@@ -57,7 +57,13 @@ class Delayed:
 
     def acceleration(self, t: Floats) -> Floats:
         """Acceleration, shape of `t` (m/s^2)."""
-        return self.motion.acceleration(np.asarray(t) - self.delay)
+        t = np.asarray(t, dtype=float)
+        borders = np.array([piece.start for piece in self.motion.pieces()[1:]])
+        place = np.searchsorted(borders + self.delay, t, "right")
+        # t - delay rounds, perhaps to the other side of a jump.
+        low = np.append(-np.inf, borders)[place]
+        high = np.nextafter(np.append(borders, np.inf), -np.inf)[place]
+        return self.motion.acceleration(np.clip(t - self.delay, low, high))
 
     def velocity(self, t: Floats) -> Floats:
         """Velocity, shape of `t` (m/s)."""

@@ -28,6 +28,7 @@ from eventpound.results.description import describe_scene, describe_spring
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
 from eventpound.scene.body import Body
+from eventpound.scene.contact import Contact
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Law, Series, Spring
@@ -44,6 +45,7 @@ CONVENTIONS = {
     "elongation": "x = B^T u: u of the second end minus u of the first, the ground's u is 0",
     "spring_force": "F > 0 pulls the ends together",
     **{law.word.value: law.equation for law in get_args(Law)},
+    "initial": "z of each spring that has one, in their order; then each epsilon",
     "contact": "gap g = delta + W^T u >= 0, complementary to its force lambda >= 0",
     "impact": "M (v+ - v-) = W L, 0 <= W^T v+ + epsilon W^T v- complementary to L >= 0",
     "motion": (
@@ -57,6 +59,15 @@ WITH_SUPPORTS = {
         " to the ground; sa is linear between rows. C_s has a column a support, B_s and W_s a row:"
         " M u'' + C u' + C_s s' + sum_s B[:,s] F_s - W lambda = -M 1 a_g(t),"
         " x = B^T u + B_s^T s, g = delta + W^T u + W_s^T s, gap rates W^T v + W_s^T s'"
+    ),
+}
+WITH_LAWS = {
+    "contact laws": (
+        "a contact with a law has no impact; its lambda is, while d = -g > 0, k d (linear),"
+        " k d + 2 damping sqrt(k m) d' (kelvin-voigt; where tension is false not below 0),"
+        " k d^1.5 (hertz), k d^1.5 (1 + damping d'/d0') with d0' the d' as it closed (hertz-damp),"
+        " k d^1.5 + 2 damping sqrt(k sqrt(d) m) d' while d' > 0 and then k d^1.5 (jankowski);"
+        " k is its stiffness, m = 1/sum_i W_i^2/M_i"
     ),
 }
 WITH_FORCES = {
@@ -81,7 +92,7 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
     """
     warn_left_out(case, Way.EXPORT)
     start, end = case.run.start_time, case.run.start_time + case.run.duration
-    scene_json = {"title": case.title, "start": start, "end": end} | _scene(case.scene)
+    scene_json = {"title": case.title, "start": start, "end": end} | _scene(case.scene, start)
     columns = _motion_columns(case.scene, start, end)
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     lines = "".join(",".join(map(repr, row)) + "\n" for row in rows)
@@ -202,21 +213,33 @@ def _sample_times(piece: Piece) -> Floats:
     return np.asarray(t_0 + dt * np.arange(piece.samples.size))
 
 
-def _scene(scene: Scene) -> dict[str, object]:
-    return describe_scene(scene) | {
+def _scene(scene: Scene, start: float) -> dict[str, object]:
+    told = replace(scene, contacts=tuple(_with_damping(contact) for contact in scene.contacts))
+    return describe_scene(told) | {
         "conventions": CONVENTIONS
+        | (WITH_LAWS if any(contact.law for contact in scene.contacts) else {})
         | (WITH_SUPPORTS if scene.supports else {})
         | (WITH_FORCES if scene.forces else {}),
         "springs": [_spring(spring) for spring in scene.springs],
-        **arrays_of(scene),
+        **arrays_of(scene, start),
     }
 
 
-def arrays_of(scene: Scene) -> dict[str, object]:
-    """Masses, matrices, gaps and initial state of a scene, by the names of ``scene.json``."""
+def _with_damping(contact: Contact) -> Contact:
+    """A contact whose law has its constant, where a restitution gives it."""
+    law = contact.law
+    return replace(contact, law=replace(law, damping=contact.damping)) if law else contact
+
+
+def arrays_of(scene: Scene, start: float = 0.0) -> dict[str, object]:
+    """Masses, matrices, gaps and state at the start, by the names of ``scene.json``."""
     # Supports are ends as bodies are, and come first.
     count = len(scene.supports)
-    ends = tuple(Body(support.name, 1.0) for support in scene.supports)
+    moved = [support_motion(support, scene.motion, np.array(start)) for support in scene.supports]
+    ends = tuple(
+        Body(support.name, 1.0, float(s), float(rate))
+        for support, (s, rate) in zip(scene.supports, moved, strict=True)
+    )
     model = assemble(replace(scene, bodies=(*ends, *scene.bodies), supports=(), forces=()))
     b_links = model.elongations(np.eye(model.bodies))
     C, B = b_links * model.law.damping @ b_links.T, b_links[:, : model.springs]

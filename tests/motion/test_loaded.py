@@ -180,6 +180,15 @@ def test_a_motion_later(motion: GroundMotion) -> None:
     assert later.end == motion.end + 0.3
 
 
+@pytest.mark.parametrize("delay", np.linspace(0.01, 1.3, 100))
+def test_a_later_jump_is_where_its_piece_begins(delay: float) -> None:
+    motion = Cosine(1.0, 0.9, start=0.1)
+    later = Delayed(motion, delay)
+    for piece, values in zip(later.pieces()[1:], ((0.0, 1.0), (1.0, 0.0)), strict=True):
+        t = np.array([np.nextafter(piece.start, -np.inf), piece.start])
+        np.testing.assert_allclose(later.acceleration(t), values, atol=1e-14)
+
+
 def test_a_wavelet_has_begun_long_before() -> None:
     """Displacement from -inf: what `start` counts from is not where it was at rest."""
     ricker = Ricker(2.0, 0.8)

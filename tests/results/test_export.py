@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
 from eventpound.case.case import Case, RunOptions, SolverOptions
-from eventpound.motion import Record, Sine
+from eventpound.motion import Cosine, Record, Sine
 from eventpound.motion.base import Family, Piece, Scales
 from eventpound.motion.constant import PhasedSine
 from eventpound.motion.free import NoMotion
@@ -20,8 +20,10 @@ from eventpound.results import export
 from eventpound.results.export import sampled_motion
 from eventpound.scene import (
     GROUND,
+    Backfill,
     Body,
     Contact,
+    ContactLaw,
     Dashpot,
     Force,
     Linear,
@@ -189,6 +191,30 @@ def test_supports_as_another_program_reads_them(tmp_path):
     last = np.array([column["s.p"][-1], column["s.q"][-1]])
     gap = np.array(given["gaps"]) + W.T @ y[:2] + W_s.T @ last
     assert np.abs(gap - ours.history.gap[-1]).max() <= 1e-5
+
+
+def exported(scene, start, directory):
+    export(Case("", scene, RunOptions(start, 1.0, 0.01), *_UNUSED), directory)
+    return json.loads((directory / "scene.json").read_text())
+
+
+def test_soil_at_a_support_that_has_moved(tmp_path):
+    """What is not touched has z = (x + gap)/u_y > 0, wherever the support is at the start."""
+    soil = Spring("soil", ("p", "a"), Backfill(1e3, 8.0, 0.8, 0.3))
+    pulse, start = Cosine(1.0, 2.0), 0.5
+    scene = Scene((Body("a", 1.0),), (soil,), supports=(Support("p", motion=pulse),))
+    place = (1.0 - math.cos(math.pi * start)) / math.pi**2
+    (z,) = exported(scene, start, tmp_path)["initial"]["z"]
+    assert z == pytest.approx((0.3 - place) / (8.0 / 0.8 / 1e3), rel=1e-12)
+
+
+def test_a_contact_law_is_said(tmp_path):
+    law = ContactLaw("kelvin-voigt", 1e6)
+    scene = Scene((Body("a", 1.0),), contacts=(Contact("c", "a", "barrier", 0.1, 0.5, law),))
+    found = exported(scene, 0.0, tmp_path)
+    assert "kelvin-voigt" in found["conventions"]["contact laws"]
+    ratio = math.log(2.0) / math.hypot(math.pi, math.log(2.0))
+    assert found["contacts"][0]["law"]["damping"] == pytest.approx(ratio, rel=1e-15)
 
 
 def test_without_supports_nothing_is_said_of_them(scene):
