@@ -63,6 +63,8 @@ def largest_responses(
     """
     t = history.t
     h, place, rate = np.diff(t), motion.displacement(t), motion.velocity(t)
+    # From the double before 0 to 0: of such a length no product is left.
+    h[h < np.finfo(float).tiny] = 0.0
     found = np.zeros((len(bodies), len(ratios), periods.size, 2))
     for i, b in enumerate(bodies):
         u, v, a = history.u[:, b] + place, history.v[:, b] + rate, history.a[:, b]

@@ -11,9 +11,12 @@ import pandas as pd
 import pytest
 
 from eventpound import load_case, simulate
+from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.cli import main
 from eventpound.errors import InputError
-from eventpound.motion import Record, Sine
+from eventpound.motion import Cosine, Record, Sine
+from eventpound.motion.base import GroundMotion
+from eventpound.motion.free import NoMotion
 from eventpound.response import Response
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.study.response_spectrum import response_spectrum
@@ -30,8 +33,12 @@ def struck_once(velocity: float = 0.5, restitution: float = 0.6) -> Scene:
     return Scene((Body("a", 1.0, velocity=velocity),), contacts=(contact,))
 
 
-def test_one_impact_in_closed_form() -> None:
-    response = simulate(struck_once(), "fast", 1e-10, duration=8.0)
+# At t = 0 the ground jumps beside a body that is free by then.
+@pytest.mark.parametrize("motion", [NoMotion(), Cosine(0.5, 1.0)])
+def test_one_impact_in_closed_form(motion: GroundMotion) -> None:
+    scene, run = replace(struck_once(), motion=motion), RunOptions(-0.5, 8.0, 0.01)
+    case = Case("", scene, run, SolverOptions("fast", 1e-10), Path(), "", None, (), {})
+    response = simulate(case)
     found = response.floor_spectrum("a", PERIODS, [0.0, 0.05, 0.2])
     # An impulse (1 + e) v on an oscillator at rest.
     w, xi = 2.0 * np.pi / found["period"], found["damping"]
