@@ -7,11 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eventpound import Study, load_case, simulate
+from eventpound import Study, load_case, prepare, simulate
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Cosine, Record
-from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Scene, Spring
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    Body,
+    BoucWen,
+    Contact,
+    Linear,
+    Scene,
+    Spring,
+    Support,
+)
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.study.table import read_table
 from tests.motion.readers.writers import at2, motion
@@ -193,3 +203,16 @@ def test_records_set_the_lengths_of_a_scene(scene: Scene, tmp_path: Path) -> Non
         quantities=["t_final"],
     ).run()
     assert np.diff(found["t_final"]) == pytest.approx(50 * 0.02)
+
+
+def test_a_record_at_a_support_sets_the_lengths_of_the_runs(scene: Scene) -> None:
+    """Five periods follow it, which are longer of a heavier body."""
+    recorded = Support("pier", motion=Record(np.sin(np.arange(50.0)), 0.02))
+    frame = Spring("frame", ("pier", "deck"), Linear(1000.0))
+    scene = replace(scene, springs=(frame,), supports=(recorded,))
+    masses = [100.0, 400.0]
+    found = Study(scene, {"body.deck.mass": masses}, quantities=["t_final"]).run()
+    periods = 2.0 * np.pi * np.sqrt(np.array(masses) / 1000.0)
+    assert found["t_final"].to_numpy() == pytest.approx(49 * 0.02 + 5.0 * periods)
+    heavy = prepare(scene).run({"body.deck.mass": masses[1]})
+    assert heavy.recording.t == found["t_final"][1]
