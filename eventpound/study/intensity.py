@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.case.table import Table
+from eventpound.errors import InputError
 from eventpound.study.figure import one_or_several
 from eventpound.study.plan import Plan
 
@@ -96,9 +97,20 @@ def fractile_curves(table: pd.DataFrame, plan: IntensityPlan) -> pd.DataFrame:
     DataFrame
         A row an intensity, in rising order: the measure, ``runs`` that have a
         demand, and a column a fractile, ``16 %``, NaN where there is none.
+
+    Raises
+    ------
+    InputError
+        Where a record has several rows at one intensity: another axis varies, too.
     """
     import pandas as pd
 
+    known = table[[plan.measure, plan.records]].dropna()
+    if known.duplicated().any():
+        raise InputError(
+            f"[intensity]: several rows have one {plan.records} and one {plan.measure}, of which "
+            "there is no one fractile; accepted: a study in which no other axis varies"
+        )
     rows = []
     for intensity, group in table.groupby(plan.measure, sort=True):
         demands = group[plan.demand].dropna().to_numpy(float)

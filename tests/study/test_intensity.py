@@ -53,6 +53,15 @@ def test_failed_runs_have_no_demand():
     assert np.isnan(curves["50 %"][1])
 
 
+def test_demands_of_another_axis_are_not_mixed():
+    """Under two gaps a record has two demands at one intensity."""
+    rows = [(gap, 1.0, name, gap) for gap in (0.1, 0.2) for name in "ab"]
+    table = pd.DataFrame(rows, columns=["gap", "pga", "file", "peak"])
+    assert fractile_curves(table[table["gap"] == 0.1], PLAN)["runs"].tolist() == [2]
+    with pytest.raises(InputError, match="several rows have one file and one pga"):
+        fractile_curves(table, PLAN)
+
+
 @pytest.fixture
 def records(tmp_path):
     """Three records beside the case."""
