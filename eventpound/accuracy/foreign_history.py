@@ -20,10 +20,12 @@ from eventpound.accuracy.reference import Reference, reference_of
 from eventpound.accuracy.work_precision import Judged
 from eventpound.case.case import Case
 from eventpound.errors import InputError
+from eventpound.mechanics.supported import lowered, moving_supports, support_motion
 from eventpound.numerics.arrays import Floats
 from eventpound.score import SAME_TIME, Difference, Motion, ScoreError, columns_of, read_motion
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.from_samples import sampled_recording
+from eventpound.solvers.supported import own_part
 
 _READ_OFF = "impacts read off the velocities"
 
@@ -134,9 +136,15 @@ def judge_history(case: Case, history: ForeignHistory, truth: Reference, label: 
         if beside is not None:
             other = reference_of(replace(case, scene=beside.task.scene), run, None)
             truth = replace(truth, rigid=other)
-    task = Task(case.scene, float(t[0]), float(t[-1]), truth.task.rtol, {}, np.unique(t))
+    scene = lowered(case.scene, float(t[0]))
+    task = Task(scene, float(t[0]), float(t[-1]), truth.task.rtol, {}, np.unique(t))
+    # Contacts and springs may be at supports, which no history holds.
+    moving = [support_motion(s, case.scene.motion, t) for s in moving_supports(case.scene)]
     v = np.full_like(motion.u, np.nan) if motion.v is None else motion.v
-    recording = sampled_recording(task, t, motion.u, v, motion.z, events=history.events)
+    u, v = (np.column_stack([*(m[i] for m in moving), x]) for i, x in enumerate((motion.u, v)))
+    recording = sampled_recording(task, t, u, v, motion.z, events=history.events)
+    if scene is not case.scene:
+        recording = own_part(recording, case.scene)
 
     def errors(by: Reference) -> Difference:
         return errors_of(case.scene, recording, by.truth, by.rows(task.output_times))

@@ -48,18 +48,18 @@ def with_supports(task: Task, solve: Callable[[Task], Recording]) -> Recording:
         if error.recording is None:
             raise
         closed = _closed_in(error.recording, scene)
-        error.recording = _own_part(error.recording, scene)
+        error.recording = own_part(error.recording, scene)
         if closed is None:
             raise
         raise closed from error
     closed = _closed_in(recording, scene)
     if closed is not None:
         raise closed
-    return _own_part(recording, scene)
+    return own_part(recording, scene)
 
 
-def _own_part(recording: Recording, scene: Scene) -> Recording:
-    """A recording without the bodies that stand for supports."""
+def own_part(recording: Recording, scene: Scene) -> Recording:
+    """A recording without the bodies that stand for supports in the lowered `scene`."""
     own = len(moving_supports(scene))
     h = recording.history
     history = replace(h, u=h.u[:, own:], v=h.v[:, own:], a=h.a[:, own:])
@@ -191,5 +191,5 @@ def _closed_in(recording: Recording, scene: Scene) -> ComputationError | None:
         f"supports close in on what contacts hold between them ({', '.join(row)}) and leave it no "
         "motion; give the contacts wider gaps, or put springs in their place",
         t,
-        _own_part(recording, scene),
+        own_part(recording, scene),
     )

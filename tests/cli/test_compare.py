@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+import math
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from scipy.optimize import brentq
 
 from eventpound.accuracy import compare
 from eventpound.cli import main
@@ -129,6 +131,37 @@ def test_our_own_history_has_no_error(case, capsys):
     assert float(run["graph_distance"]) == 0.0
     assert float(run["final_error"]) == 0.0
     assert (run["impacts_matched"], run["impact_shift"]) == ("5", "0.0")
+
+
+def test_impacts_on_a_support_are_read_off(tmp_path):
+    """A wall sets out, s' = (a/w) (1 - cos w t), and strikes a free ball: its only impact."""
+    case, a, w, gap, e = tmp_path / "case", 1.0, math.pi, 0.2, 0.5
+    case.mkdir()
+    (case / "case.toml").write_text(
+        f"""excitation = {{ kind = "none" }}
+        run = {{ duration = 1.5 }}
+        body = [{{ name = "ball", mass = 3.0 }}]
+        [[support]]
+        name = "wall"
+        excitation = {{ kind = "sine", amplitude = {a}, period = {2.0 * math.pi / w} }}
+        [[contact]]
+        between = ["wall", "ball"]
+        name = "face"
+        gap = {gap}
+        restitution = {e}"""
+    )
+    struck = brentq(lambda t: (a / w) * (t - math.sin(w * t) / w) - gap, 0.0, 1.0, xtol=1e-15)
+    speed = (1.0 + e) * (a / w) * (1.0 - math.cos(w * struck))
+    lines = [f"{struck * k / 100!r},0,0" for k in range(101)]
+    times = [struck + (1.5 - struck) * k / 100 for k in range(101)]
+    lines += [f"{t!r},{speed * (t - struck)!r},{speed!r}" for t in times]
+    (tmp_path / "ball.csv").write_text("\n".join(["t,u.ball,v.ball", *lines]))
+    words = ["--solvers", "none", "--against", str(tmp_path / "ball.csv")]
+    assert main(["compare", str(case), *words]) == 0
+    (run,) = _rows(case / "comparison" / "comparison.csv")
+    found = [run[f"impacts_{word}"] for word in ("matched", "missed", "extra")]
+    assert found == ["1", "0", "0"]
+    assert max(float(run[key]) for key in ("impact_shift", "graph_distance")) < 1e-9
 
 
 def test_rests_and_detachments_are_matched(tmp_path, capsys):
