@@ -250,10 +250,11 @@ def test_a_wrong_index_is_one_message(tmp_path, capsys, text, says):
     assert error.count("\n") == 1
 
 
-def test_supports_are_refused(tmp_path):
-    """The files of a problem would leave them out."""
+@pytest.mark.parametrize("case", ["passing-wave", "pair-with-law"])
+def test_what_the_files_have_no_place_for_is_refused(tmp_path, case):
+    """Supports and contact laws would be left out."""
     folder = tmp_path / "01-wave"
-    shutil.copytree(SET.folder.parent / "passing-wave", folder)
+    shutil.copytree(SET.folder.parent / case, folder)
     problem = replace(SET.problems[0], folder=folder)
-    with pytest.raises(InputError, match=r"01-wave: has supports or forces.*eventpound run"):
+    with pytest.raises(InputError, match=r"01-wave: has supports, forces or .*eventpound run"):
         problem_json(SET, problem)
