@@ -15,11 +15,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters, is_support
+from eventpound.mechanics.contact_elements import FIRST_CODE
+from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.contact_problem import parts, solve_contacts
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.observables import difference
-from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce, state_vector
+from eventpound.mechanics.reduced import (
+    Branches,
+    Forcing,
+    Reduced,
+    link_motion,
+    reduce,
+    state_vector,
+)
 from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_taylor
@@ -235,7 +244,7 @@ def _first_deciding(
     for highest in (1, ORDER):
         found = accelerations(now.y, now.system, highest, touching)
         left = left_over(now, found[0], touching)
-        noise = noise_of(found, left, now.rough, now.system, touching)
+        noise = noise_of(found, left, now.rough, now.y, now.system, touching)
         for order in range(highest):
             opening_of(now, found[order], noise[order], opening, level)
             deciding = False
@@ -257,14 +266,14 @@ def accelerations(y: Floats, system: Reduced, highest: int, touching: Touching) 
 
 @kernel
 def noise_of(
-    found: Floats, left_over: Floats, rough: Bools, system: Reduced, touching: Touching
+    found: Floats, left_over: Floats, rough: Bools, y: Floats, system: Reduced, touching: Touching
 ) -> Floats:
     """Noise of `accelerations` that are `found`, (orders, C).
 
-    left_over (C,): what counts as rounding of the first beside its own. rough: of `Pairs`.
+    left_over (C,): what counts as rounding of the first beside its own. rough, y: of `Pairs`.
     """
     orders, forcing = found.shape[0], touching.forcing
-    ground, stiffness = np.zeros(orders), _initial_stiffness(system)
+    ground, (stiffness, damping) = np.zeros(orders), _slopes(y, system)
     ground_taylor(forcing, forcing.start, orders, ground)
     # In the tails of a pulse high orders are large beside what they are derivatives of.
     time = min(touching.time, decay_time(forcing, forcing.start))
@@ -278,7 +287,7 @@ def noise_of(
             noise[order, c] = max(part * absolute, rounding[order, c])
             if order == 0:
                 rounding[0, c] = max(rounding[0, c], left_over[c])
-        _pass_on(rounding, order, system, stiffness)
+        _pass_on(rounding, order, system, stiffness, damping)
         own, part = own / (time * (order + 1)), UNDECIDED
     return noise
 
@@ -311,16 +320,23 @@ def _left_over(now: Pairs, acceleration: Floats, touching: Touching) -> Floats:
 
 
 @kernel
-def _initial_stiffness(system: Reduced) -> Floats:
-    """Initial stiffness of each link (N/m), shape (A,)."""
-    stiffness = system.stiffness.copy()
+def _slopes(y: Floats, system: Reduced) -> tuple[Floats, Floats]:
+    """Initial stiffness (N/m) and damping (N s/m) of each link, of an element those at y, (A,)."""
+    stiffness, damping = system.stiffness.copy(), system.damping.copy()
     for a in range(stiffness.size):
-        stiffness[a] += memory_stiffness(a, system.memory)
-    return stiffness
+        if system.iz[a] <= FIRST_CODE:
+            code, (x, x_rate), f = system.iz[a], link_motion(a, y, system), system.preload[a]
+            slopes = element_pull(code, stiffness[a], f, damping[a], x, x_rate, 0.0)
+            stiffness[a], damping[a] = abs(slopes[1]), slopes[2]
+        else:
+            stiffness[a] += memory_stiffness(a, system.memory)
+    return stiffness, damping
 
 
 @kernel
-def _pass_on(rounding: Floats, order: int, system: Reduced, stiffness: Floats) -> None:
+def _pass_on(
+    rounding: Floats, order: int, system: Reduced, stiffness: Floats, damping: Floats
+) -> None:
     """What the rounding of an order makes by way of the links in the next two.
 
     `rounding` (orders, C) is that of the Taylor coefficients of velocities, the first that of an
@@ -336,7 +352,7 @@ def _pass_on(rounding: Floats, order: int, system: Reduced, stiffness: Floats) -
         for c in system.ends[a]:
             if c >= 0:
                 part = error / (system.mass[c] * (order + 2))
-                rounding[order + 1, c] += system.damping[a] * part
+                rounding[order + 1, c] += damping[a] * part
                 rounding[order + 2, c] += stiffness[a] * part / (order + 3)
 
 

@@ -168,7 +168,7 @@ def _accelerations(touching: Touching, supports: int) -> tuple[Floats, Floats, F
     system, y = in_python(system_of)(touching, clusters)
     found = in_python(accelerations)(y, system, ORDER if supports else 1, touching)
     rough = in_python(round_as_the_scene)(system, touching.forcing)
-    noise = in_python(noise_of)(found, np.zeros(mass.size), rough, system, touching)
+    noise = in_python(noise_of)(found, np.zeros(mass.size), rough, y, system, touching)
     found[:, :supports] = given = without_rounding(found[:, :supports], noise[:, :supports])
     return found[0], noise[0], given[given.any(axis=1)]
 

@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from eventpound.motion import NoMotion, Sine
+from eventpound.motion.constant import PhasedSine
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import (
     BARRIER,
@@ -18,6 +19,7 @@ from eventpound.scene import (
     Contact,
     ContactLaw,
     Dashpot,
+    Force,
     Linear,
     Scene,
     Spring,
@@ -268,3 +270,29 @@ def test_a_contact_that_closes_as_another_opens(word: str) -> None:
         # Parts of 1e-5 m and 1.5 mm/s, in a scene whose length they are.
         np.testing.assert_allclose(ours.u, y[:1], rtol=0, atol=1e-12)
         np.testing.assert_allclose(ours.v, y[1:], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("speed", [1e-6, 1e-9, 1e-12])
+def test_a_wall_lets_go_beside_an_element_that_was_hardly_struck(speed: float) -> None:
+    """Its damping, over that speed, is beyond all numbers of the scene; the force is not."""
+    push, period, end = 5.0, 1.0, 0.6
+    history = PhasedSine(push, period, phase=0.5 * math.pi)
+    scene = Scene(
+        (Body("a", 4e5, 0.0, speed), Body("b", 8e5)),
+        (),
+        (),
+        (
+            Contact("joint", "a", "b", 0.0, 0.3, ContactLaw("hertz-damp", 2e9)),
+            Contact("wall", "b", BARRIER, 0.0, 0.0),
+        ),
+        NoMotion(),
+        (),
+        tuple(Force(name, history, per_mass=True) for name in ("a", "b")),
+    )
+    ours = run(scene, end, 1e-9)
+    omega, half = 2.0 * math.pi / period, 0.25 * period
+    free = -push / omega**2 * math.cos(omega * end) - push / omega * (end - half)
+    # What the element still pushes for a moment moves b by less than 0.1 % of the speed's rest.
+    np.testing.assert_allclose(ours.u[1], free, rtol=0, atol=1e-6)
+    (gone,) = (e.t for e in ours.events if e.kind is EventKind.DETACHMENT)
+    assert half < gone < half + 1e-4
