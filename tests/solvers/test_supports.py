@@ -254,6 +254,25 @@ def test_resting_on_a_support(solver: str) -> None:
     assert h.u[-1, 0] > s[-1] + 0.01 > free - 1.0
 
 
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-11])
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_turn_in_the_middle_of_a_time_step(solver: str, rtol: float) -> None:
+    """A body that rests on one support turns from another where their velocities are equal."""
+    samples = np.repeat([0.0, -3.0, 0.0, 3.0], [1, 26, 12, 26])
+    scene = Scene(
+        (Body("a", 1.0),),
+        (Spring("tie", ("far", "a"), Linear(1.0)),),
+        contacts=(Contact("seat", "a", "near", 0.0, 0.0),),
+        motion=Record(samples, 0.02),
+        supports=(Support("far", 0.5), Support("near", 0.1)),
+        forces=(Force("a", "20 m/s^2"),),
+    )
+    found, t = run(scene, 1.2, solver, rtol).elongation, 0.95
+    near, far = (scene.motion.displacement(np.array([t - s.delay])) for s in scene.supports[::-1])
+    assert found.minimum == pytest.approx(near - far, rel=1e-12)
+    assert found.time_of_minimum == pytest.approx(t, abs=1e-6)
+
+
 @pytest.mark.parametrize(("solver", "allowed"), [("cvode", 1e-14), ("ida", 1e-8), ("fast", 1e-9)])
 def test_a_support_is_where_its_history_has_it_at_any_tolerance(
     solver: str, allowed: float

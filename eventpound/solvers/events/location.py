@@ -19,7 +19,12 @@ import numpy as np
 
 from eventpound.contact.kinks import passes_kink
 from eventpound.contact.modes import force_vanishes
-from eventpound.mechanics.monitored import Running, motion_of, update_turning_point
+from eventpound.mechanics.monitored import (
+    Running,
+    motion_of,
+    update_extreme,
+    update_turning_point,
+)
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools
 from eventpound.numerics.compiled import kernel, scalar_kernel
@@ -414,3 +419,6 @@ def _take_turn(
         tau = turning_point(_rate_at, (g, step), bracket, 4.0 * EPS * step.dense.end)
         value = _sample(tau, g, step).value
         update_turning_point(g.index, value, step.forcing.start + tau, near, running)
+    elif b.rate == 0.0:
+        # It turns at the sample itself, as between two supports in the middle of a time step.
+        update_extreme(g.index, b.value, step.forcing.start + b.tau, running)
