@@ -12,6 +12,7 @@ import pytest
 from eventpound.errors import ComputationError
 from eventpound.motion.record import Record
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Scene, Spring
+from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.loop import EventLoop
@@ -147,3 +148,17 @@ def test_what_cannot_be_set_up_is_an_error() -> None:
         CvodeMemory(
             library.library(), "Adams", MemoryLayout(-1.0, np.ones(3), 0), _never_called(), 0
         )
+
+
+def test_a_step_to_the_end_of_a_record_has_a_length() -> None:
+    """The end less 0.51 s, where the integrator begins, and plus it is another number."""
+    oscillator = Scene(
+        (Body("m", 1.0),),
+        (Spring("k", (GROUND, "m"), Linear(30.0)),),
+        motion=Record(np.sin(np.arange(252)), 0.01),
+    )
+    end = oscillator.motion.end
+    assert 0.51 + (end - 0.51) < end
+    task = Task(oscillator, 0.5, 3.0, 1e-9)
+    cvode, fast = (solver_named(name).solve(task) for name in ("cvode", "fast"))
+    np.testing.assert_allclose(cvode.u, fast.u, rtol=0, atol=1e-7)

@@ -50,9 +50,11 @@ def last_time(start: float, bounds: Bounds, forcing: Forcing) -> float:
     origin = forcing.start
     longest = min(bounds.longest, longest_safe_step(forcing, origin + start))
     stop = min(bounds.stop, start + longest)
-    return (
-        next_corner(forcing, origin + start, origin + stop) - origin if bounds.at_samples else stop
-    )
+    if not bounds.at_samples:
+        return stop
+    following = next_corner(forcing, origin + start, origin + stop)
+    # Less the origin again the end may be another number: a step from there would have no length.
+    return following - origin if following < origin + bounds.stop else bounds.stop
 
 
 class StepsTaken(NamedTuple):
