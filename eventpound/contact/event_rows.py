@@ -131,7 +131,7 @@ def write_change(
 def gather_unlisted(contact: int, now: Now, events: Floats) -> None:
     """Make one accumulation of the unlisted impacts of a contact that rests."""
     impulse, lost, impacts, last = 0.0, 0.0, 0, -1
-    for i in range(now.events):
+    for i in range(now.listed, now.events):
         row = events[i]
         if row[1] <= UNLISTED and row[3] == contact:
             impulse += row[6]
@@ -150,11 +150,12 @@ def gather_unlisted(contact: int, now: Now, events: Floats) -> None:
 def list_all(now: Now, events: Floats) -> None:
     """List the impacts that were held back: their cascade has ended otherwise."""
     now.in_a_row = 0
-    for i in range(now.events):
+    for i in range(now.listed, now.events):
         if events[i, 1] == UNLISTED:
             events[i, 1] = IMPACT
         elif events[i, 1] == UNLISTED_LAST:
             events[i, 1] = ACCUMULATION
+    now.listed = now.events
 
 
 @scalar_kernel

@@ -25,6 +25,7 @@ class Now(NamedNumbers):
     settled_at: float  # when an instant was last settled (s)
     groups: int  # groups of events
     events: int  # rows of events
+    listed: int  # rows of events before the first that may be held back
     in_a_row: int  # impact problems of this cascade
     here: int  # impact problems of this instant
     stale: bool  # whether the mode is another by now
