@@ -190,8 +190,8 @@ class Arrays:
         clock, begun = Stopwatch(), self._begun(task)
         noise = FORCE * begun.scales.force
         run, ended, stopped = _run(task, self._blank_run(begun), self._model, noise)
-        left = self._left(task, begun.scales, run, ended, clock)
         self._run = run if run.record.rows.nbytes <= MOST_KEPT else None
+        left = self._left(task, begun.scales, run, ended, clock)
         if stopped is not None:
             stopped.recording = replace(left.recording(), message=str(stopped))
             raise stopped
@@ -246,7 +246,9 @@ class Arrays:
         if task.energy:
             terms = impact_terms(model, task.scene.motion, events_of(events))
             energy = energy_ledger(model, scales, state.u, state.v, state.ledger, *terms)
-        rows = record.rows[: state.progress["rows"][0]].copy()
+        rows = record.rows[: state.progress["rows"][0]]
+        # A long history is nobody's but this run's.
+        rows = rows if self._run is None else rows.copy()
         # Elsewhere no impact can come at once.
         if any(model.v0.tolist()):
             rows = np.vstack((lines_before(task, model, scales), rows))
