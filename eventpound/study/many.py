@@ -9,9 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from eventpound.batch_response import BatchResponse
-from eventpound.case.case import Case, SolverOptions
-from eventpound.case.options import default_solver
-from eventpound.case.solver_words import solver_instead
+from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.given import Count, checked, positive
 from eventpound.numerics.arrays import Floats
@@ -19,7 +17,7 @@ from eventpound.quantities.lookup import chosen, values_of
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
-from eventpound.study.plan import base_of
+from eventpound.study.plan import base_of, solver_of
 from eventpound.study.runs import results_of
 from eventpound.study.sweep import Wanted, cores
 from eventpound.study.variants import axis_values, rows_with, unknown_axes
@@ -32,7 +30,7 @@ def simulate_many(
     case: Case | Scene,
     parameters: Mapping[str, Sequence[float] | Floats],
     *,
-    rtol: float | str = 1e-6,
+    rtol: float | str | None = None,
     duration: float | str | Floats | Sequence[float] | None = None,
     accelerations: bool = False,
     quantities: Sequence[str] = (),
@@ -50,14 +48,14 @@ def simulate_many(
     ----------
     case : Case or Scene
         What the variants have in common; a case brings its own run options
-        and absolute tolerances.
+        and tolerances.
     parameters : mapping of str to array_like, shape (n,)
         Numbers that differ (SI, or texts with units), one value a variant, by keys as a case has
         them: ``"body.deck.mass"``, ``"spring.frame.strength"``,
         ``"dashpot.ground-deck.coefficient"``, ``"contact.joint.gap"``,
         ``"excitation.amplitude"``, or Π-terms, ``"pi.delta"``; see the page "many" of the docs.
     rtol : float, optional
-        Relative tolerance, 1e-14 to 1e-2.
+        Relative tolerance, 1e-14 to 1e-2; by default that of the case, 1e-6 for a scene.
     duration : float, str or array_like, shape (n,), optional
         Length of the runs (s), or of each; for a scene that of each variant's
         motion and four periods.
@@ -93,10 +91,7 @@ def simulate_many(
     axes = given_axes("parameters", parameters, [list(parameters)])
     lengths = _lengths(duration, axes[0].values.size)
     scene = case.scene if isinstance(case, Case) else case
-    name, tolerance = default_solver([scene], many=True), positive("rtol", rtol, Dimension.NUMBER)
-    solver = SolverOptions(name, tolerance)
-    if isinstance(case, Case):
-        solver = replace(solver_instead(case.solver, name, "solver"), rtol=tolerance)
+    solver = solver_of(case, rtol)
     check_case(case)
     base = base_of(case, axes, (), solver, math.nan if lengths is None else float(lengths.max()))
     if unknown := [f"parameters: {key}: {text}" for key, text in unknown_axes(base)]:

@@ -10,10 +10,12 @@ from functools import cached_property
 from pathlib import Path
 
 from eventpound.case.case import Case, RunOptions, SolverOptions
-from eventpound.case.options import FAST
+from eventpound.case.options import FAST, default_solver
+from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member
 from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
+from eventpound.given import positive
 from eventpound.motion.base import GroundMotion
 from eventpound.results.description import driven, pieces_hash
 from eventpound.results.jsontext import canonical
@@ -21,6 +23,7 @@ from eventpound.results.manifest import versions
 from eventpound.scene.scene import Scene
 from eventpound.simulation import options_of, refuse_suite
 from eventpound.study.axes import NumberAxis, sizes
+from eventpound.units import Dimension
 
 PART, RECORD = "part", "record"
 """Columns that name the part of a study a row belongs to, and the record it ran under."""
@@ -29,6 +32,8 @@ _MOST_RECORDS = 64
 _CHUNKS, _CHUNKS_OF_RECORDS = 256, 16
 # A batch of the fast solver costs milliseconds whatever its size; other runs cost more each.
 _SMALLEST_BATCH, _SMALLEST_CHUNK, _LARGEST_CHUNK = 64, 4, 2048
+_RTOL = 1e-6
+"""Relative tolerance of many runs of a scene that has none of its own."""
 # What can change the last bit of a result.
 _PACKAGES = ("eventpound", "numpy", "numba", "llvmlite", "scikit-sundae")
 
@@ -142,6 +147,34 @@ def base_of(
         own = not math.isnan(run.duration)
         case = replace(given, run=run, solver=solver, suite=None, figure=None)
     return Base(case, {}, axes, own, tuple(records))
+
+
+def solver_of(
+    given: Case | Scene, rtol: float | str | None, solver: str | None = None
+) -> SolverOptions:
+    """What computes many runs of a call, by default to the tolerance of its case.
+
+    Parameters
+    ----------
+    given : Case or Scene
+        What is run.
+    rtol : float or str, optional
+        Relative tolerance instead.
+    solver : str, optional
+        A solver with settings; by default that of many runs.
+
+    Raises
+    ------
+    InputError
+        Where either is none.
+    """
+    tolerance = positive("rtol", rtol, Dimension.NUMBER)
+    if isinstance(given, Case):
+        scene, own = given.scene, given.solver
+    else:
+        scene, own = given, SolverOptions(rtol=_RTOL)
+    solver = solver or default_solver([scene], many=True)
+    return replace(solver_instead(own, solver, "solver"), rtol=tolerance or own.rtol)
 
 
 def described(base: Base) -> Base:

@@ -11,10 +11,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from eventpound.case.case import Case, SolverOptions
-from eventpound.case.options import FAST, default_solver
+from eventpound.case.case import Case
+from eventpound.case.options import FAST
 from eventpound.case.record_options import RecordOptions
-from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member, Suite
 from eventpound.errors import InputError
 from eventpound.given import Count, checked, positive
@@ -22,7 +21,7 @@ from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
 from eventpound.study.engines.local import Batch, Processes
-from eventpound.study.plan import RECORD, base_of, described
+from eventpound.study.plan import RECORD, base_of, described, solver_of
 from eventpound.study.quantities import planned
 from eventpound.study.running import run_study
 from eventpound.study.table import SUCCESS, read_table
@@ -31,7 +30,6 @@ from eventpound.units import Dimension
 if TYPE_CHECKING:
     import pandas as pd
 
-_RTOL = 1e-6
 _SHOWN = 10
 
 
@@ -57,8 +55,8 @@ class Study:
     solver : str, optional
         Name of the solver, with settings as for `simulate`; by default the fast one, for a scene
         that it does not take cvode.
-    rtol : float
-        Relative tolerance.
+    rtol : float, optional
+        Relative tolerance; by default that of the case, 1e-6 for a scene.
     duration : float or str, optional
         Length of the runs (s); by default that of the case, of each motion for a scene or records.
 
@@ -78,13 +76,10 @@ class Study:
         records: str | None = None,
         together: Sequence[Sequence[str]] = (),
         solver: str | None = None,
-        rtol: float | str = _RTOL,
+        rtol: float | str | None = None,
         duration: float | str | None = None,
     ) -> None:
-        scene, own = (case.scene, case.solver) if isinstance(case, Case) else (case, None)
-        solver = solver or default_solver([scene], many=True)
-        tolerance = positive("rtol", rtol, Dimension.NUMBER)
-        options = replace(solver_instead(own or SolverOptions(), solver, "solver"), rtol=tolerance)
+        options = solver_of(case, rtol, solver)
         length = math.nan if duration is None else positive("duration", duration, Dimension.TIME)
         varied, members = given_axes("axes", axes, together), _members(case, records)
         if isinstance(case, Case) and records:
