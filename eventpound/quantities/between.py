@@ -96,9 +96,11 @@ class Between:
         for _ in range(_ROUNDS):
             run = self.rerun(replace(self.task, energy=False, output_times=times))
             t, closer = run.history.t, [times]
-            for name, values in signals_of(self.task.scene, run).items():
+            for name, signal in signals_of(self.task.scene, run).items():
+                size = float(np.abs(signal).max())
+                # Soil that is left has no pull but by rounding: its largest force is the first 0.
+                values = np.where(np.abs(signal) > SETTLED * size, signal, 0.0)
                 high, low = int(np.argmax(values)), int(np.argmin(values))
-                size = max(abs(values[high]), abs(values[low]))
                 found[name] = Extremes(values[[high]], t[[high]], values[[low]], t[[low]]), 0.0
                 for signed in (values, -values):
                     places, hidden = _hiding(t, signed, self._aim * size)

@@ -130,6 +130,17 @@ def test_each_of_many_runs_has_the_push_on_its_own_soil() -> None:
         assert found.iloc[1] == pytest.approx(-history["u.deck"].min() - gap, rel=1e-6)
 
 
+@pytest.mark.parametrize("solver", ["cvode", "fast"])
+def test_soil_does_not_pull_by_rounding(solver: str) -> None:
+    response = simulate(BETWEEN_TWO, solver, 1e-7, duration=3.0)
+    for name in ("left", "right"):
+        # As of a body at rest: what is never exceeded is attained at the start.
+        assert response.quantity(f"springs.{name}.max_force") == 0.0
+        assert response.quantity(f"springs.{name}.t_max_force") == 0.0
+        peak = response.quantity(f"springs.{name}.passive_force")
+        assert response.quantity(f"springs.{name}.min_force") == pytest.approx(-peak, rel=1e-5)
+
+
 def test_soil_that_a_wider_gap_keeps_from_the_deck_is_not_pushed() -> None:
     scene = Scene(
         [Body("deck", 1e5, velocity=-0.1)],
