@@ -35,7 +35,7 @@ _DEMANDS = {
     "contacts.<>.seat_used": ("seat", "m"),
     "contacts.<>.max_impulse": ("impulse", "N s"),
     "springs.<>.ductility": ("ductility", ""),
-    "springs.<>.stiffness_left": ("stiffness left", ""),
+    "springs.<>.stiffness_lost": ("stiffness lost", ""),
     "springs.<>.slip_path": ("slip path", "m"),
     "springs.<>.passive_force": ("passive force", "N"),
     "springs.<>.residual_gap": ("residual gap", "m"),

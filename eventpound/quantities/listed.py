@@ -51,8 +51,8 @@ LISTED: tuple[Quantity, ...] = (
     *(Quantity(_SPRING + name, name.replace("_", " "), D.NUMBER, text, v.by_law(name),
                TakenFrom.LAWS, v.told_by_law(name))
       for name, text in (
-          ("strength_left", "Strength after the run over that of a new degrading Bouc-Wen spring."),
-          ("stiffness_left", "Stiffness at z = 0 after the run over that of a new one."))),
+          ("strength_lost", "Part of its strength that a degrading Bouc-Wen spring has lost."),
+          ("stiffness_lost", "Part of its stiffness at z = 0 that it has lost."))),
     Quantity(_SPRING + "passive_force", "peak passive force", D.FORCE,
              "Largest force of the soil of a backfill.", v.passive_force, only=v.law_is(Backfill)),
     Quantity(_SPRING + "passive_depth", "depth pushed in", D.LENGTH,

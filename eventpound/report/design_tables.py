@@ -42,7 +42,7 @@ _OF_CONTACTS = (
 _OF_OTHERS = (
     *(_SPRING + "ductility", _PEAK, _RESIDUAL, _SPRING + "slip_path"),
     *(_SPRING + word for word in ("passive_force", "passive_depth", "residual_gap")),
-    *(_SPRING + word for word in ("strength_left", "stiffness_left", "drift_ratio")),
+    *(_SPRING + word for word in ("strength_lost", "stiffness_lost", "drift_ratio")),
     "max_drift",
     *("acceleration.<body>.abs_max", "peaks.<body>.abs_max", "base_shear.abs_max"),
 )

@@ -333,15 +333,15 @@ class DegradingBoucWen(BoucWen):
         """The hysteretic energy in parts of ``Q u_y``."""
         return epsilon
 
-    def strength_left(self, elongation: float, z: float, epsilon: float) -> float:
-        """Strength over that at first, nu^(-1/n)."""
-        return float((1.0 + self.strength_degradation * epsilon) ** (-1.0 / self.exponent))
+    def strength_lost(self, elongation: float, z: float, epsilon: float) -> float:
+        """Part of its first strength that is gone, 1 - nu^(-1/n)."""
+        return -math.expm1(-math.log1p(self.strength_degradation * epsilon) / self.exponent)
 
-    def stiffness_left(self, elongation: float, z: float, epsilon: float) -> float:
-        """Stiffness at z = 0 over K0 of the start, ``(k + Q/(eta u_y)) / K0``."""
-        eta = 1.0 + self.stiffness_degradation * epsilon
-        own = self.strength / (eta * self.yield_displacement)
-        return (self.stiffness + own) / self.initial_stiffness
+    def stiffness_lost(self, elongation: float, z: float, epsilon: float) -> float:
+        """Part of K0 that is gone at z = 0, where ``k + Q/(eta u_y)`` is left."""
+        more = self.stiffness_degradation * epsilon
+        own = self.strength / self.yield_displacement / self.initial_stiffness
+        return own * more / (1.0 + more)
 
     def dissipated(self, elongation: float, z: float, epsilon: float) -> float:
         """Work that was lost from the start up to here (J)."""

@@ -54,7 +54,7 @@ DEMANDS = (
     *(_CONTACT + "estimated_force", _FORCE, _CONTACT + "largest_overlap"),
     *(_SPRING + "ductility", *_ELONGATIONS, _SPRING + "slip_path"),
     *(_SPRING + word for word in ("passive_force", "passive_depth", "residual_gap")),
-    *(_ENERGY, _SPRING + "strength_left", _SPRING + "stiffness_left"),
+    *(_ENERGY, _SPRING + "strength_lost", _SPRING + "stiffness_lost"),
     *(_SPRING + "drift_ratio", "max_drift", "max_drift_ratio", "base_shear.abs_max"),
     *("peaks.<body>.abs_max", "residual.<body>", "acceleration.<body>.abs_max"),
 )

@@ -180,8 +180,9 @@ def test_strength_falls_along_a_loop_in_closed_form(solver: str) -> None:
     # Back to z = 0 along the line of slope 1, then yielding the other way.
     z, energy = yielded(top - z - x, delta, energy - 0.5 * z**2)
     assert response.final["s"] == pytest.approx({"z": -z, "epsilon": energy}, rel=1e-9)
-    assert response.quantity("springs.s.strength_left") == pytest.approx(1 / (1 + delta * energy))
-    assert response.quantity("springs.s.stiffness_left") == 1.0
+    left = 1.0 / (1.0 + delta * energy)
+    assert response.quantity("springs.s.strength_lost") == pytest.approx(1.0 - left)
+    assert response.quantity("springs.s.stiffness_lost") == 0.0
 
 
 @pytest.mark.parametrize("solver", ["cvode", "fast"])
@@ -196,7 +197,7 @@ def test_stiffness_falls_along_a_loop_in_closed_form(solver: str) -> None:
     lost = (eta - 1.0) / delta
     eta *= (math.exp(-size) / (1.0 - size)) ** delta
     assert 1.0 + delta * response.final["s"]["epsilon"] == pytest.approx(eta, rel=1e-7)
-    assert response.quantity("springs.s.stiffness_left") == pytest.approx(1.0 / eta, rel=1e-7)
+    assert response.quantity("springs.s.stiffness_lost") == pytest.approx(1.0 - 1.0 / eta, rel=1e-7)
     # What z holds at the end is given back along eta z' = x'.
     lost_now = (eta * math.exp(-0.5 * delta * size**2) - 1.0) / delta
     assert lost_now > lost > start

@@ -92,10 +92,11 @@ def test_a_run_has_a_value_of_each_demand(suite: Path) -> None:
 
 def test_bearings_and_soil_have_what_they_are_designed_for() -> None:
     ends = (GROUND, "deck")
+    pier = DegradingBoucWen(0.0, 1e4, 0.01, strength_degradation=0.1, stiffness_degradation=0.1)
     springs = (
         Spring("bearing", ends, Slider.pendulum(0.05, 1e6, 2.0)),
         Spring("soil", ends, Backfill.of_wall(1.0, 1.0, 0.02)),
-        Spring("pier", ends, DegradingBoucWen(0.0, 1e4, 0.01, stiffness_degradation=0.1)),
+        Spring("pier", ends, pier),
     )
     scene = Scene((Body("deck", 1e5),), springs, motion=Ricker(3.0, 1.0))
     table = by_name(design_numbers(scene))
@@ -106,9 +107,20 @@ def test_bearings_and_soil_have_what_they_are_designed_for() -> None:
         *(f"bearing.{word}" for word in (*elongations, "slip_path")),
         *(f"soil.{word}" for word in soil),
         *(f"pier.{word}" for word in (*elongations, "ductility")),
-        *("pier.strength_left", "pier.stiffness_left"),
+        *("pier.strength_lost", "pier.stiffness_lost"),
     }
     assert (table.loc[[f"springs.{name}" for name in named], "value"] > 0.0).all()
+
+
+def test_the_largest_loss_is_that_of_the_strongest_record(suite: Path) -> None:
+    text = (suite / "case.toml").read_text().replace('"bouc-wen"', '"degrading-bouc-wen"')
+    degrading = "hardening = 0.05\nstrength_degradation = 0.1\nstiffness_degradation = 0.2"
+    (suite / "case.toml").write_text(text.replace("hardening = 0.05", degrading))
+    table = by_name(design_numbers(load_case(suite)))
+    for name in ("springs.frame.strength_lost", "springs.frame.stiffness_lost"):
+        found = table.loc[name]
+        assert 0.0 < found["50 %"] < found["84 %"] < found["largest"] < 1.0
+        assert found["under"] == "d.txt"
 
 
 def test_a_scene_of_two_bodies_has_what_codes_combine() -> None:
