@@ -212,6 +212,41 @@ def test_a_case_goes_on_from_the_results_of_another(tmp_path: Path) -> None:
     shutil.rmtree(results)
 
 
+def test_a_case_goes_on_where_a_wall_stands_that_has_passed_the_place_of_the_body(
+    tmp_path: Path,
+) -> None:
+    case = """excitation = {{ kind = "none" }}
+[[body]]
+name = "a"
+mass = 1.0
+[[support]]
+name = "wall"
+excitation = {{ kind = "sine", amplitude = 1.0, period = 1.0, reverse = true }}
+[[contact]]
+between = ["a", "wall"]
+gap = 0.05
+restitution = 0.5
+[run]
+duration = {0}
+{1}
+"""
+    for name, length, more in (
+        ("one", 1.5, ""),
+        ("first", 0.9, ""),
+        ("second", 0.6, 'start_time = 0.9\nstart = { results = "../first" }'),
+    ):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "case.toml").write_text(case.format(length, more))
+        write(simulate(load_case(tmp_path / name)), tmp_path / name / "results")
+    ends = [
+        json.loads((tmp_path / name / "results" / "summary.json").read_text())["final"]["a"]
+        for name in ("one", "second")
+    ]
+    # At 0.9 s the wall has gone through the gap, and through the place of a body that stood still.
+    assert ends[0]["u"] < -0.1
+    assert ends[1] == pytest.approx(ends[0], rel=1e-8)
+
+
 def test_a_state_may_have_numbers_of_numpy_and_units() -> None:
     final: Any = {"a": {"u": np.float32(0.5), "v": "10 cm/s"}, "s": {"z": np.int64(0)}}
     first = simulate(scene(gap=1.0), duration=0.1, start=final).history.iloc[0]

@@ -299,8 +299,8 @@ def _read_scene(
     if not bodies and needed:
         top.report("[[body]]", "missing; accepted: at least one body")
     elif bodies:
-        # Where bodies are to be placed, they need not be where they can be.
-        start = None if to_be_placed(top.data.get("run")) else _start_time(top)
+        # Where bodies are to be placed or go on, they need not be where they can be.
+        start = None if _starts_elsewhere(top.data.get("run")) else _start_time(top)
         _add_scene_problems(scene, tables, problems, start)
     warnings += scene_warnings(scene) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
@@ -337,6 +337,11 @@ def _add_scene_problems(
             found = table.data.get(problem.key, problem.found)
             text = f"found {found!r}; accepted: {problem.accepted}"
             problems.append(CaseProblem(table.where, problem.key, text))
+
+
+def _starts_elsewhere(run: object) -> bool:
+    """Whether ``[run]``, as it is written, puts the bodies elsewhere than their tables do."""
+    return to_be_placed(run) or (isinstance(run, dict) and isinstance(run.get("start"), dict))
 
 
 def _at_start(run: Table, scene: Scene, start: float, directory: Path) -> Scene:
