@@ -14,7 +14,7 @@ import numpy as np
 from eventpound.mechanics.link_law import link_law, memory_force
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.elastic_laws import elastic_force, reduced
-from eventpound.scene.spring import Hysteretic, Law
+from eventpound.scene.spring import BoucWen, Hysteretic, Law
 
 _PARTS = 16
 """Of the way from one row to the next."""
@@ -57,13 +57,17 @@ def loop_of(
     own, (z, *others) = link_law([law], [0.0]).memory, memory
     along = law.z_along(fine, z[:-1])
     if along is None:
-        along = _along(own, fine, z, *others)
+        # Rows far apart for a sharp law must not make a step leave what z can reach.
+        bound = law.bound if isinstance(law, BoucWen) and law.gamma >= 0.0 else np.inf
+        along = _along(own, bound, fine, z, *others)
     force = elastic_force(elastic, fine)[0] + memory_force(own, along[..., None])[..., 0]
     # The last of a cell is the first of the next.
     return np.append(fine[:, :-1], fine[-1, -1]), np.append(force[:, :-1], force[-1, -1])
 
 
-def _along(memory: Floats, x: Floats, z: Floats, beside: Floats | None = None) -> Floats:
+def _along(
+    memory: Floats, bound: float, x: Floats, z: Floats, beside: Floats | None = None
+) -> Floats:
     """The variable z at parts of every cell, of the shape (n - 1, _PARTS + 1) of x.
 
     The one beside it is that of the middle of the cell.
@@ -73,12 +77,14 @@ def _along(memory: Floats, x: Floats, z: Floats, beside: Floats | None = None) -
     for part, dx in enumerate(np.diff(x).T):
         y = found[:, part]
         k1 = z_by_x(memory, y, dx, w)
-        k2 = z_by_x(memory, y + 0.5 * dx * k1, dx, w)
-        k3 = z_by_x(memory, y + 0.5 * dx * k2, dx, w)
-        k4 = z_by_x(memory, y + dx * k3, dx, w)
-        found[:, part + 1] = y + dx * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
+        k2 = z_by_x(memory, np.clip(y + 0.5 * dx * k1, -bound, bound), dx, w)
+        k3 = z_by_x(memory, np.clip(y + 0.5 * dx * k2, -bound, bound), dx, w)
+        k4 = z_by_x(memory, np.clip(y + dx * k3, -bound, bound), dx, w)
+        mean = (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
+        found[:, part + 1] = np.clip(y + dx * mean, -bound, bound)
     missed = z[1:] - found[:, -1]
-    return found + missed[:, None] * np.linspace(0.0, 1.0, _PARTS + 1)
+    found += missed[:, None] * np.linspace(0.0, 1.0, _PARTS + 1)
+    return np.clip(found, -bound, bound)
 
 
 def z_by_x(
