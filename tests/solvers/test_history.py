@@ -95,13 +95,14 @@ def _with_each_line_once(lines: list[list[float]]) -> list[list[float]]:
     return kept
 
 
+@pytest.mark.parametrize("bodies", [1, 40])
 @pytest.mark.parametrize("seed", range(40))
-def test_lines_that_are_said_again_are_left_out(seed: int) -> None:
-    model = assemble(Scene((Body("a", 1.0),)))
+def test_lines_that_are_said_again_are_left_out(seed: int, bodies: int) -> None:
+    model = assemble(Scene(tuple(Body(f"b{i}", 1.0) for i in range(bodies))))
     dice = np.random.default_rng(seed)
-    rows = dice.integers(0, 2, (dice.integers(0, 25), row_width(model))).astype(float)
-    rows[:, 2:] = 0.0
+    rows = np.zeros((dice.integers(0, 25), row_width(model)))
     rows[:, 0] = np.sort(dice.integers(0, 6, rows.shape[0]))
+    rows[:, dice.integers(1, rows.shape[1])] = dice.integers(0, 2, rows.shape[0])
     history = history_of(rows, np.ones(0, bool), model)
-    found = np.column_stack((history.t, history.ground)).tolist()
-    assert found == _with_each_line_once(rows[:, :2].tolist())
+    parts = history.t, history.ground, history.u, history.v, history.a
+    assert np.column_stack(parts).tolist() == _with_each_line_once(rows.tolist())

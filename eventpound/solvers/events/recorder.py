@@ -41,6 +41,8 @@ from eventpound.solvers.events.scales import SceneScales
 
 PASSED, WRITTEN = 0, 1
 """Places in `Journal.cursor`: output times passed, and lines written."""
+_COLUMNS = 64
+"""Of the history that are compared at once: more than there are without many bodies."""
 # Members of an enumeration are slow to look up, and events can be thousands.
 _REST = EventKind.REST
 
@@ -156,8 +158,11 @@ def columns_of(rows: Floats, model: Model) -> list[Floats]:
 def _said_again(rows: Floats) -> Ints:
     """Numbers of lines that are those before them again; two stay of each later instant."""
     t = rows[:, 0].copy()
-    later = np.flatnonzero(t[1:] == t[:-1]) + 1
-    again = later[(rows[later] == rows[later - 1]).all(axis=1)]
+    again = np.flatnonzero(t[1:] == t[:-1]) + 1
+    for first in range(0, rows.shape[1], _COLUMNS):
+        # Of lines of an impact few are left behind the velocities: no copy of all the others.
+        part = rows[:, first : first + _COLUMNS]
+        again = again[(part[again] == part[again - 1]).all(axis=1)]
     start, end = (np.searchsorted(t, t[again], side) for side in ("left", "right"))
     spared = end - start - np.where(t[again] == t[:1], 1, 2)
     within = 1 + np.arange(again.size) - np.searchsorted(again, start)
