@@ -21,7 +21,7 @@ from eventpound.contact.state import Instant
 from eventpound.mechanics.elements import memory_on_branches
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.tolerances import OF_A_FLIGHT, TOGETHER
@@ -118,6 +118,14 @@ def decide_rests(z: Floats, forcing: Forcing, at: Instant) -> int:
 @kernel
 def touching_of(z: Floats, forcing: Forcing, at: Instant) -> Touching:
     """The acceleration problem of an instant; arguments as above."""
+    return touching_between(at.left, at.right, at.opening, z, forcing, at)
+
+
+@kernel
+def touching_between(
+    left: Ints, right: Ints, opening: Floats, z: Floats, forcing: Forcing, at: Instant
+) -> Touching:
+    """`touching_of`, the contacts between these ends and with these openings (K,)."""
     stiffness = np.where(at.branch < 0, at.compression, at.extension)
     return Touching(
         (at.gap == 0.0) & (at.gap_rate == 0.0),
@@ -126,9 +134,9 @@ def touching_of(z: Floats, forcing: Forcing, at: Instant) -> Touching:
         at.u,
         at.v,
         z,
-        at.left,
-        at.right,
-        at.opening,
+        left,
+        right,
+        opening,
         at.mass,
         at.ends,
         LinkLaw(at.law.damping, memory_on_branches(at.law.memory, at.branch)),

@@ -18,7 +18,7 @@ further, is that of contacts alone (`eventpound.contact.rest`).
 
 Friction is bounded and has no impulse: in impacts the gap of every slider counts as infinite, and a
 slider sticks on where they leave it no rate. It ends what bounces without a loss as long as rates
-have a sign: slower impacts are plastic. An instant is run by Python, some milliseconds.
+have a sign: slower impacts are plastic.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.impacts import DONE, put_as_one
-from eventpound.contact.instant import any_may_rest, settle_impacts, take_rests, touching_of
+from eventpound.contact.instant import any_may_rest, take_rests, touching_between
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import (
     ORDER,
@@ -38,19 +38,23 @@ from eventpound.contact.rest import (
     system_of,
 )
 from eventpound.contact.state import Instant
-from eventpound.mechanics.clusters import Clusters, form_clusters, form_clusters_of_few
-from eventpound.mechanics.descriptor import contact_rows
+from eventpound.mechanics.clusters import Clusters, form_clusters, is_support
+from eventpound.mechanics.contact_problem import delassus_entry
 from eventpound.mechanics.link_law import STRENGTH
-from eventpound.mechanics.model import Model
+from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.box import least_in_box, without_rounding
-from eventpound.numerics.compiled import in_python
+from eventpound.numerics.borrowing import copy_numbers, put_numbers
+from eventpound.numerics.box import least_in_box, unless_rounding
+from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.tolerances import LCP_ROUNDING, TAKEN_OVER
 
 
-def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Model) -> int:
-    """Impacts of an instant of a scene with sliders; ends as `settle_impacts`.
+@deferred_kernel
+def begin_beside_sliders(force: Floats, kinked: Bools, sliders: Ints, at: Instant) -> None:
+    """Put sliders that let go on the side on which they do, and stop those whose slip has ended.
+
+    To impacts, which follow, their gaps are infinite.
 
     Parameters
     ----------
@@ -58,17 +62,28 @@ def settle_beside_sliders(force: Floats, kinked: Bools, at: Instant, model: Mode
         Forces of the contacts as the instant begins (N).
     kinked : ndarray of bool, shape (L,)
         Links whose branch has just ended: sliders whose slip has.
+    sliders : ndarray of int, shape (J,)
+        Links of the sliders, whose contacts are the last J.
     at : Instant
         The instant.
-    model : Model
-        The scene, its sliders with contacts of their own.
     """
-    _end_sticks_and_slips(force, kinked, at, model)
-    at.gap[model.own_contacts :] = np.inf
-    return int(in_python(settle_impacts)(at))
+    own, stopped = at.gap.size - sliders.size, False
+    held = at.resting.copy()
+    for i in range(sliders.size):
+        a, j = sliders[i], own + i
+        if at.released[j] and force[j] * at.branch[a] > at.law.memory[a, STRENGTH]:
+            at.branch[a] *= -1
+        held[j] |= kinked[a]
+        stopped |= kinked[a]
+    if stopped:
+        # What a support carries goes on with it where a slip beside it ends.
+        clusters = form_clusters(at.left, at.right, at.opening, held, at.resting, at.mass)
+        put_as_one(clusters.of_body, np.zeros(at.mass.size), at.mass, at.v)
+    at.gap[own:] = np.inf
 
 
-def decide_sticks(z: Floats, forcing: Forcing, noise: float, at: Instant, model: Model) -> int:
+@deferred_kernel
+def decide_sticks(z: Floats, forcing: Forcing, noise: float, sliders: Ints, at: Instant) -> int:
     """Who sticks and who rests after the impacts of an instant; ends as `take_rests`.
 
     Parameters
@@ -79,130 +94,159 @@ def decide_sticks(z: Floats, forcing: Forcing, noise: float, at: Instant, model:
         The ground motion from now on.
     noise : float
         Contact forces below this (N) have no meaningful sign.
+    sliders : ndarray of int, shape (J,)
+        Links of the sliders, whose contacts are the last J.
     at : Instant
         The instant, its impacts over.
-    model : Model
-        The scene, its sliders with contacts of their own.
     """
-    _offer(at, model)
+    _offer(sliders, at)
     # Branches of sliders are decided here.
     at.now[0].stale = True
-    if not in_python(any_may_rest)(at):
+    if not any_may_rest(at):
         # A cascade of impacts between what slips needs no more.
         return DONE
-    own = model.own_contacts
-    touching = in_python(touching_of)(z, forcing, at)
+    touching = touching_between(at.left, at.right, at.opening, z, forcing, at)
     members = np.flatnonzero(touching.undecided)
-    force = _forces(members, touching, at, model)
-    if force is None:
-        return int(in_python(take_rests)(touching.undecided, at.pressed, False, at))
-    pressed = _take_sides(members, force, noise, at, model)
+    force, found = _forces(members, touching, sliders, at)
+    if not found:
+        return take_rests(touching.undecided, at.pressed, False, at)
+    pressed = _take_sides(members, force, noise, sliders, at)
     # Who rests beside what is known to be pressed.
-    touching = in_python(touching_of)(z, forcing, at)
-    touching = touching._replace(undecided=touching.undecided & ~pressed, pressed=pressed)
-    found = in_python(rest_contacts)(_on_sides(touching, at.branch, model))
-    ended = in_python(take_rests)(*found, at)
-    at.gap[own:][~at.resting[own:]] = np.inf
-    return int(ended)
+    touching = touching_between(*_directed(sliders, at), z, forcing, at)
+    copy_numbers(touching.undecided & ~pressed, touching.undecided)
+    copy_numbers(pressed, touching.pressed)
+    resting, pressed, solved = rest_contacts(touching)
+    ended = take_rests(resting, pressed, solved, at)
+    for j in range(at.gap.size - sliders.size, at.gap.size):
+        at.gap[j] = at.gap[j] if at.resting[j] else np.inf
+    return ended
 
 
-def _end_sticks_and_slips(force: Floats, kinked: Bools, at: Instant, model: Model) -> None:
-    """Put sliders that let go on the side on which they do, and stop those whose slip has ended."""
-    own, links = model.own_contacts, model.sliders
-    lacking = force[own:] * at.branch[links]
-    turned = links[at.released[own:] & (lacking > model.law.memory[links, STRENGTH])]
-    at.branch[turned] *= -1
-    stopped = kinked[links]
-    if stopped.any():
-        held = at.resting.copy()
-        held[own:] |= stopped
-        # What a support carries goes on with it where a slip beside it ends.
-        clusters = in_python(form_clusters)(
-            at.left, at.right, at.opening, held, at.resting, at.mass
-        )
-        in_python(put_as_one)(clusters.of_body, np.zeros(at.mass.size), at.mass, at.v)
-
-
-def _offer(at: Instant, model: Model) -> None:
+@scalar_kernel
+def _offer(sliders: Ints, at: Instant) -> None:
     """Let sliders that stand still take part in the acceleration problem, others slip."""
-    own, links = model.own_contacts, model.sliders
-    x, rate = (model.elongations(values)[links] for values in (at.u, at.v))
-    moving = np.abs(rate) > still_rate(at.length, at.time)
-    at.branch[links[moving]] = np.sign(rate[moving])
-    at.gap_rate[own:] = np.where(moving, rate, 0.0)
-    at.gap[own:] = np.where(moving, np.inf, 0.0)
-    begins = ~moving & ~at.resting[own:]
-    at.opening[own:][begins] = -x[begins]
+    own, still = at.gap.size - sliders.size, still_rate(at.length, at.time)
+    for i in range(sliders.size):
+        a, j = sliders[i], own + i
+        rate = difference(at.v, at.ends[a, 0], at.ends[a, 1])
+        at.gap_rate[j], at.gap[j] = 0.0, 0.0
+        if abs(rate) > still:
+            at.branch[a] = 1 if rate > 0.0 else -1
+            at.gap_rate[j], at.gap[j] = rate, np.inf
+        elif not at.resting[j]:
+            at.opening[j] = -difference(at.u, at.ends[a, 0], at.ends[a, 1])
 
 
-def _forces(members: Ints, touching: Touching, at: Instant, model: Model) -> Floats | None:
-    """Forces of these contacts (N), from -F to F those of sliders; None where there are none.
+@kernel
+def _forces(members: Ints, touching: Touching, sliders: Ints, at: Instant) -> tuple[Floats, bool]:
+    """Forces of these contacts (N), from -F to F those of sliders, and whether there are any.
 
     They are the least of Gauss's function. Where ground and supports hold several, who carries is
     told by the way in which these are about to part.
     """
-    W = contact_rows(model)[members]
+    own, mass = at.gap.size - sliders.size, touching.mass
+    left, right = touching.left[members], touching.right[members]
+    a, noise, given = _accelerations(touching)
     low, high = np.zeros(members.size), np.full(members.size, np.inf)
-    (a, noise, given), start = _accelerations(touching, model.supports), low.copy()
-    of_sliders = members >= model.own_contacts
-    links = model.sliders[members[of_sliders] - model.own_contacts]
-    high[of_sliders] = model.law.memory[links, STRENGTH]
-    low[of_sliders] = -high[of_sliders]
-    start[of_sliders] = low[of_sliders] * np.sign(at.branch[links])
-    # What slips along its branch has been pulled by that force.
-    a -= W.T @ start / model.mass
-    noise += LCP_ROUNDING * (np.abs(W.T) @ np.abs(start)) / model.mass
-    first = without_rounding(W @ a, np.abs(W) @ noise)
-    # Those of supports may be less than the rounding of a sum, and still tell who gives way.
-    q = np.column_stack((first, W[:, : model.supports] @ given.T))
-    return least_in_box(W / model.mass @ W.T, q, low, high, start)
+    start = np.zeros(members.size)
+    for i in range(members.size):
+        if members[i] < own:
+            continue
+        link = sliders[members[i] - own]
+        high[i] = at.law.memory[link, STRENGTH]
+        low[i] = -high[i]
+        # What slips along its branch has been pulled by that force.
+        start[i] = low[i] * at.branch[link]
+        for c, sign in ((left[i], -1.0), (right[i], 1.0)):
+            if c >= 0:
+                a[c] -= sign * start[i] / mass[c]
+                noise[c] += LCP_ROUNDING * abs(start[i]) / mass[c]
+    G, q = np.empty((members.size, members.size)), np.zeros((members.size, 1 + given.shape[0]))
+    for i in range(members.size):
+        relative, level = difference(a, left[i], right[i]), 0.0
+        for c in (left[i], right[i]):
+            level += noise[c] if c >= 0 else 0.0
+        q[i, 0] = unless_rounding(relative, level)
+        # Those of supports may be less than the rounding of a sum, and still tell who gives way.
+        for k in range(given.shape[0]):
+            q[i, 1 + k] = difference(given[k], left[i], right[i])
+        for k in range(members.size):
+            G[i, k] = delassus_entry(left, right, 1.0 / mass, i, k)
+    return least_in_box(G, q, low, high, start)
 
 
-def _accelerations(touching: Touching, supports: int) -> tuple[Floats, Floats, Floats]:
+@kernel
+def _accelerations(touching: Touching) -> tuple[Floats, Floats, Floats]:
     """Accelerations of the bodies (N,) without contacts (m/s²), and their rounding.
 
-    And the Taylor coefficients of those of supports, without rounding, where not all vanish.
+    And the Taylor coefficients of those of supports (i, N), without rounding, where not all vanish.
     """
-    mass, none = touching.mass, np.zeros_like(touching.undecided)
-    clusters = form_clusters_of_few(touching.left, touching.right, touching.gap, none, none, mass)
-    system, y = in_python(system_of)(touching, clusters)
-    found = in_python(accelerations)(y, system, ORDER if supports else 1, touching)
-    rough = in_python(round_as_the_scene)(system, touching.forcing)
-    noise = in_python(noise_of)(found, np.zeros(mass.size), rough, y, system, touching)
-    found[:, :supports] = given = without_rounding(found[:, :supports], noise[:, :supports])
-    return found[0], noise[0], given[given.any(axis=1)]
+    mass, none = touching.mass, np.zeros(touching.undecided.size, np.bool_)
+    clusters = form_clusters(touching.left, touching.right, touching.gap, none, none, mass)
+    system, y = system_of(touching, clusters)
+    supports = 0
+    for b in range(mass.size):
+        supports += is_support(b, mass)
+    found = accelerations(y, system, ORDER if supports > 0 else 1, touching)
+    rough = round_as_the_scene(system, touching.forcing)
+    noise = noise_of(found, np.zeros(mass.size), rough, y, system, touching)
+    given, count = np.zeros((found.shape[0], mass.size)), 0
+    for k in range(found.shape[0]):
+        moves = False
+        for b in range(supports):
+            given[count, b] = unless_rounding(found[k, b], noise[k, b])
+            moves |= given[count, b] != 0.0
+            found[k, b] = given[count, b]
+        count += moves
+    return found[0], noise[0], given[:count]
 
 
-def _take_sides(members: Ints, force: Floats, noise: float, at: Instant, model: Model) -> Bools:
+@kernel
+def _take_sides(members: Ints, force: Floats, noise: float, sliders: Ints, at: Instant) -> Bools:
     """Put sliders on the sides of their forces (N); contacts (K,) that something presses."""
-    own = model.own_contacts
-    pressed = np.zeros(model.contacts, np.bool_)
-    for j, value in zip(members, force, strict=True):
+    own = at.gap.size - sliders.size
+    pressed = np.zeros(at.gap.size, np.bool_)
+    for i in range(members.size):
+        j = members[i]
         if j < own:
-            pressed[j] = value > noise and not at.released[j]
+            pressed[j] = force[i] > noise and not at.released[j]
             continue
-        link = model.sliders[j - own]
-        bound = model.law.memory[link, STRENGTH]
+        link = sliders[j - own]
+        bound = at.law.memory[link, STRENGTH]
         # One that has just come to its bound may stick on where others take over its share.
-        pressed[j] = bound - abs(value) > (TAKEN_OVER * bound if at.released[j] else noise)
+        pressed[j] = bound - abs(force[i]) > (TAKEN_OVER * bound if at.released[j] else noise)
         if not pressed[j]:
-            at.branch[link] = -np.sign(value)
+            at.branch[link] = int(-np.sign(force[i]))
     return pressed
 
 
-def _on_sides(touching: Touching, branch: Ints, model: Model) -> Touching:
-    """The acceleration problem with the contacts of sliders in the directions of their slips."""
-    left, right, gap = touching.left.copy(), touching.right.copy(), touching.gap.copy()
-    back = model.own_contacts + np.flatnonzero(branch[model.sliders] < 0)
-    left[back], right[back], gap[back] = right[back], left[back], -gap[back]
-    return touching._replace(left=left, right=right, gap=gap)
+@kernel
+def _directed(sliders: Ints, at: Instant) -> tuple[Ints, Ints, Floats]:
+    """Ends and openings of the contacts (K,), those of sliders in the directions of their slips."""
+    left, right, opening = at.left.copy(), at.right.copy(), at.opening.copy()
+    for i in range(sliders.size):
+        j = at.gap.size - sliders.size + i
+        if at.branch[sliders[i]] < 0:
+            left[j], right[j], opening[j] = at.right[j], at.left[j], -at.opening[j]
+    return left, right, opening
 
 
-def locked_beside_sliders(model: Model, resting: Bools, clusters: Clusters) -> Bools:
-    """Resting contacts (R,) that cannot open: a slider gives way in either direction."""
-    own = resting.copy()
-    own[model.own_contacts :] = False
-    alone = form_clusters_of_few(model.left, model.right, model.gap, own, own, model.mass)
-    locked = np.zeros(model.contacts, np.bool_)
-    locked[alone.resting] = alone.locked
-    return locked[clusters.resting]
+@kernel
+def locked_beside_sliders(
+    left: Ints,
+    right: Ints,
+    opening: Floats,
+    resting: Bools,
+    sliders: int,
+    mass: Floats,
+    clusters: Clusters,
+) -> Bools:
+    """Resting contacts (R,) that cannot open: the last ones, of sliders, give way either way."""
+    own, members = resting.copy(), clusters.resting
+    own[own.size - sliders :] = False
+    alone, locked = form_clusters(left, right, opening, own, own, mass), np.zeros_like(resting)
+    put_numbers(alone.locked, alone.resting, locked)
+    result = np.zeros(members.size, np.bool_)
+    for i in range(members.size):
+        result[i] = locked[members[i]]
+    return result

@@ -115,7 +115,7 @@ class Sweep:
         )
         self.seconds = np.full(rows.count, np.nan)
         driven = scene.supports or scene.forces
-        # What is settled by Python is no part of one compiled call.
+        # The arrays of many runs are without the contacts that hold sliders.
         slides = LawName.SLIDER in scene.branched_springs.values()
         several = wanted.keep is None and not (driven or slides or one_by_one)
         self._in_one_call = wanted.solver == FAST and several

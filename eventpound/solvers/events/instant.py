@@ -16,6 +16,7 @@ from eventpound.contact.event_rows import end_cascade, events_wanted
 from eventpound.contact.impacts import DONE, FULL
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import lacks_branch, pass_kinks
+from eventpound.contact.sliders import begin_beside_sliders, decide_sticks
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import CurrentPiece, longest_safe_step, next_corner
@@ -50,7 +51,7 @@ ready for a step; to put it, the last of a piece, into the history."""
 (OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, IN_PYTHON) = range(20, 25)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
 steps are used up; links have no branch yet; what is to be done is that of
-`eventpound.contact.points` or `eventpound.contact.sliders`."""
+`eventpound.contact.points`."""
 NOT_FINITE, UNENDING = 30, 32
 """How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
 
@@ -166,15 +167,18 @@ def proceed(
 def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """Follow the motion from the present instant until nothing is near; ends as `proceed`."""
     state, at = run.state, run.instant
-    now, progress = state.now[0], state.progress[0]
+    now, progress, sliders = state.now[0], state.progress[0], mode.bodies.sliders
     ended = DONE
     while ended == DONE:
         if not _has_room(run):
             return FULL
-        by_python = mode.bodies.points.size > 0 or mode.bodies.sliders.size > 0
-        if by_python and progress.phase <= RESTS:
+        if mode.bodies.points.size > 0 and progress.phase <= RESTS:
             return IN_PYTHON
         if progress.phase == IMPACTS:
+            if sliders.size > 0:
+                # The last observation is at the event.
+                force = run.observations[2].contact_force[0]
+                begin_beside_sliders(force, run.located.kinked, sliders, at)
             ended = settle_impacts(at)
             if ended != DONE:
                 return ended
@@ -184,10 +188,14 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
                 return FIRST_BRANCHES
             if run.laws.contact.size > 0:
                 switch_elements(run.laws, at)
-            if any_may_rest(at):
-                ended = decide_rests(state.z, by_address(forcing_now(piece, now.t)), at)
-                if ended != DONE:
-                    return ended
+            forcing, ended = by_address(forcing_now(piece, now.t)), DONE
+            if sliders.size > 0:
+                noise = mode.watched.force_noise
+                ended = decide_sticks(state.z, forcing, noise, sliders, at)
+            elif any_may_rest(at):
+                ended = decide_rests(state.z, forcing, at)
+            if ended != DONE:
+                return ended
             progress.phase = HISTORY
         if progress.phase == HISTORY:
             if now.stale:

@@ -10,7 +10,6 @@ from eventpound.contact.instant import no_forces_message
 from eventpound.contact.kinks import choose_branches, choose_clear_branches, lacks_branch
 from eventpound.contact.points import decide_at_points, settle_at_points
 from eventpound.contact.rest import ORDER
-from eventpound.contact.sliders import decide_sticks, settle_beside_sliders
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import CurrentPiece, ground_onset
@@ -85,32 +84,23 @@ def settle_instant(run: EventRun, piece: CurrentPiece) -> None:
 
 
 def _settle_in_python(run: EventRun, piece: CurrentPiece) -> int:
-    """What the present instant demands beside contacts at points or sliders; ends as `proceed`.
+    """What the present instant demands beside contacts at points; ends as `proceed`.
 
-    No scene has both. This is what `eventpound.solvers.events.instant` does in its first two
-    phases, by other rules.
+    This is what `eventpound.solvers.events.instant` does in its first two phases, by other rules.
+    No scene has sliders beside them.
     """
-    arrays, model, slides = run.arrays, run.model, run.model.sliders.size > 0
+    arrays, model = run.arrays, run.model
     at, progress = arrays.instant, arrays.state.progress[0]
     with by_python():
         if progress.phase == IMPACTS:
-            if slides:
-                # The last observation is at the event.
-                force = arrays.observations[2].contact_force[0]
-                ended = settle_beside_sliders(force, arrays.located.kinked, at, model)
-            else:
-                ended = settle_at_points(at, model)
+            ended = settle_at_points(at, model)
             if ended != DONE:
                 return ended
             progress.phase = RESTS
         if in_python(lacks_branch)(at):
             return FIRST_BRANCHES
         in_python(switch_elements)(arrays.laws, at)
-        z, forcing = arrays.state.z, forcing_now(piece, run.t)
-        if slides:
-            ended = decide_sticks(z, forcing, run.table.force_noise, at, model)
-        else:
-            ended = decide_at_points(z, forcing, at, model)
+        ended = decide_at_points(arrays.state.z, forcing_now(piece, run.t), at, model)
         if ended == DONE:
             progress.phase = HISTORY
         return ended

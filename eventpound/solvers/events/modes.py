@@ -149,7 +149,11 @@ class ModeTable:
         bodies = with_address(bodies_of(model, clusters, system, *branches, frozen))
         system = with_address(system)
         if model.sliders.size > 0 and not clusters.tree:
-            clusters = clusters._replace(locked=locked_beside_sliders(model, ordinary, clusters))
+            rests = model.left, model.right, model.gap, ordinary
+            locked = in_python(locked_beside_sliders)
+            clusters = clusters._replace(
+                locked=locked(*rests, model.sliders.size, model.mass, clusters)
+            )
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
         opened = ~resting

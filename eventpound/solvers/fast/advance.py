@@ -23,7 +23,7 @@ from eventpound.solvers.fast.extremes import distance_now, take_instant
 from eventpound.solvers.fast.followed import follows, put_on_branches
 from eventpound.solvers.fast.instant import instant_of, settle, start
 from eventpound.solvers.fast.record import has_room, save_record, write_row
-from eventpound.solvers.fast.run import GOING_ON, IN_PYTHON, SETTLED, FastRun, piece_of
+from eventpound.solvers.fast.run import GOING_ON, SETTLED, FastRun, piece_of
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.sdof.body import reset_body
 from eventpound.solvers.fast.sliding import any_slider
@@ -47,8 +47,8 @@ def advance(budget: int, run: FastRun) -> int:
     Returns
     -------
     int
-        How it ended: FINISHED, GOING_ON, FULL (the record needs more room), IN_PYTHON (an instant
-        is to be settled by `settle_sliders`), or an error; the state says when and where.
+        How it ended: FINISHED, GOING_ON, FULL (the record needs more room), or an error; the state
+        says when and where.
     """
     return carry_on(budget, by_address(run))
 
@@ -155,9 +155,6 @@ def _settle_instant(run: FastRun) -> int:
             observe_at_noinline(0.0, order, g, run)
             onset = ground_onset(piece, t, order, series.ground)
             choose_branches(observed.a, g, onset, at)
-        if any_slider(run):
-            return IN_PYTHON
-        run.located.kinked[:] = False
         ended = settle(forcing, observed.z, at, run)
         if ended != DONE:
             return ended

@@ -24,6 +24,7 @@ from eventpound.mechanics.elements import (
     z_rate,
 )
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.fast.compiled import (
     compiled,
     compiled_deferred,
@@ -64,7 +65,9 @@ def put_on_branches(run: FastRun) -> None:
 
 @compiled_with_arrays
 def _put_on_branches(own: Floats, branch: Ints, out: Floats) -> None:
-    out[:] = memory_on_branches(own, branch)
+    found = memory_on_branches(own, branch)
+    for a in range(branch.size):
+        copy_numbers(found[a], out[a])
 
 
 @compiled_noinline

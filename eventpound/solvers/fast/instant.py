@@ -12,6 +12,11 @@ from eventpound.contact.cascade import last_speed
 from eventpound.contact.impacts import DONE, put_as_one
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import still_rate
+from eventpound.contact.sliders import (
+    begin_beside_sliders,
+    decide_sticks,
+    locked_beside_sliders,
+)
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.reduced import Forcing
@@ -33,6 +38,8 @@ from eventpound.solvers.fast.links import (
     turns_back,
 )
 from eventpound.solvers.fast.run import FastRun
+from eventpound.solvers.fast.sliding import any_slider
+from eventpound.tolerances import FORCE
 
 
 @compiled
@@ -89,11 +96,17 @@ def _form(run: FastRun) -> tuple[int, int]:
     edges = clusters.elimination.shape[0]
     for row in range(edges):
         copy_numbers(clusters.elimination[row], series.elimination[row])
-    unique = unique_forces(clusters, left, right)
+    unique, locked, sliders = unique_forces(clusters, left, right), clusters.locked, 0
+    if any_slider(run):
+        sliders = run.plan.links.sliders.size
+        rests = left, right, contacts.gap, state.resting
+        locked = locked_beside_sliders(*rests, sliders, mass, clusters)
     for i in range(clusters.resting.size):
         j = clusters.resting[i]
-        state.unlocked[j] = not (clusters.locked[i] or clusters.redundant[i])
-        run.record.unique[j] &= unique[i]
+        state.unlocked[j] = not (locked[i] or clusters.redundant[i])
+        # Forces of sliders are no part of what is told.
+        if j < state.gap.size - sliders:
+            run.record.unique[j] &= unique[i]
     put_as_one(clusters.of_body, np.zeros(bodies), mass, state.v)
     return clusters.count, edges
 
@@ -149,14 +162,27 @@ def instant_of(run: FastRun) -> Instant:
 @compiled
 def settle(forcing: Forcing, z: Floats, at: Instant, run: FastRun) -> int:
     """Do the duties of the present instant; `z` (H,) is overwritten."""
-    plan, state, series = run.plan, run.state, run.series
+    plan, state, series, limits = run.plan, run.state, run.series, run.plan.limits
+    sliders, slides = plan.links.sliders, any_slider(run)
+    if slides:
+        begin_beside_sliders(run.observed.contact_force, run.located.kinked, sliders, at)
+    run.located.kinked[:] = False
     ended = settle_impacts(at)
     if ended != DONE:
         return ended
     if follows(run):
         put_on_branches(run)
     choose_directions(run)
-    if any_may_rest(at):
+    if slides:
+        all_variables(series.x, plan.hysteresis, state, z)
+        noise = FORCE * limits.mass * limits.length / limits.time**2
+        ended = decide_sticks(z, forcing, noise, sliders, at)
+        if ended == DONE:
+            put_on_branches(run)
+            enter_mode(run)
+            # Where forces are not unique some contacts have none.
+            series.contact_force[:] = 0.0
+    elif any_may_rest(at):
         all_variables(series.x, plan.hysteresis, state, z)
         ended = decide_rests(z, forcing, at)
         if ended == DONE:

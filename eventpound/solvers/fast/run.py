@@ -24,8 +24,6 @@ PULL = 17
 """How a call of `advance` ends, beside the ends of settling."""
 CROWDED = 18
 """How a run ends, though no call of `advance`, that has too many events."""
-IN_PYTHON = 19
-"""How a call of `advance` ends at an instant of a scene with sliders."""
 SETTLED = 2
 """In `FastProgress.due`: the duties of an instant are done, and it is to be written down."""
 MESSAGES = {

@@ -1,34 +1,21 @@
-"""Sliders: what fast's series tell of slips and sticks, and instants that Python settles.
+"""Sliders: what fast's series tell of slips and sticks.
 
 A slider that slips is a link with the constant force of its branch, until x' vanishes; one that
 sticks rests as a contact does, whose force λ is what friction lacks of that of a slip, ``Q - λ``.
 With Q = σ F, it holds while ``σ λ > 0`` and ``2 F - σ λ > 0``.
 
-What an instant demands `eventpound.contact.sliders` tells, in Python: some milliseconds.
+What an instant demands `eventpound.contact.sliders` tells.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.impacts import DONE
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.modes import ends_of_stick
-from eventpound.contact.sliders import (
-    decide_sticks,
-    locked_beside_sliders,
-    settle_beside_sliders,
-)
-from eventpound.mechanics.clusters import form_clusters_of_few
 from eventpound.mechanics.elements import pull_per_z
-from eventpound.mechanics.model import Model
-from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.compiled import by_python
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
-from eventpound.solvers.fast.followed import put_on_branches
-from eventpound.solvers.fast.instant import choose_directions, enter_mode, instant_of
-from eventpound.solvers.fast.links import all_variables
-from eventpound.solvers.fast.run import SETTLED, FastRun, piece_of
+from eventpound.solvers.fast.run import FastRun
 from eventpound.solvers.fast.search import (
     acceleration_level,
     distance_coefficient,
@@ -156,48 +143,3 @@ def add_stick_shear(order: int, run: FastRun) -> float:
             for k in range(order - 2):
                 series.d[k] -= sign * (k + 1) * force[k + 1]
     return value
-
-
-def settle_sliders(noise: float, run: FastRun, model: Model) -> int:
-    """Do the duties of the present instant of a scene with sliders; ends as `settle`.
-
-    Parameters
-    ----------
-    noise : float
-        Contact forces below this (N) have no meaningful sign.
-    run : FastRun
-        The run, which `advance` has left IN_PYTHON.
-    model : Model
-        The scene, its sliders with contacts of their own.
-    """
-    state, observed = run.state, run.observed
-    with by_python():
-        at, piece = instant_of(run), piece_of(state.progress[0].piece, run.plan.ground)
-        ended = settle_beside_sliders(observed.contact_force, run.located.kinked, at, model)
-        run.located.kinked[:] = False
-        if ended != DONE:
-            return ended
-        choose_directions(run)
-        all_variables(run.series.x, run.plan.hysteresis, state, observed.z)
-        forcing = Forcing(piece.family, piece.coefficients, piece.samples, float(state.now[0].t))
-        ended = decide_sticks(observed.z, forcing, noise, at, model)
-        if ended == DONE:
-            put_on_branches(run)
-            enter_mode(run)
-            _unlock(run, model)
-            state.progress[0].due = SETTLED
-    return ended
-
-
-def _unlock(run: FastRun, model: Model) -> None:
-    """Let contacts open that sliders alone lock; forces of sliders are no part of what is told."""
-    state = run.state
-    run.record.unique[model.own_contacts :] = True
-    # Where forces are not unique some contacts have none.
-    run.series.contact_force[:] = 0.0
-    clusters = form_clusters_of_few(
-        model.left, model.right, model.gap, state.resting, state.pressed, model.mass
-    )
-    if not clusters.tree:
-        locked = locked_beside_sliders(model, state.resting, clusters)
-        state.unlocked[clusters.resting] = ~(locked | clusters.redundant)

@@ -68,7 +68,6 @@ from eventpound.solvers.fast.run import (
     CROWDED,
     FINISHED,
     GOING_ON,
-    IN_PYTHON,
     MESSAGES,
     STUCK,
     FastPlan,
@@ -78,9 +77,7 @@ from eventpound.solvers.fast.run import (
 )
 from eventpound.solvers.fast.sdof.body import has_play, oscillator_of
 from eventpound.solvers.fast.sdof.oscillator import oscillate_alone
-from eventpound.solvers.fast.sliding import settle_sliders
 from eventpound.solvers.supported import with_supports
-from eventpound.tolerances import FORCE
 
 BUDGET = 20_000
 """Steps between two reports of progress."""
@@ -188,8 +185,7 @@ class Arrays:
     def run(self, task: Task) -> Left:
         """Run a task of the present numbers, but for the motion, which is that of its scene."""
         clock, begun = Stopwatch(), self._begun(task)
-        noise = FORCE * begun.scales.force
-        run, ended, stopped = _run(task, self._blank_run(begun), self._model, noise)
+        run, ended, stopped = _run(task, self._blank_run(begun))
         self._run = run if run.record.rows.nbytes <= MOST_KEPT else None
         left = self._left(task, begun.scales, run, ended, clock)
         if stopped is not None:
@@ -373,17 +369,13 @@ def run_of(plan: FastPlan, moving: JoinedArrays, model: Model) -> FastRun:
     )
 
 
-def _run(
-    task: Task, run: FastRun, model: Model, noise: float
-) -> tuple[FastRun, int, ComputationError | None]:
+def _run(task: Task, run: FastRun) -> tuple[FastRun, int, ComputationError | None]:
     """Advance to the end, with progress and room for the record; how it ended, who stopped it."""
     plan, state, most = run.plan, run.state, task.max_steps
     carry = oscillate_alone if plan.oscillator.alone else advance
     while True:
         budget = BUDGET if most is None else min(BUDGET, most - int(state.progress["steps"][0]))
         ended = carry(budget, run)
-        if ended == IN_PYTHON:
-            ended = settle_sliders(noise, run, model) or GOING_ON
         if ended == FULL:
             if state.now["events"][0] > MOST_EVENTS:
                 return run, CROWDED, None
