@@ -119,7 +119,7 @@ def _change(before: tuple[Floats, Floats] | None, values: Floats, sizes: Floats)
 def warn_unsettled(name: str, part: float, aim: float = AGREEMENT) -> None:
     """Say of a number that it is known to no more than a part of its size, where that is so."""
     text = (
-        f"known to some {part:.0e} of its size, not to {aim:g}; a smaller rtol helps, with fixed "
+        f"known to some {part:.2e} of its size, not to {aim:g}; a smaller rtol helps, with fixed "
         "steps a smaller time_step"
     )
     if part == np.inf:

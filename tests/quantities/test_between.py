@@ -231,10 +231,12 @@ def test_the_motion_without_contact_is_a_run_of_its_own(pounding: Response) -> N
 def test_a_warning_names_what_was_asked_and_what_helps(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(between, "_ROUNDS", 1)
     response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)
-    said = r"^velocity.a.\*: known to some \de-\d+ of its size, not to 1e-06; a smaller rtol helps"
+    said = r"^velocity.a.\*: known to some \d.\d\de-\d+ of its size, not to 1e-06; a smaller rtol "
     with pytest.warns(AccuracyWarning, match=said) as warned:
         response.quantity("velocity.a.max")
     assert [each.filename for each in warned] == [__file__]
+    with pytest.warns(AccuracyWarning, match="some 1.40e-09 of its size, not to 1e-09"):
+        rows.warn_unsettled("velocity.a.*", 1.4e-9, 1e-9)
     assert response.quantity("contacts.joint.largest_gap")
     monkeypatch.setattr(rows, "MOST_ROWS", 1)
     response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)
