@@ -17,7 +17,8 @@ With --spectrum or --fragility no runs are made: the finished table is taken.
 
 --spectrum, of a study in Π-terms, which holds for every amplitude and period of its pulse:
 spectrum.csv has its rows in dimensions: T_s (s) or Q/m (m/s²), gap and yield displacement
-(m), and u_max (m); the figures of the case are drawn in them, too.
+(m), and u_max (m); the figures of the case are drawn in them, too. Other columns stay those of
+the pulse of the study.
 
 --fragility, of a study or of a suite: lognormal curves, the probability that a demand
 exceeds a limit, over an intensity, by maximum likelihood. Of a study that scales each

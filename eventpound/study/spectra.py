@@ -62,7 +62,8 @@ def dimensional_spectrum(table: pd.DataFrame, scales: Scales) -> pd.DataFrame:
     -------
     DataFrame
         The same rows; in the place of Π-terms ``T_s`` (s), ``Q/m`` (m/s^2),
-        ``u_y``, ``delta``, ``u_max`` and ``free.u_max`` (m).
+        ``u_y``, ``delta``, ``u_max`` and ``free.u_max`` (m). Other columns stay
+        those of the pulse of the study.
 
     Raises
     ------
