@@ -52,7 +52,9 @@ LISTED: tuple[Quantity, ...] = (
                TakenFrom.LAWS, v.told_by_law(name))
       for name, text in (
           ("strength_lost", "Part of its strength that a degrading Bouc-Wen spring has lost."),
-          ("stiffness_lost", "Part of its stiffness at z = 0 that it has lost."))),
+          ("strength_left", "What of it is left."),
+          ("stiffness_lost", "Part of its stiffness at z = 0 that it has lost."),
+          ("stiffness_left", "What of it is left."))),
     Quantity(_SPRING + "passive_force", "peak passive force", D.FORCE,
              "Largest force of the soil of a backfill.", v.passive_force, only=v.law_is(Backfill)),
     Quantity(_SPRING + "passive_depth", "depth pushed in", D.LENGTH,

@@ -337,11 +337,19 @@ class DegradingBoucWen(BoucWen):
         """Part of its first strength that is gone, 1 - nu^(-1/n)."""
         return -math.expm1(-math.log1p(self.strength_degradation * epsilon) / self.exponent)
 
+    def strength_left(self, elongation: float, z: float, epsilon: float) -> float:
+        """The other part, nu^(-1/n)."""
+        return 1.0 - self.strength_lost(elongation, z, epsilon)
+
     def stiffness_lost(self, elongation: float, z: float, epsilon: float) -> float:
         """Part of K0 that is gone at z = 0, where ``k + Q/(eta u_y)`` is left."""
         more = self.stiffness_degradation * epsilon
         own = self.strength / self.yield_displacement / self.initial_stiffness
         return own * more / (1.0 + more)
+
+    def stiffness_left(self, elongation: float, z: float, epsilon: float) -> float:
+        """The other part, ``(k + Q/(eta u_y)) / K0``."""
+        return 1.0 - self.stiffness_lost(elongation, z, epsilon)
 
     def dissipated(self, elongation: float, z: float, epsilon: float) -> float:
         """Work that was lost from the start up to here (J)."""

@@ -110,6 +110,10 @@ def test_bearings_and_soil_have_what_they_are_designed_for() -> None:
         *("pier.strength_lost", "pier.stiffness_lost"),
     }
     assert (table.loc[[f"springs.{name}" for name in named], "value"] > 0.0).all()
+    run = simulate(scene, error_estimate=False)
+    for word in ("strength", "stiffness"):
+        lost, left = (run.quantity(f"springs.pier.{word}_{way}") for way in ("lost", "left"))
+        assert lost + left == 1.0
 
 
 def test_the_largest_loss_is_that_of_the_strongest_record(suite: Path) -> None:
