@@ -67,6 +67,9 @@ def begin_beside_sliders(force: Floats, kinked: Bools, sliders: Ints, at: Instan
     at : Instant
         The instant.
     """
+    if at.now[0].here > 0:
+        # An instant that had to pause for more room goes on with its impacts.
+        return
     own, stopped = at.gap.size - sliders.size, False
     held = at.resting.copy()
     for i in range(sliders.size):

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 from eventpound import simulate
+from eventpound.contact.sliders import begin_beside_sliders
+from eventpound.contact.state import Now
 from eventpound.errors import ComputationError, InputError
+from eventpound.mechanics.model import assemble, with_sliders
 from eventpound.motion import Harmonic, NoMotion, Record, Ricker, Sine
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.constant import Constant
+from eventpound.numerics.compiled import in_python
 from eventpound.response import Response
 from eventpound.scene import (
     BARRIER,
@@ -645,3 +650,26 @@ def test_run_goes_on_where_another_ended(cut: float) -> None:
     later = simulate(scene, duration=2.0 - cut, start=first.final, rtol=RTOL).recording
     assert later.u[0] == pytest.approx(whole.recording.u[0], abs=CLOSE * 0.05)
     assert not later.v.any()
+
+
+@pytest.mark.parametrize("problems", [0, 3])
+def test_an_instant_that_paused_for_room_does_not_end_slips_again(problems: int) -> None:
+    deck, bearing = on_ground(Slider(0.1, 1000.0))
+    model = with_sliders(assemble(Scene((deck,), (bearing,), motion=NoMotion())))
+    now = np.zeros(1, Now.layout)
+    now["here"] = problems
+    at = SimpleNamespace(
+        now=now,
+        gap=np.zeros(1),
+        opening=np.zeros(1),
+        branch=np.ones(1, np.int64),
+        law=model.law,
+        left=model.left,
+        right=model.right,
+        mass=model.mass,
+        v=np.array([0.3]),
+        **{name: np.zeros(1, np.bool_) for name in ("resting", "released")},
+    )
+    in_python(begin_beside_sliders)(np.zeros(1), np.ones(1, np.bool_), model.sliders, at)
+    # An impact of this instant may have set it moving since.
+    assert at.v == (0.3 if problems else 0.0)
