@@ -26,7 +26,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.impacts import DONE, put_as_one
-from eventpound.contact.instant import any_may_rest, take_rests, touching_between
+from eventpound.contact.instant import any_may_rest, take_rests, touching_between, touching_of
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import (
     ORDER,
@@ -39,7 +39,7 @@ from eventpound.contact.rest import (
 )
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import Clusters, form_clusters, is_support
-from eventpound.mechanics.contact_problem import delassus_entry
+from eventpound.mechanics.contact_problem import delassus_matrix
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
@@ -108,7 +108,7 @@ def decide_sticks(z: Floats, forcing: Forcing, noise: float, sliders: Ints, at: 
     if not any_may_rest(at):
         # A cascade of impacts between what slips needs no more.
         return DONE
-    touching = touching_between(at.left, at.right, at.opening, z, forcing, at)
+    touching = touching_of(z, forcing, at)
     members = np.flatnonzero(touching.undecided)
     force, found = _forces(members, touching, sliders, at)
     if not found:
@@ -164,7 +164,7 @@ def _forces(members: Ints, touching: Touching, sliders: Ints, at: Instant) -> tu
             if c >= 0:
                 a[c] -= sign * start[i] / mass[c]
                 noise[c] += LCP_ROUNDING * abs(start[i]) / mass[c]
-    G, q = np.empty((members.size, members.size)), np.zeros((members.size, 1 + given.shape[0]))
+    q = np.zeros((members.size, 1 + given.shape[0]))
     for i in range(members.size):
         relative, level = difference(a, left[i], right[i]), 0.0
         for c in (left[i], right[i]):
@@ -173,8 +173,7 @@ def _forces(members: Ints, touching: Touching, sliders: Ints, at: Instant) -> tu
         # Those of supports may be less than the rounding of a sum, and still tell who gives way.
         for k in range(given.shape[0]):
             q[i, 1 + k] = difference(given[k], left[i], right[i])
-        for k in range(members.size):
-            G[i, k] = delassus_entry(left, right, 1.0 / mass, i, k)
+    G = delassus_matrix(touching.left, touching.right, 1.0 / mass, members)
     return least_in_box(G, q, low, high, start)
 
 

@@ -47,7 +47,7 @@ def parts(left: Ints, right: Ints, nodes: int) -> Ints:
 
 
 @scalar_kernel
-def delassus_entry(left: Ints, right: Ints, inverse_mass: Floats, i: int, j: int) -> float:
+def _coupling(left: Ints, right: Ints, inverse_mass: Floats, i: int, j: int) -> float:
     """Entry G_ij = Σ_b W_bi W_bj / m_b."""
     total = 0.0
     if right[i] >= 0:
@@ -61,6 +61,16 @@ def delassus_entry(left: Ints, right: Ints, inverse_mass: Floats, i: int, j: int
         if left[i] == right[j]:
             total -= inverse_mass[left[i]]
     return total
+
+
+@kernel
+def delassus_matrix(left: Ints, right: Ints, inverse_mass: Floats, members: Ints) -> Floats:
+    """``G = Wᵀ M⁻¹ W`` of some contacts, the members, shape (k, k) (1/kg)."""
+    G = np.empty((members.size, members.size))
+    for a in range(members.size):
+        for b in range(members.size):
+            G[a, b] = _coupling(left, right, inverse_mass, int(members[a]), int(members[b]))
+    return G
 
 
 @kernel
@@ -122,7 +132,7 @@ def solve_contacts(
     members = np.empty(q.size, np.int64)
     for j in range(q.size):
         # No force moves what lies between two masses that move as they are told to.
-        if delassus_entry(left, right, inverse_mass, j, j) == 0.0:
+        if _coupling(left, right, inverse_mass, j, j) == 0.0:
             w[j], label[j], solved = max(0.0, q[j]), -1, solved and q[j] >= 0.0
     for start in range(q.size):
         part, count = label[start], 0
@@ -133,7 +143,7 @@ def solve_contacts(
                 members[count], label[j] = j, -1
                 count += 1
         if count == 1:
-            x[start] = max(0.0, -q[start] / delassus_entry(left, right, inverse_mass, start, start))
+            x[start] = max(0.0, -q[start] / _coupling(left, right, inverse_mass, start, start))
             w[start] = max(0.0, q[start])
             continue
         row = np.empty(0, np.int64)
@@ -149,13 +159,9 @@ def solve_contacts(
             put_numbers(found, row, x)
             put_numbers(rate, row, w)
             continue
-        G, own = np.empty((count, count)), np.empty(count)
+        G, own = delassus_matrix(left, right, inverse_mass, members[:count]), np.empty(count)
         for a in range(count):
             own[a] = q[members[a]]
-            for b in range(count):
-                G[a, b] = delassus_entry(
-                    left, right, inverse_mass, int(members[a]), int(members[b])
-                )
         found, rate, part_solved = solve_dense(G, own, noise)
         for a in range(count):
             x[members[a]], w[members[a]] = found[a], rate[a]

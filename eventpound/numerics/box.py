@@ -190,13 +190,13 @@ def _enter(G: Floats, j: int, low: Floats, high: Floats, work: _Pivoting) -> boo
         if blocking == j:
             return True
         work.passive[blocking] = False
+        _invert_passive(G, work)
 
 
 @scalar_kernel
 def _set_along(G: Floats, j: int, way: float, work: _Pivoting) -> None:
     """Set how unknowns move with x_j, which moves by `way`: passive ones keep their w of zero."""
     along, largest = work.along, abs(way)
-    _invert_passive(G, work)
     for i in range(along.size):
         along[i] = 0.0
         for k in range(along.size):
