@@ -188,14 +188,10 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
                 return FIRST_BRANCHES
             if run.laws.contact.size > 0:
                 switch_elements(run.laws, at)
-            forcing, ended = by_address(forcing_now(piece, now.t)), DONE
-            if sliders.size > 0:
-                noise = mode.watched.force_noise
-                ended = decide_sticks(state.z, forcing, noise, sliders, at)
-            elif any_may_rest(at):
-                ended = decide_rests(state.z, forcing, at)
-            if ended != DONE:
-                return ended
+            if sliders.size > 0 or any_may_rest(at):
+                ended = _decide(run, mode, piece)
+                if ended != DONE:
+                    return ended
             progress.phase = HISTORY
         if progress.phase == HISTORY:
             if now.stale:
@@ -218,6 +214,16 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     if ended == OVER:
         end_cascade(state.resting, now, run.record.events)
     return ended
+
+
+@kernel
+def _decide(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
+    """Who rests, or sticks, after the impacts of an instant; ends as `decide_rests`."""
+    z, at, sliders = run.state.z, run.instant, mode.bodies.sliders
+    forcing = by_address(forcing_now(piece, run.state.now[0].t))
+    if sliders.size > 0:
+        return decide_sticks(z, forcing, mode.watched.force_noise, sliders, at)
+    return decide_rests(z, forcing, at)
 
 
 @kernel

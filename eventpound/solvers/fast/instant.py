@@ -38,8 +38,8 @@ from eventpound.solvers.fast.links import (
     turns_back,
 )
 from eventpound.solvers.fast.run import FastRun
+from eventpound.solvers.fast.search import force_level
 from eventpound.solvers.fast.sliding import any_slider
-from eventpound.tolerances import FORCE
 
 
 @compiled
@@ -173,19 +173,18 @@ def settle(forcing: Forcing, z: Floats, at: Instant, run: FastRun) -> int:
     if follows(run):
         put_on_branches(run)
     choose_directions(run)
-    if slides:
+    if slides or any_may_rest(at):
         all_variables(series.x, plan.hysteresis, state, z)
-        noise = FORCE * limits.mass * limits.length / limits.time**2
-        ended = decide_sticks(z, forcing, noise, sliders, at)
+        if slides:
+            # Of no clusters: their series are those of the step before.
+            ended = decide_sticks(z, forcing, force_level(0, limits, series), sliders, at)
+        else:
+            ended = decide_rests(z, forcing, at)
         if ended == DONE:
-            put_on_branches(run)
-            enter_mode(run)
-            # Where forces are not unique some contacts have none.
-            series.contact_force[:] = 0.0
-    elif any_may_rest(at):
-        all_variables(series.x, plan.hysteresis, state, z)
-        ended = decide_rests(z, forcing, at)
-        if ended == DONE:
+            if slides:
+                put_on_branches(run)
+                # Where forces are not unique some contacts have none.
+                series.contact_force[:] = 0.0
             enter_mode(run)
     return ended
 
