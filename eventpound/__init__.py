@@ -13,20 +13,12 @@ from typing import Any
 with open(f"{__file__.removesuffix('c')}i", encoding="utf-8") as _stub:
     _HOME = {words[-1]: words[1] for words in map(str.split, _stub) if words[:1] == ["from"]}
 __all__ = sorted(_HOME)
-_RENAMED = {"Many": "BatchResponse"}
-"""Public names of earlier states, which still work, by the names they have now."""
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used, so that importing the package costs little."""
     from importlib import import_module
 
-    if name in _RENAMED:
-        import warnings
-
-        new = _RENAMED[name]
-        warnings.warn(f"eventpound.{name} is eventpound.{new} now", DeprecationWarning, 2)
-        name = new
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_HOME[name]), name)

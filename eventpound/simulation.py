@@ -259,14 +259,9 @@ def check_solver(options: SolverOptions, scene: Scene | None = None, events: boo
 def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[str]:
     """Settings that a solver does not have, else what is wrong with their values."""
     known = list(solver.settings)
-    given_up: Mapping[str, str] = getattr(solver, "given_up", {})
     problems = [
         f"[solver]: {key} is not a setting of {solver.name}"
-        + (
-            f" any more; {given_up[key]}"
-            if key in given_up
-            else suggestion(key, known) or f"; accepted: {', '.join(known) or 'none'}"
-        )
+        + (suggestion(key, known) or f"; accepted: {', '.join(known) or 'none'}")
         for key in settings
         if key not in known
     ]

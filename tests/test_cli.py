@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shlex
 import subprocess
 import sys
 import threading
@@ -161,35 +160,6 @@ def test_commands_stand_by_their_tasks(capsys: pytest.CaptureFixture[str]) -> No
     assert len(commands) == 13
     for command in commands:
         assert out.count(f"\n  {command} ") == 1, command
-
-
-@pytest.mark.parametrize(
-    ("words", "now"),
-    [
-        ("quantities pulse", "check pulse --quantities"),
-        ("-v export pulse --out a", "run -v pulse --export a"),
-        ("export pulse", "run pulse --export DIR"),
-        ("figures", "plot cases"),
-        ("spectrum c --period 0.8", "study c --period 0.8 --spectrum"),
-        ("fragility ida --limit '5 cm'", "study ida --limit '5 cm' --fragility"),
-        ("record record --units g", "records record --units g"),
-        ("synthetic a", "records synthetic a"),
-        ("score a b.csv", "problems score a b.csv"),
-        ("problems --freeze set", "problems pack --freeze set"),
-        ("floor c A1", "floor-spectrum c A1"),
-        ("compile --processes 2 --solver fast", "solvers --processes 2 --compile fast"),
-    ],
-)
-def test_a_name_of_before_is_answered_with_the_command_of_now(
-    words: str, now: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with pytest.raises(SystemExit) as caught:
-        main(shlex.split(words))
-    assert caught.value.code == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.endswith(f" is now: eventpound {now}\n")
-    assert err.count("\n") == 1
 
 
 @pytest.mark.parametrize(

@@ -250,8 +250,3 @@ def test_the_notebook_of_the_docs_runs(tmp_path: Path, monkeypatch: pytest.Monke
         exec(compile("".join(cell["source"]), "notebook", "exec"), names)
     assert isinstance(names["response"], Response)
     assert names["response"].impacts > 0
-
-
-def test_earlier_names_still_work_with_a_warning() -> None:
-    with pytest.warns(DeprecationWarning, match=r"eventpound\.Many is eventpound\.BatchResponse"):
-        assert eventpound.Many is eventpound.BatchResponse

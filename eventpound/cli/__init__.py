@@ -29,7 +29,6 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
-from eventpound.cli import former
 from eventpound.cli.arguments import EXAMPLES, Command, Commands, Options
 from eventpound.cli.output import Output
 from eventpound.cli.progress import CompilationLine
@@ -98,12 +97,15 @@ def _run(options: Options) -> int:
 
 
 class _Parser(Command):
-    """Takes a command of two words for one, and answers names of before."""
+    """Takes a command of two words for one."""
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        words = former.joined(list(sys.argv[1:] if args is None else args))
-        if now := former.now(words):
-            self.exit(InputError.exit_code, f"eventpound: {now}\n")
+        words = list(sys.argv[1:] if args is None else args)
+        # What holds for every command may stand before it.
+        at = next((i for i, word in enumerate(words) if not word.startswith("-")), len(words))
+        two = " ".join(words[at : at + 2])
+        if two in self._subparsers._group_actions[0].choices:  # type: ignore[union-attr, operator]
+            words[at : at + 2] = [two]
         return super().parse_known_args(words, namespace)
 
 

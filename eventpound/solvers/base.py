@@ -361,9 +361,8 @@ class Solver(Protocol):
     whose memory has branches or a second number (`eventpound.scene.spring.Hysteretic`) has their
     words in an attribute ``memories``. One that keeps `Recording.sticks`, and in the history the
     state before and after the end of each branch, says so by ``lists_springs = True``.
-    Settings that it had once are in a mapping ``given_up``, each with what to do instead. One that
-    can do once what many runs of a scene have in common has a function ``ready(task)``, which
-    returns a `ReadyTask`, or None for a scene of which it cannot.
+    One that can do once what many runs of a scene have in common has a function ``ready(task)``,
+    which returns a `ReadyTask`, or None for a scene of which it cannot.
     """
 
     @property

@@ -114,7 +114,6 @@ def _longest(k: float) -> float:
         ('"cvode"', '"cvode"\ncoordinates = 1', "coordinates = 1; accepted: moving or relative"),
         ('"cvode"', '"moreau"\ntheta = 7', "[solver]: theta = 7; accepted: a number from 0.5 to"),
         ('"cvode"', '"moreau"\ntime_step = 0', "time_step = 0.0; accepted: a positive time"),
-        ('"cvode"', '"penalty"\ncontact = "hertz"', "contact is not a setting of penalty any more"),
         ('"cvode"', '"penalty"\ntime_step = 1\nsteps_per_period = 9', "accepted: one of them"),
     ],
 )

@@ -33,10 +33,6 @@ class Penalty:
         f"time_step; default {STIFFER:g} times the stiffest spring's, and never softer",
         **SETTINGS,
     }
-    given_up: Mapping[str, str] = dict.fromkeys(
-        ("contact", "contact_stiffness"),
-        "give the contacts a law of their own: law and stiffness in [[contact]]",
-    )
     counts_steps = True
     contact_laws = tuple(BY_WORD)
 

@@ -50,14 +50,6 @@ def test_refused(solver, settings, message):
         _run(solver, _scene(), **settings)
 
 
-@pytest.mark.parametrize("given", [{"contact": "hertz"}, {"contact_stiffness": 1e3}])
-def test_penalty_says_how_contacts_are_given_elements_now(given):
-    (key,) = given
-    message = f"{key} is not a setting of penalty any more; .*law and stiffness in .*contact"
-    with pytest.raises(InputError, match=message):
-        simulate(_scene(), "penalty", settings=given)
-
-
 @pytest.mark.parametrize(
     ("motion", "shortest"),
     [
