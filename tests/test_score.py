@@ -13,10 +13,15 @@ import pytest
 
 from eventpound import score
 from eventpound.cli import main
+from eventpound.problems.alone import score_file
 from eventpound.problems.collection import read_collection
 from eventpound.problems.entrants import materialized
 from eventpound.problems.files import problem_json
 from eventpound.results.jsontext import canonical
+from eventpound.score.__main__ import main as judge_alone
+from eventpound.score.answer import turns
+from eventpound.score.found import crests_of
+from eventpound.score.levels import UNIT_OF_TIME
 
 SET = read_collection(Path(__file__).parents[1] / "cases" / "problems")
 HIT = "19-graze-hit-1e-03"
@@ -81,7 +86,7 @@ def test_an_impact_too_late_penetrates(problem):
     assert "penetrates" in card.levels["reference"]
     deepest = -np.cos(np.pi - np.arccos(0.999) + 1e-3) - 0.999
     assert card.penetration == pytest.approx(deepest, rel=1e-9)
-    assert card.impacts["largest_shift"] * score.UNIT_OF_TIME * 4.0 == pytest.approx(1e-3, rel=1e-6)
+    assert card.impacts["largest_shift"] * UNIT_OF_TIME * 4.0 == pytest.approx(1e-3, rel=1e-6)
 
 
 def test_a_missed_impact_and_one_too_many_are_counted(problem):
@@ -126,7 +131,7 @@ def test_energy_from_nowhere_is_seen(problem):
 def test_a_near_miss_in_rows_is_no_impact(miss):
     """The reach of a step is 1e-6, more than some are missed by; the rows turn as a parabola."""
     t = np.linspace(0.0, 6.0, 6001)
-    assert score.turns(t, 1.0 + miss + np.cos(t + 3.0), -np.sin(t + 3.0), 1.0) == []
+    assert turns(t, 1.0 + miss + np.cos(t + 3.0), -np.sin(t + 3.0), 1.0) == []
 
 
 @pytest.mark.parametrize("within", [0.0, 0.3, 0.5])
@@ -136,7 +141,7 @@ def test_an_impact_between_rows_is_one(within):
     late = t > 1.0
     gap = np.where(late, 0.5 * (t - 1.0), 1.0 - t) + within * 1e-3
     rates = np.where(late, 0.5, -1.0)
-    ((at, before, after),) = score.turns(t, gap, rates, 1.0)
+    ((at, before, after),) = turns(t, gap, rates, 1.0)
     assert at == pytest.approx(1.0, abs=1.1e-3)
     assert (before, after) == (-1.0, 0.5)
 
@@ -147,7 +152,7 @@ def test_extremes_are_those_of_the_cubics(rows):
     t = np.linspace(0.0, 6.0, rows)
     theta = 6.0 / (rows - 1)
     smooth = score.Motion(t, np.sin(t + 0.1)[:, None], np.cos(t + 0.1)[:, None])
-    crests = score._crests(smooth, [])
+    crests = crests_of(smooth, [])
     off = max(abs(crests.highest[0] - 1.0), abs(crests.lowest[0] + 1.0))
     assert 0.0 < off < theta**4 / 384.0
     assert off < crests.beyond[0] < theta**4 / 24.0
@@ -359,7 +364,7 @@ def test_an_answer_that_cannot_be_judged_is_one_message(problem, folder, tmp_pat
     assert says in error
     assert error.count("\n") == 1
     alone = subprocess.run(
-        [sys.executable, score.__file__, folder, answer],
+        [sys.executable, "-m", "eventpound.score", folder, answer],
         capture_output=True,
         text=True,
         check=False,
@@ -369,13 +374,13 @@ def test_an_answer_that_cannot_be_judged_is_one_message(problem, folder, tmp_pat
 
 
 def test_a_problem_that_is_none_is_one_message(folder, tmp_path, capsys):
-    assert score.main([str(tmp_path), "mine.csv"]) == 2
+    assert judge_alone([str(tmp_path), "mine.csv"]) == 2
     assert "problem.json: cannot be read" in capsys.readouterr().err
     for name in ("problem.json", "answer.json"):
         content = json.loads((folder / name).read_text())
         content.pop("gaps" if name == "problem.json" else "events")
         (tmp_path / name).write_text(json.dumps(content))
-        assert score.main([str(tmp_path), "mine.csv"]) == 2
+        assert judge_alone([str(tmp_path), "mine.csv"]) == 2
         assert capsys.readouterr().err.endswith((": has no gaps\n", ": has no events\n"))
         (tmp_path / name).write_bytes((folder / name).read_bytes())
     assert main(["problems", "score", str(tmp_path), "mine.csv"]) == 2
@@ -383,7 +388,10 @@ def test_a_problem_that_is_none_is_one_message(folder, tmp_path, capsys):
 
 
 def test_the_file_needs_numpy_only():
-    tree = ast.parse(Path(score.__file__).read_text())
+    tree = ast.parse(score_file())
+    defined = [node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+    assert len(defined) == len(set(defined))
+    assert "judge" in defined
     imported = {
         name.split(".")[0]
         for node in ast.walk(tree)

@@ -14,7 +14,9 @@ from eventpound.accuracy.routes import REFERENCE, Route, RouteRun
 from eventpound.accuracy.sequences import KINDS, parted, touches, weights_for
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
-from eventpound.score import UNIT_OF_TIME, Difference, Pair, Truth, difference
+from eventpound.score.difference import Difference, Truth, difference
+from eventpound.score.levels import UNIT_OF_TIME
+from eventpound.score.pairing import Pair
 from eventpound.solvers.base import Recording, Task
 
 AS_GOOD = 1e-14

@@ -12,7 +12,7 @@ from eventpound.accuracy.conditioning import Conditioning
 from eventpound.accuracy.left_out import displaced, time_to_limits
 from eventpound.accuracy.quantities import row_of, scales_of_task
 from eventpound.accuracy.routes import REFERENCE
-from eventpound.score import digits_of
+from eventpound.score.card import digits_of
 from eventpound.solvers.base import Task
 from eventpound.tolerances import ATTAINED_ANEW
 

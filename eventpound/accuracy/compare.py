@@ -19,7 +19,7 @@ from eventpound.case.case import Case, RunOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.scene.check import check_scene
 from eventpound.scene.rigid import rigid
-from eventpound.score import Difference
+from eventpound.score.difference import Difference
 from eventpound.simulation import check_case, check_solver, refuse_suite
 from eventpound.solvers import solver_named
 from eventpound.ways import Way, warn_left_out

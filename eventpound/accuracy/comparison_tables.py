@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from eventpound.accuracy.reference import Reference
-    from eventpound.score import Difference, Pair, Paired
+    from eventpound.score.difference import Difference
+    from eventpound.score.pairing import Pair, Paired
 
 KINDS = ("rest", "detachment")
 ERRORS: dict[str, Callable[[Difference], object]] = {

@@ -21,7 +21,9 @@ from eventpound.accuracy.sequences import KINDS, instead_of, parted, weights_for
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
-from eventpound.score import UNIT_OF_TIME, Paired, Truth, difference
+from eventpound.score.difference import Truth, difference
+from eventpound.score.levels import UNIT_OF_TIME
+from eventpound.score.pairing import Paired
 from eventpound.simulation import Progress
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind

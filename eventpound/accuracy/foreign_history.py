@@ -22,7 +22,9 @@ from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.mechanics.supported import lowered, moving_supports, support_motion
 from eventpound.numerics.arrays import Floats
-from eventpound.score import SAME_TIME, Difference, Motion, ScoreError, columns_of, read_motion
+from eventpound.score.answer import Motion, columns_of, read_motion
+from eventpound.score.difference import Difference
+from eventpound.score.levels import SAME_TIME, ScoreError
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.from_samples import sampled_recording
 from eventpound.solvers.supported import own_part

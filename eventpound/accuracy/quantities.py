@@ -24,7 +24,7 @@ from eventpound.accuracy.sequences import SOFT, loudness, stands_by
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import lowered
 from eventpound.scene.scene import Scene
-from eventpound.score import Difference, MotionScales, ScaledValue, Truth, difference
+from eventpound.score.difference import Difference, MotionScales, ScaledValue, Truth, difference
 from eventpound.solvers.base import ENDS_OF_REST, EventKind, History, Recording, Task
 from eventpound.solvers.events.scales import SceneScales, scene_scales, z_size
 

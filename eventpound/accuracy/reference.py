@@ -22,7 +22,7 @@ from eventpound.errors import ComputationError, InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.results.jsontext import read_json
 from eventpound.scene.scene import Scene
-from eventpound.score import Difference, ScaledValue, Truth
+from eventpound.score.difference import Difference, ScaledValue, Truth
 from eventpound.simulation import task_with
 from eventpound.solvers import knows_scene, solver_named
 from eventpound.solvers.base import History, Recording, Task

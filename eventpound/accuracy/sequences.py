@@ -16,7 +16,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.score import UNIT_OF_TIME, Pair, Paired, Weights
+from eventpound.score.levels import UNIT_OF_TIME
+from eventpound.score.pairing import Pair, Paired, Weights
 from eventpound.solvers.base import ENDS_OF_REST, Event, EventKind
 
 SOFT = 1e-6

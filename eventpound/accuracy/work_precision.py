@@ -20,7 +20,7 @@ from eventpound.accuracy.quantities import errors_of
 from eventpound.accuracy.reference import Reference
 from eventpound.case.case import Case, SolverOptions
 from eventpound.errors import ComputationError, InputError
-from eventpound.score import Difference
+from eventpound.score.difference import Difference
 from eventpound.simulation import solved, task_with
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Solver, Task, Work

@@ -33,7 +33,7 @@ from eventpound.errors import InputError
 if TYPE_CHECKING:
     from eventpound.problems.collection import Collection, ProblemFolder
     from eventpound.problems.entrants import Entrant
-    from eventpound.score import Card
+    from eventpound.score.card import Card
 
 
 def add(commands: Commands) -> None:

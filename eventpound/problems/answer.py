@@ -20,7 +20,7 @@ from eventpound.accuracy.verify import PATIENCE, Report, verify
 from eventpound.case.case import RunOptions
 from eventpound.mechanics.model import assemble
 from eventpound.problems.collection import Collection, ProblemFolder
-from eventpound.score import LISTED
+from eventpound.score.levels import LISTED
 from eventpound.solvers.base import EventKind
 
 MOMENTS = 40

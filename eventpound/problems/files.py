@@ -12,7 +12,6 @@ from __future__ import annotations
 import io
 import zipfile
 from collections.abc import Mapping
-from importlib.resources import files as package_files
 from typing import Any
 
 import numpy as np
@@ -20,6 +19,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
+from eventpound.problems.alone import score_file
 from eventpound.problems.answer import moments_of
 from eventpound.problems.collection import ANSWER, EARLIER, FROZEN, INDEX, Collection, ProblemFolder
 from eventpound.problems.page import index_page, page
@@ -238,7 +238,7 @@ def archive(collection: Collection) -> bytes:
     head = f"{collection.name} {collection.version}".replace(" ", "-")
     contents = {
         "README.md": index_page(collection).encode(),
-        "score.py": (package_files("eventpound") / "score.py").read_bytes(),
+        "score.py": score_file().encode(),
         **{name: (collection.folder / name).read_bytes() for name in (INDEX, FROZEN)},
     }
     for path in sorted(collection.folder.glob(EARLIER.format("*"))):

@@ -20,7 +20,7 @@ from eventpound.accuracy.comparison_tables import floor_of
 from eventpound.accuracy.quantities import PEAKS
 from eventpound.accuracy.work_precision import Judged
 from eventpound.report.style import Color, colors, new_figure, png, say, styled
-from eventpound.score import Difference
+from eventpound.score.difference import Difference
 
 _MARKERS = "osD^vP*X"
 _SIZE = 4.5

@@ -3,9 +3,9 @@
 A stepper that advances u, v (and z) from one time to the next hands its rows over and
 gets the `Recording` that a solver must return. Extremes are those of the rows, so they
 are as good as the rows are dense; impacts, where the stepper does not list them, are read
-off the rows (`eventpound.score.turns`): a near miss that coarse rows do not show to be one has a
-rate of the acceleration times a step there, and counts as a very slow impact. Contact forces,
-impulses and resting times are not known (NaN).
+off the rows (`eventpound.score.answer.turns`): a near miss that coarse rows do not show to be
+one has a rate of the acceleration times a step there, and counts as a very slow impact. Contact
+forces, impulses and resting times are not known (NaN).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.score import turns
+from eventpound.score.answer import turns
 from eventpound.solvers.base import Event, EventKind, Extremes, History, Recording, Task, Work
 from eventpound.tolerances import SAME_SAMPLE
 

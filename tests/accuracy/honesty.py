@@ -31,7 +31,7 @@ from eventpound.accuracy.quantities import truth_of
 from eventpound.case import Case
 from eventpound.errors import InputError
 from eventpound.response import Response
-from eventpound.score import difference
+from eventpound.score.difference import difference
 from eventpound.simulation import simulate
 from eventpound.solvers import knows_scene, solver_named
 from tests.hard.catalogue import LONG

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.score import MotionScales, distance, one_sided
+from eventpound.score.difference import MotionScales, distance, one_sided
 from eventpound.solvers.base import History
 
 NOTHING = np.empty(0)

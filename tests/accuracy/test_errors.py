@@ -13,7 +13,7 @@ from eventpound import load_case
 from eventpound.accuracy.quantities import FINAL, PEAKS, errors_of
 from eventpound.accuracy.reference import StatedBounds, reference_of
 from eventpound.errors import InputError
-from eventpound.score import ScaledValue
+from eventpound.score.difference import ScaledValue
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Extremes

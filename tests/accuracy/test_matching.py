@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 
-from eventpound.score import pair_times
+from eventpound.score.pairing import pair_times
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ ROOT = Path(eventpound.__file__).parent
 
 def test_no_two_classes_have_one_name():
     files = [
-        ROOT / "score.py",
+        *(ROOT / "score").glob("*.py"),
         *(ROOT / "accuracy").glob("*.py"),
         *(ROOT / "problems").glob("*.py"),
     ]

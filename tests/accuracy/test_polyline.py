@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from eventpound.numerics.arrays import Floats
-from eventpound.score import furthest_vertex
+from eventpound.score.difference import furthest_vertex
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

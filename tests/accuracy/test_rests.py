@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from eventpound.score import pair_events
+from eventpound.score.pairing import pair_events
 from eventpound.solvers.base import Event, EventKind
 
 

@@ -11,7 +11,8 @@ from eventpound.accuracy.sequences import (
     touches,
     weights_for,
 )
-from eventpound.score import UNIT_OF_TIME, pair_events
+from eventpound.score.levels import UNIT_OF_TIME
+from eventpound.score.pairing import pair_events
 from eventpound.solvers.base import Event, EventKind
 
 

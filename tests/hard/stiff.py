@@ -39,7 +39,8 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.scene.check import check_scene
-from eventpound.score import UNIT_OF_TIME, pair_events
+from eventpound.score.levels import UNIT_OF_TIME
+from eventpound.score.pairing import pair_events
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from tests.benchmarks.agreement import TooLongError

@@ -27,6 +27,7 @@ from tempfile import TemporaryDirectory
 from eventpound import score
 from eventpound.problems.collection import Collection, ProblemFolder, read_collection
 from eventpound.problems.entrants import Entrant, cards_of
+from eventpound.score.page import solved
 from eventpound.solvers import available
 
 SET = Path(__file__).parents[2] / "cases" / "problems"
@@ -125,7 +126,7 @@ def tables(found: Found, problems: tuple[ProblemFolder, ...]) -> Iterator[str]:
     yield "| --- " * (1 + len(score.LEVELS) + len(CAUSES)) + "|"
     for label, by_problem in found.items():
         best = [score.best_of(cards) for cards in by_problem.values()]
-        counts = [str(count) for count in score.solved(by_problem.values()).values()]
+        counts = [str(count) for count in solved(by_problem.values()).values()]
         causes = Counter(_cause(b.levels["engineering"]) for b in best if not b.passed)
         cells = [str(causes[cause] or "") for cause in CAUSES]
         yield f"| {label} | " + " | ".join(counts + cells) + " |"

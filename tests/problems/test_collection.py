@@ -22,7 +22,7 @@ from eventpound.problems.collection import read_collection
 from eventpound.problems.files import LAW, archive, bare_numbers, problem_json
 from eventpound.results.jsontext import canonical
 from eventpound.results.manifest import sha256
-from eventpound.score import Problem
+from eventpound.score.problem import Problem
 from tests.reference.problems import load
 
 SET = read_collection(Path(__file__).parents[2] / "cases" / "problems")
