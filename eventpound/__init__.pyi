@@ -3,7 +3,6 @@
 from eventpound.accuracy.judged import compare as compare
 from eventpound.accuracy.judged import simulate as simulate
 from eventpound.accuracy.verify import verify as verify
-from eventpound.batch_response import BatchResponse as BatchResponse
 from eventpound.case import Case as Case
 from eventpound.case import load_case as load_case
 from eventpound.errors import AccuracyWarning as AccuracyWarning
@@ -20,6 +19,7 @@ from eventpound.motion import Ricker as Ricker
 from eventpound.motion import Sine as Sine
 from eventpound.motion import TypeC as TypeC
 from eventpound.motion import read_record as read_record
+from eventpound.quantities.batch_response import BatchResponse as BatchResponse
 from eventpound.report.run_figures import plot as plot
 from eventpound.response import Response as Response
 from eventpound.results import write as write

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eventpound.batch_response import BatchResponse, blank_many, keep_recording
+from eventpound.basics.given import checked, number
 from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import EventpoundError, InputError
-from eventpound.given import checked, number
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.apart import avoiding_gaps
 from eventpound.quantities.base import SIX, pi_unit
+from eventpound.quantities.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.quantities.between import Between
 from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_of
 from eventpound.quantities.owners import owners

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.basics.given import positive
 from eventpound.case.case import LARGEST_RTOL as LARGEST_RTOL
 from eventpound.case.case import SMALLEST_RTOL as SMALLEST_RTOL
 from eventpound.case.case import Case, RunOptions, SolverOptions, Stated
@@ -17,7 +18,6 @@ from eventpound.case.options import event_problems, run_problems, settings_in_si
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
-from eventpound.given import positive
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.lookup import asked, needs_energy
 from eventpound.response import Response

@@ -18,12 +18,11 @@ ROOT = Path(eventpound.__file__).parent
 LAYERS = (
     ("cli",),
     ("report",),
-    ("study", "precompile", "problems"),
+    ("study", "problems"),
     ("accuracy",),
     ("results",),
-    ("ways",),
     ("simulation",),
-    ("response", "batch_response"),
+    ("response",),
     ("quantities",),
     ("solvers",),
     ("contact",),
@@ -32,10 +31,7 @@ LAYERS = (
     ("scene",),
     ("motion",),
     ("numerics",),
-    (
-        *("units", "given", "errors", "interruption", "input_files", "plugins", "score"),
-        *("tolerances", "warned"),
-    ),
+    (*("units", "errors", "tolerances", "basics", "score"),),
 )
 """From the top down; those of one line stand side by side."""
 HEIGHT = {name: -level for level, names in enumerate(LAYERS) for name in names}

@@ -17,12 +17,12 @@ from eventpound.accuracy.reference import Reference, reference_of, stated_bounds
 from eventpound.accuracy.work_precision import Judged, SolverChoice, is_stepped, judge
 from eventpound.case.case import Case, RunOptions
 from eventpound.errors import ComputationError, InputError
+from eventpound.quantities.ways import Way, warn_left_out
 from eventpound.scene.check import check_scene
 from eventpound.scene.rigid import rigid
 from eventpound.score.difference import Difference
 from eventpound.simulation import check_case, check_solver, refuse_suite
 from eventpound.solvers import solver_named
-from eventpound.ways import Way, warn_left_out
 
 REPEATS = 5
 Chosen = tuple[str, Mapping[str, object]]

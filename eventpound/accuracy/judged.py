@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 
 from eventpound import simulation
 from eventpound.accuracy.estimate import estimate_of
+from eventpound.basics.given import Count, checked, number, positive
+from eventpound.basics.warned import warn_caller
 from eventpound.case.case import Case
 from eventpound.case.solver_words import solver_word
 from eventpound.errors import AccuracyWarning
-from eventpound.given import Count, checked, number, positive
 from eventpound.response import Response
 from eventpound.scene.continuation import FinalState, continued
 from eventpound.scene.scene import Scene
@@ -21,7 +22,6 @@ from eventpound.simulation import Progress
 from eventpound.solvers import name_of
 from eventpound.solvers.base import Solver
 from eventpound.units import Dimension
-from eventpound.warned import warn_caller
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -26,15 +26,15 @@ from eventpound.accuracy.routes import (
     solve,
 )
 from eventpound.accuracy.sequences import instead_of
+from eventpound.basics.given import checked, number, positive
 from eventpound.case.case import Case
 from eventpound.errors import ComputationError, InputError
-from eventpound.given import checked, number, positive
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities.ways import Way, warn_left_out
 from eventpound.scene.scene import Scene
 from eventpound.simulation import LARGEST_RTOL, SMALLEST_RTOL, check_case, options_of, task_with
 from eventpound.solvers.base import Recording, Task
 from eventpound.units import Dimension
-from eventpound.ways import Way, warn_left_out
 
 SAMPLES = 2000
 """Intervals at which motions are compared and searched for turning points."""

@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from eventpound.basics.given import checked
+from eventpound.basics.input_files import read_bytes
 from eventpound.case.building import with_buildings
 from eventpound.case.case import Case
 from eventpound.case.damping import read_damping
@@ -28,8 +30,6 @@ from eventpound.case.supports import Driven, read_driven
 from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import SOURCED, understood_case
 from eventpound.errors import InputError
-from eventpound.given import checked
-from eventpound.input_files import read_bytes
 from eventpound.motion.free import NoMotion
 from eventpound.scene.check import scene_problems, scene_warnings
 from eventpound.scene.continuation import continued

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from eventpound.basics.given import number
 from eventpound.case.case import (
     DEFAULTS,
     LARGEST_RTOL,
@@ -15,7 +16,6 @@ from eventpound.case.case import (
 )
 from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.table import Table
-from eventpound.given import number
 from eventpound.motion.base import LARGEST, SMALLEST
 from eventpound.scene.contact_law import Element
 from eventpound.scene.scene import Scene

@@ -20,10 +20,10 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.basics.input_files import read_columns, to_numbers
 from eventpound.case.record_file import find_record
 from eventpound.case.table import Table
 from eventpound.errors import InputError
-from eventpound.input_files import read_columns, to_numbers
 from eventpound.motion import Record, RecordData
 from eventpound.motion.scaling import DAMPING, Target, factor_to
 from eventpound.numerics.arrays import Floats

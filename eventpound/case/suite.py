@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
+from eventpound.basics.input_files import MOST_MATCHES, matching_files
 from eventpound.case.record_file import record_root
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.table import Table
 from eventpound.errors import InputError, told_of
-from eventpound.input_files import MOST_MATCHES, matching_files
 from eventpound.motion import Record, RecordData
 from eventpound.motion.record_list import ListedRecord, read_list
 from eventpound.motion.synthetic import synthetic_motion

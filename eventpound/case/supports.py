@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
+from eventpound.basics.input_files import read_bytes
 from eventpound.case.excitation import Excitation, read_excitation
 from eventpound.case.frequency import required_frequency
 from eventpound.case.record_file import find_record
 from eventpound.case.suite import Suite
 from eventpound.case.table import Table
 from eventpound.errors import InputError
-from eventpound.input_files import read_bytes
 from eventpound.motion import GroundMotion, NoMotion, Record
 from eventpound.motion.constant import Constant, PhasedSine
 from eventpound.numerics.arrays import Floats

@@ -14,8 +14,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import MISSING, dataclass, fields
 
+from eventpound.basics.given import numbers_of
 from eventpound.errors import InputError
-from eventpound.given import numbers_of
 from eventpound.units import Dimension, quantity
 
 

@@ -29,14 +29,14 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
+from eventpound.basics.interruption import Terminable, is_interruption
+from eventpound.basics.warned import show_warning
 from eventpound.cli.arguments import EXAMPLES, Command, Commands, Options
 from eventpound.cli.output import Output
 from eventpound.cli.progress import CompilationLine
 from eventpound.cli.talk import add_loudness, complain, located, say, set_loudness
 from eventpound.errors import ComputationError, InputError, InterruptionError
-from eventpound.interruption import Terminable, is_interruption
 from eventpound.numerics.compiling import watched
-from eventpound.warned import show_warning
 
 _TASKS = {
     "one case": ("new", "check", "run", "design", "plot", "floor_spectrum", "report"),

@@ -99,7 +99,7 @@ class Options(argparse.Namespace):
         InputError
             Where the width is none.
         """
-        from eventpound.given import number
+        from eventpound.basics.given import number
         from eventpound.report.style import Paper
         from eventpound.units import Dimension
 

@@ -6,9 +6,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.basics.given import number
 from eventpound.cli.arguments import PAPER, Command, Options
 from eventpound.errors import InputError, told_of
-from eventpound.given import number
 
 if TYPE_CHECKING:
     import pandas as pd

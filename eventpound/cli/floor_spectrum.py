@@ -33,12 +33,12 @@ def add(commands: Commands) -> None:
 
 
 def _floor_spectrum(options: Options) -> int:
+    from eventpound.quantities.ways import Way, warn_left_out
     from eventpound.report.spectrum_figure import floor_figure
     from eventpound.report.style import on_paper
     from eventpound.results import check_writable
     from eventpound.results.tables import table_csv
     from eventpound.simulation import refuse_suite, simulate
-    from eventpound.ways import Way, warn_left_out
 
     paper, periods, damping = options.paper(), _periods(options.periods), options.damping
     case = arguments.load(options.case)

@@ -14,9 +14,9 @@ from collections.abc import Callable
 from types import FrameType
 from typing import TYPE_CHECKING, Self
 
+from eventpound.basics.interruption import Deferred
 from eventpound.cli.talk import complain, is_quiet, say
 from eventpound.errors import ComputationError, InterruptionError
-from eventpound.interruption import Deferred
 from eventpound.numerics.compiling import Stopwatch
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.basics.given import number
 from eventpound.cli.arguments import Command, Options
-from eventpound.given import number
 from eventpound.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:

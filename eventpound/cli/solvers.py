@@ -47,7 +47,7 @@ def _solvers(options: Options) -> int:
 
 
 def _compile(names: list[str], processes: int | None) -> int:
-    from eventpound.precompile import SOLVERS, compile_kernels
+    from eventpound.study.precompile import SOLVERS, compile_kernels
 
     unknown = [name for name in names if name not in SOLVERS]
     if unknown:

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from eventpound.given import Number, converting_base, default, read_fields
+from eventpound.basics.given import Number, converting_base, default, read_fields
 from eventpound.motion.base import Family, Piece, Scales
 from eventpound.motion.harmonic import Harmonic
 from eventpound.motion.parametric import Sinusoid, require_finite

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, ClassVar
 
-from eventpound.given import OptionalNumber, converting_base, default
+from eventpound.basics.given import OptionalNumber, converting_base, default
 from eventpound.motion.parametric import SinusoidMotion, require_positive
 from eventpound.units import Dimension
 

@@ -26,8 +26,8 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from eventpound.basics.given import Number, converting_base, default
 from eventpound.errors import InputError
-from eventpound.given import Number, converting_base, default
 from eventpound.motion.parametric import Sinusoid, SinusoidMotion
 from eventpound.units import Dimension
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from eventpound.basics.given import number
 from eventpound.errors import InputError
-from eventpound.given import number
 from eventpound.numerics.arrays import Floats
 from eventpound.units import STANDARD_GRAVITY, Dimension
 

@@ -20,8 +20,8 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
+from eventpound.basics.given import Number, accepted_numbers, converting_base, default, read_fields
 from eventpound.errors import InputError
-from eventpound.given import Number, accepted_numbers, converting_base, default, read_fields
 from eventpound.motion.base import LARGEST, SMALLEST, Family, Piece, Scales
 from eventpound.numerics.arrays import Floats
 from eventpound.units import Dimension

@@ -21,8 +21,8 @@ import math
 from functools import lru_cache
 from typing import Annotated, ClassVar
 
+from eventpound.basics.given import Given, converting_base, default
 from eventpound.errors import InputError
-from eventpound.given import Given, converting_base, default
 from eventpound.motion.parametric import Sinusoid, SinusoidMotion
 from eventpound.units import Dimension
 

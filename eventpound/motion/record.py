@@ -23,8 +23,15 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eventpound.basics.given import (
+    Given,
+    Number,
+    OptionalNumber,
+    converting_base,
+    default,
+    read_fields,
+)
 from eventpound.errors import InputError
-from eventpound.given import Given, Number, OptionalNumber, converting_base, default, read_fields
 from eventpound.motion.base import Family, Piece, Scales
 from eventpound.motion.parametric import require_accepted, require_finite, require_positive
 from eventpound.motion.readers.base import RecordData

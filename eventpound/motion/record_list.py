@@ -13,8 +13,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from eventpound.basics.input_files import read_bytes
 from eventpound.errors import InputError
-from eventpound.input_files import read_bytes
 
 _TIME_STEP_COLUMNS = ("time_step", "dt_s")
 

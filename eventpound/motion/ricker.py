@@ -30,7 +30,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from eventpound.given import OptionalNumber, converting_base, default
+from eventpound.basics.given import OptionalNumber, converting_base, default
 from eventpound.motion.base import Family, Piece
 from eventpound.motion.parametric import Parametric, require_finite
 from eventpound.numerics.arrays import Floats

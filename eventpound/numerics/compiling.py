@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from types import CodeType
 from typing import Any
 
-from eventpound.interruption import Deferred
+from eventpound.basics.interruption import Deferred
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,12 @@ from typing import TypeVar
 
 import numpy as np
 
+from eventpound.basics.warned import warn_caller
 from eventpound.errors import AccuracyWarning, InputError
 from eventpound.motion.base import Family, GroundMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.periods import local_periods
 from eventpound.solvers.base import Recording, Task
-from eventpound.warned import warn_caller
 
 Key = TypeVar("Key", bound=Hashable)
 Rerun = Callable[[Task], Recording]

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from eventpound.basics.given import checked
 from eventpound.case import read_case
 from eventpound.errors import InputError
-from eventpound.given import checked
 from eventpound.report.displacements import displacement_figure
 from eventpound.report.loops import loop_figure, nonlinear_springs
 from eventpound.report.profile import profile_figure

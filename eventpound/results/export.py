@@ -24,6 +24,7 @@ from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import support_motion
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities.ways import Way, warn_left_out
 from eventpound.results.description import describe_scene, describe_spring
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
@@ -32,7 +33,6 @@ from eventpound.scene.contact import Contact
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Law, Series, Spring
-from eventpound.ways import Way, warn_left_out
 
 _SAMPLES_A_PERIOD = 1000
 

@@ -14,8 +14,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from eventpound.basics.interruption import Deferred
 from eventpound.errors import InputError
-from eventpound.interruption import Deferred
 
 _LONGEST_NAME = 100
 """Characters of a part of a file's name."""

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.basics.input_files import read_bytes
 from eventpound.errors import InputError
-from eventpound.input_files import read_bytes
 
 
 def read_json(path: Path) -> dict[str, Any]:

@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eventpound.basics.input_files import read_columns, to_numbers
 from eventpound.case.case import Case
 from eventpound.case.loading import SUMMARY as SUMMARY
 from eventpound.errors import InputError
-from eventpound.input_files import read_columns, to_numbers
 from eventpound.numerics.arrays import Floats
 from eventpound.response import EVENT_COLUMNS, Response
 from eventpound.results.jsontext import read_json

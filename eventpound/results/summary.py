@@ -14,8 +14,8 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from eventpound.batch_response import BatchResponse
 from eventpound.quantities.base import parts_of
+from eventpound.quantities.batch_response import BatchResponse
 from eventpound.quantities.lookup import FREE, Named, find, tabled
 from eventpound.response import Response
 from eventpound.results.description import describe_scene

@@ -1,4 +1,4 @@
-"""Tables as CSV files; `eventpound.input_files` reads them."""
+"""Tables as CSV files; `eventpound.basics.input_files` reads them."""
 
 from __future__ import annotations
 

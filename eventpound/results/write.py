@@ -6,8 +6,8 @@ import os
 from collections.abc import Mapping
 from datetime import datetime
 
+from eventpound.basics.given import checked
 from eventpound.case.case import Case
-from eventpound.given import checked
 from eventpound.quantities.spring_events import SpringEvent, spring_events
 from eventpound.response import EVENT_COLUMNS, Response
 from eventpound.results.files import write_together

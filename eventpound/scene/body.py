@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from eventpound.given import Accepted, Number, above_zero, converting, default
+from eventpound.basics.given import Accepted, Number, above_zero, converting, default
 from eventpound.units import Dimension
 
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.basics.given import accepted_numbers, numbers_of
 from eventpound.errors import InputError
-from eventpound.given import accepted_numbers, numbers_of
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.scene.contact import BARRIER, Contact, opening

@@ -6,8 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from eventpound.errors import told_of
-from eventpound.given import (
+from eventpound.basics.given import (
     Accepted,
     Given,
     Number,
@@ -16,6 +15,7 @@ from eventpound.given import (
     default,
     read_fields,
 )
+from eventpound.errors import told_of
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact_law import ContactLaw, damping_constant
 from eventpound.scene.point import Point

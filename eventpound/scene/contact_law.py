@@ -25,7 +25,7 @@ import math
 from enum import IntEnum
 from typing import Annotated
 
-from eventpound.given import Number, OptionalNumber, converting, default, read_fields
+from eventpound.basics.given import Number, OptionalNumber, converting, default, read_fields
 from eventpound.units import Dimension
 
 NEWTON = "newton"

@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from eventpound.basics.given import number
 from eventpound.errors import InputError
-from eventpound.given import number
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.check import check_scene, starts_of_supports
 from eventpound.scene.contact import BARRIER, opening

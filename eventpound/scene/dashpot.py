@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Annotated
 
+from eventpound.basics.given import Accepted, Given, Number, checked, converting, number
 from eventpound.errors import InputError
-from eventpound.given import Accepted, Given, Number, checked, converting, number
 from eventpound.units import Dimension
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from eventpound.basics.given import Given, converting, read_fields
 from eventpound.errors import InputError, told_of
-from eventpound.given import Given, converting, read_fields
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.constant import Constant
 from eventpound.units import Dimension, quantity

@@ -22,8 +22,8 @@ from itertools import combinations
 
 import numpy as np
 
+from eventpound.basics.given import checked, number
 from eventpound.errors import InputError
-from eventpound.given import checked, number
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.body import Body
 from eventpound.scene.damping import initial_stiffness

@@ -25,8 +25,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from eventpound.basics.given import checked, number
 from eventpound.errors import InputError
-from eventpound.given import checked, number
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.body import Body
 from eventpound.scene.damping import (

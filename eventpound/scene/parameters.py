@@ -16,7 +16,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from eventpound.given import numbers_of
+from eventpound.basics.given import numbers_of
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.mavroeidis_papageorgiou import MavroeidisPapageorgiou
 from eventpound.motion.pulses import TypeC

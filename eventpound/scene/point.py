@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Annotated
 
-from eventpound.given import Given, converting, number, read_fields
+from eventpound.basics.given import Given, converting, number, read_fields
 from eventpound.units import Dimension
 
 _Pair = tuple[str, Annotated[float, Dimension.NUMBER]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import field
 
-from eventpound.given import Given, converting, default
+from eventpound.basics.given import Given, converting, default
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.free import NoMotion
 from eventpound.scene.body import Body

@@ -16,8 +16,7 @@ from typing import Annotated, ClassVar, Self
 
 import numpy as np
 
-from eventpound.errors import InputError
-from eventpound.given import (
+from eventpound.basics.given import (
     Accepted,
     Given,
     Number,
@@ -30,6 +29,7 @@ from eventpound.given import (
     not_negative,
     number,
 )
+from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.units import STANDARD_GRAVITY, Dimension
 

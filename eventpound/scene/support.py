@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from eventpound.given import Accepted, OptionalNumber, converting, default, not_negative
+from eventpound.basics.given import Accepted, OptionalNumber, converting, default, not_negative
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import Delayed
 from eventpound.units import Dimension

@@ -6,9 +6,9 @@ from collections.abc import Collection
 from functools import cache
 from pkgutil import resolve_name
 
+from eventpound.basics.plugins import Plugins
 from eventpound.case.options import LISTED
 from eventpound.errors import InputError
-from eventpound.plugins import Plugins
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import LawName
 from eventpound.solvers.base import Solver

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Mapping
 
-from eventpound.plugins import Plugins, plugged_in
+from eventpound.basics.plugins import Plugins, plugged_in
 from eventpound.solvers.base import Solver
 
 GROUP = "eventpound.solvers"

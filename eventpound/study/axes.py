@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
+from eventpound.basics.input_files import matching_files
 from eventpound.case.table import Table
 from eventpound.errors import InputError
-from eventpound.input_files import matching_files
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.parameters import dimension_of_number
 from eventpound.units import Dimension, quantity

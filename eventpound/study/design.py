@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eventpound.basics.given import Count, checked
 from eventpound.case.case import Case, Stated
 from eventpound.case.loading import CASE_FILE
 from eventpound.errors import ComputationError, InputError
-from eventpound.given import Count, checked
 from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.lookup import Named, all_of, unstated
 from eventpound.quantities.owners import owners

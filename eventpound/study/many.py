@@ -8,12 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from eventpound.batch_response import BatchResponse
+from eventpound.basics.given import Count, checked, positive
 from eventpound.case.case import Case
 from eventpound.errors import InputError
-from eventpound.given import Count, checked, positive
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities.batch_response import BatchResponse
 from eventpound.quantities.lookup import chosen, values_of
+from eventpound.quantities.ways import Way, quantities_asked, refuse_options
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
@@ -22,7 +23,6 @@ from eventpound.study.runs import results_of
 from eventpound.study.sweep import Wanted, cores
 from eventpound.study.variants import axis_values, rows_with, unknown_axes
 from eventpound.units import Dimension
-from eventpound.ways import Way, quantities_asked, refuse_options
 
 
 @checked

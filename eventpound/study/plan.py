@@ -9,13 +9,13 @@ from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 
+from eventpound.basics.given import positive
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.case.options import FAST, default_solver
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member
 from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
-from eventpound.given import positive
 from eventpound.motion.base import GroundMotion
 from eventpound.results.description import driven, pieces_hash
 from eventpound.results.jsontext import canonical

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from eventpound.basics.given import checked, positive
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.errors import InputError
-from eventpound.given import checked, positive
+from eventpound.quantities.ways import Way, refuse_options
 from eventpound.response import Response
 from eventpound.scene.check import motion_problems
 from eventpound.scene.parameters import motion_with, places_of
@@ -33,7 +34,6 @@ from eventpound.study.variants import (
     unknown_axes,
 )
 from eventpound.units import Dimension
-from eventpound.ways import Way, refuse_options
 
 
 @checked

@@ -14,12 +14,12 @@ from eventpound.case.case import SolverOptions
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.quantities.lookup import chosen, names_of, unstated
+from eventpound.quantities.ways import Way, quantities_asked, refuse_options
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_solver
 from eventpound.study.plan import Base, Plan
 from eventpound.study.variants import check_axes
-from eventpound.ways import Way, quantities_asked, refuse_options
 
 
 def default_quantities(bases: Sequence[Base]) -> tuple[str, ...]:

@@ -25,13 +25,13 @@ from eventpound.case.options import default_solver, read_solver
 from eventpound.case.suite import RECORDS, with_suite
 from eventpound.case.table import CaseProblem, Table
 from eventpound.errors import InputError
+from eventpound.quantities.ways import Way, without_effect, without_part
 from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
 from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities
 from eventpound.study.plan import PART, RECORD, Base, Plan
 from eventpound.study.quantities import planned
 from eventpound.study.table import read_manifest
-from eventpound.ways import Way, without_effect, without_part
 
 _Document = Mapping[str, object]
 _OF_STUDY = ("study", "figure", "intensity")

@@ -11,11 +11,11 @@ from functools import cache
 
 import numpy as np
 
-from eventpound.batch_response import BatchResponse
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
 from eventpound.quantities.apart import avoiding_gaps
+from eventpound.quantities.batch_response import BatchResponse
 from eventpound.quantities.lookup import (
     FREE,
     needs_accelerations,

@@ -20,13 +20,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.accuracy.sequences import SOFT
-from eventpound.batch_response import BatchResponse
+from eventpound.basics.given import Count, checked, positive
+from eventpound.basics.warned import warn_caller
 from eventpound.case.case import LARGEST_RTOL, Case, SolverOptions, Stated
 from eventpound.case.options import default_solver
 from eventpound.case.table import suggestion
 from eventpound.errors import AccuracyWarning, ComputationError, InputError
-from eventpound.given import Count, checked, positive
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities.batch_response import BatchResponse
 from eventpound.quantities.lookup import FREE, Named, chosen, find, values_of
 from eventpound.scene.parameters import dimension_of_number, places_of, value_at
 from eventpound.scene.scene import Scene
@@ -37,7 +38,6 @@ from eventpound.study.plan import Base, base_of
 from eventpound.study.variants import check_axes
 from eventpound.tolerances import DIFFERENCE_STEP
 from eventpound.units import Dimension
-from eventpound.warned import warn_caller
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,12 +11,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+from eventpound.basics.given import Count, checked, positive
 from eventpound.case.case import Case
 from eventpound.case.options import FAST
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.suite import Member, Suite
 from eventpound.errors import InputError
-from eventpound.given import Count, checked, positive
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes

@@ -12,17 +12,18 @@ from threading import Lock
 from typing import TYPE_CHECKING
 
 from eventpound.accuracy.judge import KEEPING
+from eventpound.basics.given import Count, checked, positive
 from eventpound.case.case import Case
 from eventpound.case.member import member_case
 from eventpound.case.options import FAST
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member
 from eventpound.errors import InputError
-from eventpound.given import Count, checked, positive
 from eventpound.motion.record import Record
 from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import all_of
+from eventpound.quantities.ways import Way, quantities_asked, refuse_options
 from eventpound.response import Response
 from eventpound.results.manifest import machine, told_of, versions
 from eventpound.results.tables import table_csv
@@ -36,7 +37,6 @@ from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
 from eventpound.study.sweep import cores
 from eventpound.study.table import SUITE_FORMAT, SUITE_TABLE, read_table
 from eventpound.units import Dimension
-from eventpound.ways import Way, quantities_asked, refuse_options
 
 if TYPE_CHECKING:
     import pandas as pd

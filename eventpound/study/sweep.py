@@ -17,14 +17,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eventpound.batch_response import (
-    BatchResponse,
-    blank_many,
-    keep_named,
-    keep_recording,
-    keep_rows,
-    mark_failed,
-)
 from eventpound.case.case import Case
 from eventpound.case.defaults import default_output_step
 from eventpound.case.options import FAST
@@ -32,6 +24,14 @@ from eventpound.errors import ComputationError, InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
+from eventpound.quantities.batch_response import (
+    BatchResponse,
+    blank_many,
+    keep_named,
+    keep_recording,
+    keep_rows,
+    mark_failed,
+)
 from eventpound.quantities.lookup import needs_energy, needs_one
 from eventpound.response import Response
 from eventpound.scene.check import check_scene, motion_problems

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eventpound.basics.input_files import read_columns, to_numbers
 from eventpound.case.suite import Member
 from eventpound.errors import InputError
-from eventpound.input_files import read_columns, to_numbers
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.lookup import is_whole
 from eventpound.response import Response

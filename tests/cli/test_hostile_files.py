@@ -15,13 +15,13 @@ from pathlib import Path
 
 import pytest
 
-import eventpound.input_files
+import eventpound.basics.input_files
 import eventpound.results.files
 import eventpound.study.engines.local
 import eventpound.study.suite
+from eventpound.basics.input_files import matching_files, read_bytes
 from eventpound.cli import main
 from eventpound.errors import InputError
-from eventpound.input_files import matching_files, read_bytes
 from eventpound.results import write_together
 from eventpound.simulation import ReadyScene
 from eventpound.study.table import read_suite
@@ -172,7 +172,7 @@ def test_a_file_that_grows_while_it_is_read(tmp_path, monkeypatch):
 
     path = tmp_path / "file"
     path.write_bytes(b"0123456789")
-    monkeypatch.setattr(eventpound.input_files.os, "stat", none_yet)
+    monkeypatch.setattr(eventpound.basics.input_files.os, "stat", none_yet)
     assert read_bytes(path) == b"0123456789"
     with pytest.raises(InputError, match="larger"):
         read_bytes(path, 9)
@@ -197,7 +197,7 @@ def test_a_pattern_of_the_whole_disk(command, pattern, tmp_path, capsys):
 
 
 def test_a_pattern_of_too_many_files(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(eventpound.input_files, "MOST_MATCHES", 2)
+    monkeypatch.setattr(eventpound.basics.input_files, "MOST_MATCHES", 2)
     suite(tmp_path, "records/*")
     assert main(["run", str(tmp_path)]) == 2
     assert "matches more than 2 files" in capsys.readouterr().err

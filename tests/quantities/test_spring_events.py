@@ -12,13 +12,13 @@ import pandas as pd
 import pytest
 
 from eventpound import Case, load_case, prepare, simulate, simulate_suite, verify, write
+from eventpound.basics.warned import OptionWarning
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Harmonic, NoMotion
 from eventpound.response import Response
 from eventpound.scene import Backfill, Body, Linear, Scene, Slider, Spring
 from eventpound.scene.spring import GROUND, LawName
-from eventpound.warned import OptionWarning
 from tests.solvers.backfill_oracle import solved
 from tests.solvers.test_backfill import BETWEEN_TWO, POUNDING, THROWN_BACK
 from tests.solvers.test_backfill import SOLVERS as OF_SOIL

@@ -22,13 +22,13 @@ from eventpound import (
     simulate_suite,
     verify,
 )
+from eventpound.basics.warned import OptionWarning
 from eventpound.cli import main
 from eventpound.errors import InputError
+from eventpound.quantities.ways import HOLDS, REFUSED, Way
 from eventpound.results import export
 from eventpound.study.fragility import fragility_table
 from eventpound.study.reading import load_study
-from eventpound.warned import OptionWarning
-from eventpound.ways import HOLDS, REFUSED, Way
 from tests.study.test_suite import CASE, time_series
 
 ROOT = Path(__file__).parents[2]

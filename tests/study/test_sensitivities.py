@@ -26,8 +26,8 @@ from eventpound import (
     sensitivities,
     simulate,
 )
+from eventpound.basics.input_files import read_columns
 from eventpound.cli import main
-from eventpound.input_files import read_columns
 from eventpound.report.tornado import tornado_figure
 from eventpound.scene.parameters import places_of, with_values
 from tests.study.saltation import Array, LinearSystem, final_sensitivity

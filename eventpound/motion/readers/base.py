@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from eventpound.basics.input_files import read_bytes
 from eventpound.errors import InputError
-from eventpound.input_files import read_bytes
 from eventpound.numerics.arrays import Floats
 
 _MESSAGES = 5

@@ -10,8 +10,8 @@ from typing import TypeVar
 
 import numpy as np
 
+from eventpound.basics.given import checked, number
 from eventpound.errors import InputError
-from eventpound.given import checked, number
 from eventpound.motion.readers.base import Channel, Given, RecordData, Source, UnstatedError, load
 from eventpound.motion.readers.components import chosen, component_names
 from eventpound.motion.readers.header import unit_factor

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from functools import cache
 
+from eventpound.basics.plugins import Plugins, plugged_in
 from eventpound.errors import InputError
 from eventpound.motion.readers import archives, columns, dialects, waveforms
 from eventpound.motion.readers.base import Reader, Source
-from eventpound.plugins import Plugins, plugged_in
 
 _DIALECTS = (
     dialects.AT2,

@@ -36,7 +36,7 @@ from numba.core.dispatcher import _FunctionCompiler
 from numba.core.environment import lookup_environment
 from numba.core.registry import CPUDispatcher
 
-from eventpound.interruption import is_interruption
+from eventpound.basics.interruption import is_interruption
 from eventpound.numerics.compiled.front_end import quick_front_end
 from eventpound.numerics.compiled.recipe import Recipe
 from eventpound.numerics.compiling import function_read, getting_ready

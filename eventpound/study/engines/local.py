@@ -22,14 +22,14 @@ from itertools import chain
 from multiprocessing import get_context, parent_process
 from threading import Thread
 
+from eventpound.basics.interruption import Deferred
+from eventpound.basics.warned import show_warning
 from eventpound.case.options import FAST
 from eventpound.errors import ComputationError
-from eventpound.interruption import Deferred
 from eventpound.study.engines.base import Engine
 from eventpound.study.plan import Chunk, Plan
 from eventpound.study.sweep import cores
 from eventpound.study.table import Keep, compute
-from eventpound.warned import show_warning
 
 _MOST_BREAKS = 8
 _LOOK = 0.1

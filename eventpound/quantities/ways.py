@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from enum import StrEnum
 
+from eventpound.basics.warned import OptionWarning, warn_caller
 from eventpound.case.case import DEFAULTS, Case, RunOptions
 from eventpound.errors import InputError, told_of
 from eventpound.quantities.lookup import asked, ledger_of, needs_energy
 from eventpound.scene.scene import Scene
-from eventpound.warned import OptionWarning, warn_caller
 
 
 class Way(StrEnum):
