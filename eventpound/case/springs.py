@@ -35,14 +35,6 @@ _DIMENSIONS = {
     Parameter.HARDENING: Dimension.NUMBER,
 }
 _LAWS = tuple(name.value for name in LawName)
-_YIELDING = "bilinear", "bilinearhysteretic", "elastoplastic", "elasticplastic", "hysteretic"
-_YIELDS = dict.fromkeys(
-    _YIELDING,
-    ", a spring that yields: it is 'bouc-wen' with exponent = 20 (hardening = 0 where it is "
-    "elastoplastic), and 'bilinear-elastic' one with a kink that does not yield",
-)
-"""Answers to what others call a law that `_LAWS` calls otherwise."""
-_YIELDS_IN_SERIES = dict.fromkeys(_YIELDING, ", but no part of a series yields")
 _WALL = "height", "width"
 _SOIL = "initial_stiffness", "ultimate_force", "failure_ratio"
 _UNREAD = Linear(math.nan)
@@ -50,6 +42,42 @@ _TWO_PERIODS = (
     "says not which of the two periods of a bouc-wen spring; write initial_period (at its initial "
     "stiffness) or post_yield_period (after yield, as period was understood), and of_mass "
     "beside it where the spring carries more than its body"
+)
+
+
+def _answers(words: Mapping[str, str]) -> dict[str, str]:
+    """Answers to what others call a law, by each word of a list in small letters."""
+    return {word: f", {answer}" for names, answer in words.items() for word in names.split()}
+
+
+_STOPS = {
+    "gap gapelement stop stopper bumper buffer compressiononly": "which is 'bilinear-elastic' with "
+    "extension = 0, compression = ... and offset = minus the gap, or a [[contact]]",
+    "hook hookelement cable rope tie restrainer tensiononly": "which is 'bilinear-elastic' with "
+    "compression = 0, extension = ... and offset = the slack",
+}
+_YIELDING = (
+    "bilinear bilinearhysteretic elastoplastic elasticplastic hysteretic plastic "
+    "leadrubber leadrubberbearing lrb"
+)
+_SLIDING = "coulomb friction coulombfriction dryfriction sliding frictiondamper flatslider"
+_PENDULUM = "frictionpendulum frictionpendulumbearing pendulum fps fp"
+_CALLED = _answers(
+    _STOPS
+    | {
+        _YIELDING: "a spring that yields: it is 'bouc-wen' with exponent = 20 (hardening = 0 where "
+        "it is elastoplastic), and 'bilinear-elastic' one with a kink that does not yield",
+        _SLIDING: "which is 'slider' with friction and normal_force",
+        _PENDULUM: "which is 'slider' with friction, normal_force and radius",
+        "elastic spring hooke": "which is 'linear' with stiffness",
+        "viscous dashpot damper": "which is a [[dashpot]]",
+        "pounding impact hertz kelvinvoigt newton": "which is a [[contact]]",
+        "soil hyperbolic abutment": "which is 'backfill'",
+    }
+)
+"""Answers to what others call a law that `_LAWS` calls otherwise."""
+_CALLED_IN_SERIES = _answers(
+    _STOPS | {f"{_YIELDING} {_SLIDING} {_PENDULUM}": "but no part of a series yields or slides"}
 )
 
 
@@ -83,7 +111,7 @@ def read_springs(
 
 def _read_law(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> Law:
     law: Law
-    match table.choice("law", _LAWS, _YIELDS):
+    match table.choice("law", _LAWS, _CALLED):
         case "linear":
             law = _read_linear(table, between, masses)
         case "bilinear-elastic":
@@ -156,7 +184,7 @@ def _read_series(table: Table) -> Series:
         table.report_missing("parts", "a list of tables, parts = [{ law = ... }, ...]")
         return Series((_UNREAD,))
     for part in table.tables("parts"):
-        match part.choice("law", ("linear", "bilinear-elastic"), _YIELDS_IN_SERIES):
+        match part.choice("law", ("linear", "bilinear-elastic"), _CALLED_IN_SERIES):
             case "linear":
                 parts.append(Linear(**read_numbers(part, Linear)))
             case "bilinear-elastic":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from pathlib import Path
 
@@ -388,3 +389,41 @@ def test_what_others_call_a_yielding_spring_is_answered_by_bouc_wen(law: str) ->
     assert "did you mean" not in found
     parts = [{"law": law, "stiffness": 5.0}]
     assert "no part of a series yields" in problems(spring=[spring(law="series", parts=parts)])
+
+
+@pytest.mark.parametrize(
+    ("law", "ours"),
+    [
+        (
+            "gap",
+            r"'bilinear-elastic' with extension = 0, .* offset = minus the gap, or a \[\[conta",
+        ),
+        ("Stopper", "'bilinear-elastic' with extension = 0"),
+        ("hook", "'bilinear-elastic' with compression = 0, extension = ... and offset = the slack"),
+        ("cable", "'bilinear-elastic' with compression = 0"),
+        ("coulomb", "'slider' with friction and normal_force"),
+        ("friction-pendulum", "'slider' with friction, normal_force and radius"),
+        ("lead-rubber", "'bouc-wen' with exponent = 20"),
+        ("dashpot", r"a \[\[dashpot\]\]"),
+        ("pounding", r"a \[\[contact\]\]"),
+        ("hyperbolic", "'backfill'"),
+    ],
+)
+def test_laws_by_the_names_of_the_trade_are_answered_with_ours(law: str, ours: str) -> None:
+    found = problems(spring=[spring(law=law, stiffness=5.0)])
+    assert re.search(f"found '{law}', .*{ours}.*; accepted: one of linear", found)
+
+
+def test_a_part_of_a_series_by_the_name_of_the_trade() -> None:
+    for law, answer in (("cable", "'bilinear-elastic'"), ("coulomb", "no part of a series yields")):
+        parts = [{"law": law, "stiffness": 5.0}]
+        assert answer in problems(spring=[spring(law="series", parts=parts)])
+
+
+def test_the_answer_to_gap_is_a_stop_at_the_gap() -> None:
+    """Elongated by -gap it begins to push, and never pulls: what the answer promises."""
+    stop = spring(law="bilinear-elastic", extension=0, compression=7.0, offset="-2 cm")
+    (read,) = case_with(spring=[stop]).scene.springs
+    law = read.law
+    assert isinstance(law, BilinearElastic)
+    assert (law.compression, law.extension, law.offset) == (7.0, 0.0, -0.02)
