@@ -8,6 +8,7 @@ an `InputError` with the file, the line, what was found and what was expected.
 from __future__ import annotations
 
 import hashlib
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -118,11 +119,12 @@ class Source:
     def lines(self) -> list[str]:
         """Lines without their ends (LF, CRLF, CR CR LF or CR); line i is `lines[i - 1]`.
 
-        Bytes that are not UTF-8 are read as Latin-1, which never fails;
-        a byte-order mark is dropped.
+        Bytes that are not UTF-8, or UTF-16 with a byte-order mark, are read as Latin-1, which
+        never fails; a byte-order mark is dropped.
         """
+        wide = self.content.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
         try:
-            text = self.content.decode("utf-8-sig")
+            text = self.content.decode("utf-16" if wide else "utf-8-sig")
         except UnicodeDecodeError:
             text = self.content.decode("latin-1")
         while "\r\n" in text:

@@ -15,6 +15,9 @@ from eventpound.numerics.arrays import Floats
 FOLLOWING_WORD = re.compile(r"\b(?!nan\b|inf(?:inity)?\b)[a-z]{2,}", re.IGNORECASE)
 """What tells text after the numbers from a number that is damaged."""
 
+END_OF_CHANNEL = "/&"
+"""What the line after the last number of a channel begins with, in files of several."""
+
 
 @dataclass(frozen=True)
 class StatedCount:
@@ -138,6 +141,8 @@ def after_last(source: Source, first: int, stated: StatedCount) -> tuple[str, ..
         line = source.line(number)
         if not line.strip():
             continue
+        if line.startswith(END_OF_CHANNEL):
+            return ()
         if numbers_of_line(line)[0]:
             more = sum(len(numbers_of_line(x)[0]) for x in source.lines[number - 1 :])
             last = len(source.lines)

@@ -51,6 +51,12 @@ def chosen(source: Source, channels: Sequence[Channel], component: str | None) -
         found = [channel for channel in channels if _answers(channel, component)]
         if len(found) == 1:
             return found[0]
+        if found:
+            raise source.error(
+                None,
+                f"component = '{component}' is the name of {len(found)} of its components; name "
+                f"one by its place: {_list(channels)}",
+            )
     raise source.error(
         None, f"component = '{component}' is not one of its components: {_list(channels)}"
     )
@@ -74,6 +80,12 @@ def _plain(name: str) -> str:
 
 
 def _list(channels: Sequence[Channel]) -> str:
-    return ", ".join(
-        f"#{i} {channel.name}" if channel.name else f"#{i}" for i, channel in enumerate(channels, 1)
-    )
+    """All by place and name, and with what else they may be asked for by where names are shared."""
+    names = [channel.name for channel in channels]
+
+    def shown(place: int, channel: Channel) -> str:
+        others = ", ".join(filter(None, channel.other_names[1:]))
+        more = f" ({others})" if others and names.count(channel.name) > 1 else ""
+        return f"#{place} {channel.name}{more}" if channel.name else f"#{place}"
+
+    return ", ".join(shown(i, channel) for i, channel in enumerate(channels, 1))

@@ -8,19 +8,17 @@ import numpy as np
 
 from eventpound.motion.readers.base import Given, Source
 from eventpound.motion.readers.block import StatedCount, after_last, read_block
-from eventpound.motion.readers.labelled import (
-    Dialect,
+from eventpound.motion.readers.extents import (
     Extent,
-    Labelled,
     groups_of,
     line_like,
     of_length,
-    plain_numbers,
     until_like,
     while_like,
+    word_pattern,
 )
+from eventpound.motion.readers.labelled import Dialect, Labelled, Series, plain_numbers
 from eventpound.motion.readers.numbers import NUMBER, numbers_of_line, to_count, to_float
-from eventpound.numerics.arrays import Floats
 
 # PEER (AT2). Five headers are in use. Four end with "NPTS= 4000, DT= .0100 SEC" (NGA-West2, with
 # and without filter poles after it; PEER 2000, also "dt=" without SEC; Pacific Engineering),
@@ -29,8 +27,8 @@ from eventpound.numerics.arrays import Floats
 
 _LONGEST_AT2 = 30
 _COUNT_AND_STEP = (
-    re.compile(rf"(?i)NPTS\s*=\s*(?P<NPTS>\d+)\b.*\bDT\s*=\s*(?P<DT>{NUMBER})"),
-    re.compile(rf"(?i)^\s*(?P<NPTS>\d+)[\s,]+(?P<DT>{NUMBER})[\s,]+NPTS\s*,\s*DT"),
+    word_pattern(rf"NPTS\s*=\s*(?P<NPTS>\d+)\b.*\bDT\s*=\s*(?P<DT>{NUMBER})"),
+    word_pattern(rf"^\s*(?P<NPTS>\d+)[\s,]+(?P<DT>{NUMBER})[\s,]+NPTS\s*,\s*DT"),
 )
 _DATE = re.compile(r"\d{1,2}/\d{1,2}/\d{2,4}")
 _TIME_OF_DAY = re.compile(r"^[\s,]*\d{1,2}:?\d{2}\b")
@@ -81,8 +79,8 @@ AT2 = Dialect(
     also=lambda source: _at2_end(source) is not None,
     extents=_at2_extent,
     patterns=(
-        r"(?i)^(?P<kind>.*\b(VELOCITY|DISPLACEMENT) +TIME.*)$",
-        r"(?i)\bUNITS? *(?:OF|ARE|IN|:|=) *\(? *(?P<units>[A-Z]+(?:/[A-Z0-9/^*]+)?)",
+        r"^(?P<kind>.*\b(VELOCITY|DISPLACEMENT) +TIME.*)$",
+        r"\bUNITS? *(?:OF|ARE|IN|:|=) *\(? *(?P<units>[A-Z]+(?:/[A-Z0-9/^*]+)?)",
     ),
     kind=("kind", "ACCELERATION", "an acceleration time series"),
     count="NPTS",
@@ -114,7 +112,7 @@ AFAD = Dialect(
         r"\s*N-S\s+E-W(\s|$)", 40, "no line of titles 'N-S E-W U-D' before the numbers"
     ),
     parted=":",
-    patterns=(r"^RAW PGA VALUES \((?P<units>.+?)\)", r"(?i)^(?P<titles>\s*N-S\s+E-W(\s.*)?)\Z"),
+    patterns=(r"^RAW PGA VALUES \((?P<units>.+?)\)", r"^(?P<titles>\s*N-S\s+E-W(\s.*)?)\Z"),
     columns=("titles", r"\S+"),
     count="NUMBER OF DATA",
     step="SAMPLING INTERVAL (sec)",
@@ -135,7 +133,7 @@ ITACA = Dialect(
         _ITACA_END, 20, "no line 'Acceleration time series in ...' before the numbers"
     ),
     parted=":",
-    patterns=(r"(?i)^\s*Acc\w+ time series in\s+(?P<units>\S+).*\Z",),
+    patterns=(r"^\s*Acc\w+ time series in\s+(?P<units>\S+).*\Z",),
     count="Number of Data",
     step="Time Increment (s)",
     station="Station Code / Name",
@@ -157,6 +155,46 @@ ITSAK = Dialect(
     rate="sampling frequency",
     station="station name",
     date="datetime of first sample",
+)
+
+# Mexican standard file (UNAM and the networks that share it), version 2.0: Spanish labels, then a
+# column a channel under two ruled lines, between which their names stand.
+_RULED = r"-+\+[-+]+\s*$"
+UNAM = Dialect(
+    name="unam",
+    begins=(),
+    also=lambda source: line_like(source, r"\s*ARCHIVO ESTANDAR DE ACELERACION", within=20) > 0,
+    extents=until_like(_RULED, 200, "no ruled line '----+----' before the numbers"),
+    parted=":",
+    patterns=(
+        r"^UNIDADES DE LOS DATOS\s*:\s*(?P<units>[^\s(]+)",
+        rf"^(?P<titles>.*\S.*)\n{_RULED}\Z",
+    ),
+    columns=("titles", r"\S+"),
+    count="NUM. TOTAL DE MUESTRAS, C1-C6",
+    step="INTERVALO DE MUESTREO, C1-C6 (s)",
+    station=("CLAVE DE LA ESTACION", "NOMBRE DE LA ESTACION"),
+    date="FECHA DEL SISMO [GMT]",
+)
+
+# China Strong Motion Networks Center (CSMNC): one component, some 16 lines of text.
+CSMNC = Dialect(
+    name="csmnc",
+    begins=(),
+    also=lambda source: line_like(source, r"NO\. OF POINTS\s*:.*EQUALLY SPACED", within=25) > 0,
+    extents=while_like(r"(?=.*[^\W\dE_])|\s*$"),
+    patterns=(
+        r"^(?P<kind>.*?)\s+UNIT\s*:\s*(?P<units>\S+)",
+        rf"^NO\. OF POINTS\s*:\s*(?P<points>\d+).*INTERVALS OF\s*:\s*(?P<step>{NUMBER})",
+        rf"^PEAK VALUE\s*:\s*(?P<peak>{NUMBER})",
+        r"^STATION\s*:\s*(?P<station>\S+)",
+        r"^COMP\w*[.:]*\s*(?P<component>\S+)",
+        r"\A.*\n(?:\S+ +)?(?P<date>.*)\n(?P<event>.*)",
+    ),
+    kind=("kind", ".*ACCEL", "an acceleration time series"),
+    count="points",
+    step="step",
+    peak=("peak", "cm/s2"),
 )
 
 # Central Weather Bureau of Taiwan: "#label: value", then time and components;
@@ -183,12 +221,10 @@ CWB = Dialect(
 # NIED does for its "Max. Acc.". "Dir." is a number in KiK-net: 1 to 3 in the borehole, 4 to 6
 # at the surface.
 
-_SCALE = re.compile(rf"({NUMBER})\s*\((gal)\)\s*/\s*({NUMBER})", re.IGNORECASE)
+_SCALE = word_pattern(rf"({NUMBER})\s*\((gal)\)\s*/\s*({NUMBER})")
 
 
-def _knet_numbers(
-    dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
-) -> tuple[Floats, tuple[str, ...]]:
+def _knet_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Series:
     """Counts as gal, less their mean."""
     text = head.text("Scale Factor")
     scale = _SCALE.search(text or "")
@@ -197,19 +233,19 @@ def _knet_numbers(
             head.line("Scale Factor"),
             f"found '{text}'; a factor like '7845(gal)/8223790' is expected",
         )
-    counts, notes = plain_numbers(dialect, head, stated, given)
+    counts, notes, _ = plain_numbers(dialect, head, stated, given)
     values = counts * (to_float(scale.group(1)) / to_float(scale.group(3)))
     mean = float(np.mean(values))
-    return values - mean, (f"mean of {mean:.6g} gal removed", *notes)
+    return Series(values - mean, (f"mean of {mean:.6g} gal removed", *notes))
 
 
 KNET = Dialect(
     name="knet",
     begins=("Origin Time",),
-    also=lambda source: source.line(17).startswith("Memo"),
+    also=lambda source: source.line(17).casefold().startswith("memo"),
     extents=of_length(17),
     parted=18,
-    patterns=(r"(?i)^Scale Factor.*\((?P<units>gal)\)",),
+    patterns=(r"^Scale Factor.*\((?P<units>gal)\)",),
     needs=("Scale Factor",),
     rate="Sampling Freq(Hz)",
     duration="Duration Time(s)",
@@ -229,11 +265,11 @@ KNET = Dialect(
 # The second line has the format and the time step (s); units are not stated. The last line of
 # samples is filled up, and lines of zeros follow; both are dropped.
 
-_NAMED = re.compile(
-    r"(?i)\s*\S*?(_(?P<component>[^_\s]*))?\s+(?P<station>.*?)\s+(?P<Values>\d+)\s+Values\s*$"
+_NAMED = word_pattern(
+    r"\s*\S*?(_(?P<component>[^_\s]*))?\s+(?P<station>.*?)\s+(?P<Values>\d+)\s+Values\s*$"
 )
-_FORMAT = re.compile(
-    rf"(?i)\s*\((?P<a_line>\d+)[FEG](?P<width>\d+)\.\d+\)\s+(?P<time_step>{NUMBER})\s*$"
+_FORMAT = word_pattern(
+    rf"\s*\((?P<a_line>\d+)[FEG](?P<width>\d+)\.\d+\)\s+(?P<time_step>{NUMBER})\s*$"
 )
 
 
@@ -246,9 +282,7 @@ def _two_lines(source: Source) -> list[Extent]:
     return [Extent(1, 2, 2, groups_of(first, 1) | groups_of(second, 2))]
 
 
-def _filled_numbers(
-    dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
-) -> tuple[Floats, tuple[str, ...]]:
+def _filled_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Series:
     """The stated number of numbers, and a note on what fills up the last lines."""
     source, first = head.source, head.extent.end + 1
     a_line, width = head.count("a line").count, to_count(head.text("width") or "")
@@ -268,7 +302,7 @@ def _filled_numbers(
             f"{fill.size} numbers after the {stated.count} {stated.name} that line "
             f"{stated.line} states passed over; the largest is {np.max(np.abs(fill)):g}",
         )
-    return values, notes
+    return Series(values, notes)
 
 
 ITSAK_FIXED = Dialect(

@@ -92,6 +92,7 @@ def unit_factor(units: str) -> float | None:
         return None
     number, unit = match.groups()
     name = re.sub(r"[\s*^]", "", unit.lower()).replace("sec", "s").replace("/s/s", "/s2")
+    name = re.sub(r"^(cm|gal)s\b|\.$", r"\1", name)
     factor = _UNITS.get(name)
     return factor if factor is None or number is None else to_float(number) * factor
 

@@ -2,20 +2,23 @@
 
 A dialect says where headers stand in a file, how their values are found (labels with values
 behind them, patterns with named groups) and which of them is what. The numbers follow a
-header, one component in a block or several in columns. The dialects are in `dialects.py`
-and `archives.py`.
+header, one component in a block or several in columns. Letter case means nothing in the words
+of a header: agencies change it between years. The dialects are in `dialects.py`, `archives.py`
+and `volumes.py`.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import NamedTuple
 
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import StatedCount, miscounted, numbers_of_block
+from eventpound.motion.readers.extents import Extent, Extents, groups_of, word_pattern
 from eventpound.motion.readers.header import Header, Peak, record_data
 from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 from eventpound.motion.readers.rows import NumberRows, read_rows
@@ -23,96 +26,40 @@ from eventpound.motion.readers.time_column import even_step
 from eventpound.numerics.arrays import Floats
 
 TOO_MANY = 1e12
+_ROUNDED = 0.01
+"""Rounding of a printed duration (s)."""
 _FIRST_NUMBER = re.compile(NUMBER)
 
 
-@dataclass(frozen=True)
-class Extent:
-    """Where one header of a file stands.
-
-    Parameters
-    ----------
-    start, last : int
-        First and last line of its text (from 1).
-    end : int
-        The line after which the numbers follow.
-    known : mapping of str to tuple of str and int
-        Values that are not found by label or pattern, and the line of each.
-    """
-
-    start: int
-    last: int
-    end: int
-    known: Mapping[str, tuple[str, int]] = field(default_factory=dict)
-
-
-Extents = Callable[[Source], Iterable[Extent]]
-
-
-def of_length(lines: int) -> Extents:
-    """A header of so many lines."""
-    return lambda source: [Extent(1, lines, lines)]
-
-
-def while_like(pattern: str) -> Extents:
-    """A header that ends before the first line that a pattern does not match."""
-    like = re.compile(pattern)
-
-    def extents(source: Source) -> list[Extent]:
-        lines = enumerate(source.lines)
-        last = next((i for i, line in lines if not like.match(line)), len(source.lines))
-        return [Extent(1, last, last or 1)]
-
-    return extents
-
-
-def until_like(pattern: str, within: int, missing: str) -> Extents:
-    """A header that ends with the last of the first lines that a pattern matches."""
-
-    def extents(source: Source) -> list[Extent]:
-        last = line_like(source, pattern, within)
-        if not last:
-            raise source.error(None, missing)
-        return [Extent(1, last, last)]
-
-    return extents
-
-
-def line_like(source: Source, pattern: str, within: int) -> int:
-    """The last of the first lines that a pattern matches (from 1); 0 where it matches none."""
-    numbered = enumerate(source.lines[:within], start=1)
-    like = re.compile(pattern, re.IGNORECASE)
-    return max((i for i, line in numbered if like.match(line)), default=0)
-
-
-def groups_of(match: re.Match[str], line: int) -> dict[str, tuple[str, int]]:
-    """Values of a match in one line by the names of its groups, blanks for underscores."""
-    found = match.groupdict().items()
-    return {name.replace("_", " "): (text.strip(), line) for name, text in found if text}
+def _folded(found: Mapping[str, tuple[str, int]]) -> dict[str, tuple[str, int]]:
+    return {label.casefold(): value for label, value in found.items()}
 
 
 @dataclass(frozen=True)
 class Labelled:
-    """What a header says: by its labels values as printed, and the line of each (from 1)."""
+    """What a header says: values as printed, by labels without capitals, with lines (from 1)."""
 
     source: Source
     extent: Extent
     found: Mapping[str, tuple[str, int]]
 
-    def line(self, label: str) -> int | None:
-        """The line of a value; None where the label is missing."""
-        return self.found[label][1] if label in self.found else None
+    def __contains__(self, label: str) -> bool:
+        return label.casefold() in self.found
+
+    def line(self, labels: str) -> int | None:
+        """The line of a value, of ``A|B`` the first; None where it is missing."""
+        return next((self.found[x.casefold()][1] for x in labels.split("|") if x in self), None)
 
     def text(self, labels: str | tuple[str, ...]) -> str | None:
         """A value, None where it is missing or blank; of ``A|B`` the first, of a tuple all."""
         if isinstance(labels, tuple):
             return " ".join(text for label in labels if (text := self.text(label))) or None
-        values = (self.found[label][0] for label in labels.split("|") if label in self.found)
+        values = (self.found[x.casefold()][0] for x in labels.split("|") if x in self)
         return next(filter(None, values), None)
 
     def require(self, label: str) -> None:
         """Stop where a label is missing."""
-        if label not in self.found:
+        if label not in self:
             start = self.extent.start
             where = start if start > 1 else None
             raise self.source.error(where, f"the header has no line '{label}'")
@@ -126,7 +73,7 @@ class Labelled:
             Where the label is missing or has no number, or none that is positive.
         """
         self.require(label)
-        text, line = self.found[label]
+        text, line = self.found[label.casefold()]
         number = _FIRST_NUMBER.search(text)
         value = to_float(number.group()) if number else 0.0
         if number is None or (positive and not value > 0.0):
@@ -151,16 +98,22 @@ class Labelled:
         return StatedCount(int(value), line, label)
 
 
-Numbers = Callable[["Dialect", Labelled, StatedCount, Given], tuple[Floats, tuple[str, ...]]]
+class Series(NamedTuple):
+    """Numbers in the header's unit, notes on what was done, and a time step (s) they imply."""
+
+    values: Floats
+    notes: tuple[str, ...] = ()
+    time_step: float | None = None
 
 
-def plain_numbers(
-    dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
-) -> tuple[Floats, tuple[str, ...]]:
+Numbers = Callable[["Dialect", Labelled, StatedCount, Given], Series]
+
+
+def plain_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Series:
     """The block that follows a header, as it is."""
     width = to_count(head.text("width") or "") or dialect.width
     first = head.extent.end + 1
-    return numbers_of_block(head.source, first, stated, width, ends_file=dialect.ends_file)
+    return Series(*numbers_of_block(head.source, first, stated, width, ends_file=dialect.ends_file))
 
 
 @dataclass(frozen=True)
@@ -187,7 +140,7 @@ class Dialect:
         A label, a pattern its value has for an accelerogram, and what is needed if it has not.
     count, step, rate, duration : str
         Labels of the number of samples, or of their rate (Hz) and duration (s), and of the
-        time step (s), or of the rate.
+        time step (s), or of the rate. All that are named must agree.
     units, event, station, component, date : str or tuple of str
         Labels, as `Labelled.text` takes them.
     unit : str, optional
@@ -208,7 +161,7 @@ class Dialect:
     ends_file : bool
         Whether nothing but text may follow the block.
     numbers : callable
-        The numbers of a component in the header's unit, and notes on what was done.
+        The `Series` of a component.
     other_names : callable
         What else a component may be asked for by.
     """
@@ -243,7 +196,7 @@ class Dialect:
 
     def reader(self) -> Reader:
         """The reader of the format."""
-        patterns = [re.compile(pattern) for pattern in self.begins]
+        patterns = [word_pattern(pattern) for pattern in self.begins]
 
         def detect(source: Source) -> bool:
             numbered = enumerate(patterns, start=1)
@@ -257,19 +210,19 @@ class Dialect:
 
     def _head(self, source: Source, extent: Extent) -> Labelled:
         """The values of one header; of several with one label the first."""
-        found = dict(extent.known)
+        found = _folded(extent.known)
         text = source.lines[extent.start - 1 : extent.last]
         if self.parted is not None:
             for number, line in enumerate(text, start=extent.start):
                 label, is_parted, value = _parted(line, self.parted)
                 if is_parted:
-                    found.setdefault(label, (value, number))
+                    found.setdefault(label.casefold(), (value, number))
         joined = "\n".join(text) if self.patterns else ""
         for pattern in self.patterns:
-            if match := re.search(pattern, joined, re.MULTILINE):
+            if match := word_pattern(pattern).search(joined):
                 for label, (value, _) in groups_of(match, 0).items():
                     above = joined.count("\n", 0, match.start(label.replace(" ", "_")))
-                    found.setdefault(label, (value, extent.start + above))
+                    found.setdefault(label.casefold(), (value, extent.start + above))
         return Labelled(source, extent, found)
 
     def _channels(self, head: Labelled, given: Given) -> list[Channel]:
@@ -297,12 +250,16 @@ class Dialect:
         ]
 
         def read(column: int) -> RecordData:
+            header = headers[column]
             if self.columns is None:
-                values, notes = self.numbers(self, head, stated, given)
+                values, notes, step = self.numbers(self, head, stated, given)
+                header = header if step is None else replace(header, time_step=step)
             else:
-                rows = self._table(head, stated, headers[0])
-                values, notes = rows.column(column + self.timed), ()
-            return record_data(head.source, self.name, headers[column], values, given, notes)
+                rows = self._table(head, stated, header)
+                values, notes = rows.column(column + self.timed)[: stated.count], ()
+                if filled := len(rows.rows) - stated.count:
+                    notes = (f"{filled} rows that repeat the last one passed over",)
+            return record_data(head.source, self.name, header, values, given, notes)
 
         other_names = (printed or "", *self.other_names(head))
         return [Channel(name, partial(read, i), other_names) for i, name in enumerate(names)]
@@ -313,7 +270,7 @@ class Dialect:
             return
         label, pattern, needed = self.kind
         found = head.text(label)
-        if found is not None and not re.match(pattern, found):
+        if found is not None and not word_pattern(pattern).match(found):
             raise head.source.error(head.line(label), f"found '{found}'; {needed} is needed")
 
     def _sampling(self, head: Labelled) -> tuple[StatedCount, float | None, int | None]:
@@ -326,13 +283,20 @@ class Dialect:
         """
         if not (self.step or self.rate):
             return head.count(self.count), None, None
-        if self.step and (self.step in head.found or not self.rate):
+        if self.step and (self.step in head or not self.rate):
             return head.count(self.count), *head.number(self.step)
         frequency, line = head.number(self.rate, positive=True)
-        if self.count:
+        if self.count and not self.duration:
             return head.count(self.count), 1.0 / frequency, line
         duration, _ = head.number(self.duration)
         count = frequency * duration
+        if self.count:
+            stated = head.count(self.count)
+            if abs(count - stated.count) > 1.0 + _ROUNDED * frequency:
+                raise head.source.error(
+                    line, f"{stated.count} samples at {frequency:g} Hz do not last {duration:g} s"
+                )
+            return stated, 1.0 / frequency, line
         if not 0.5 < count < TOO_MANY:
             raise head.source.error(
                 line, f"{frequency:g} Hz for {duration:g} s is no number of samples"
@@ -343,23 +307,23 @@ class Dialect:
     def _peak(self, head: Labelled, component: str | None) -> Peak | None:
         """The peak that the header states for a component."""
         if self.column_peak:
-            pattern = re.compile(self.column_peak.replace("{}", re.escape(component or "")))
+            pattern = word_pattern(self.column_peak.replace("{}", re.escape(component or "")))
             text = enumerate(head.source.lines[: head.extent.last], start=1)
             found = ((i, match) for i, x in text if (match := pattern.search(x)))
-            line, match = next(found, (0, None))
+            at, match = next(found, (0, None))
             units = head.text(self.units)
             if match is None or units is None:
                 return None
-            return Peak(max(match.groups(), key=lambda text: abs(to_float(text))), units, line)
+            return Peak(max(match.groups(), key=lambda text: abs(to_float(text))), units, at)
         label, units = self.peak or ("peak", head.text("peak units"))
-        peak, line = head.found.get(label, ("", 0))
-        return Peak(peak, units, line) if peak and units else None
+        peak, line = head.text(label), head.line(label)
+        return Peak(peak, units, line) if peak and units and line else None
 
     def _columns(self, head: Labelled) -> Sequence[str]:
         """Names of the columns of a table."""
         assert self.columns is not None
         label, pattern = self.columns
-        names = re.findall(pattern, head.text(label) or "")
+        names = word_pattern(pattern).findall(head.text(label) or "")
         if not names:
             raise head.source.error(None, f"the header names no components after '{label}'")
         return names
@@ -371,7 +335,8 @@ class Dialect:
         if rows.bad:
             raise InputError(source.unreadable(rows.bad))
         rows.refuse_other_widths(source, len(self._columns(head)) + self.timed)
-        if len(rows.rows) != stated.count:
+        last, after = rows.rows[stated.count - 1 : stated.count], rows.rows[stated.count :]
+        if not last or any(row != last[0] for row in after):
             raise InputError(miscounted(source, stated, len(rows.rows), rows.lines[-1], "rows"))
         if self.timed:
             step = even_step(source, rows.column_texts(0), rows.lines)

@@ -10,8 +10,9 @@ from functools import cache
 
 from eventpound.basics.plugins import Plugins, plugged_in
 from eventpound.errors import InputError
-from eventpound.motion.readers import archives, columns, dialects, waveforms
+from eventpound.motion.readers import archives, columns, dialects, interchange, volumes, waveforms
 from eventpound.motion.readers.base import Reader, Source
+from eventpound.motion.readers.binary import binary_kind
 
 _DIALECTS = (
     dialects.AT2,
@@ -22,19 +23,21 @@ _DIALECTS = (
     dialects.AFAD,
     dialects.ITACA,
     dialects.ITSAK,
+    dialects.UNAM,
+    dialects.CSMNC,
     archives.COSMOS,
-    archives.CSMIP,
+    volumes.CDMG,
+    volumes.CSMIP,
     archives.SMC,
-    archives.USC,
+    volumes.USC,
+    volumes.BHRC,
     dialects.ITSAK_FIXED,
+    interchange.TIMESERIES,
+    interchange.SAC_ALPHANUMERIC,
+    interchange.COUNT_AND_STEP,
 )
-READERS: tuple[Reader, ...] = (
-    waveforms.MINISEED,
-    waveforms.SAC,
-    *(dialect.reader() for dialect in _DIALECTS),
-    columns.OPENSEES,
-    columns.COLUMNS,
-)
+_OF_TEXT = (*(dialect.reader() for dialect in _DIALECTS), columns.OPENSEES, columns.COLUMNS)
+READERS: tuple[Reader, ...] = (waveforms.MINISEED, waveforms.SAC, *_OF_TEXT)
 
 GROUP = "eventpound.readers"
 _PLAIN = 2
@@ -52,27 +55,29 @@ def reader_of(source: Source, name: str | None) -> Reader:
     Raises
     ------
     InputError
-        For an unknown name, one of a package that does not work, or a file that none
-        recognises.
+        For an unknown name, one of a package that does not work, a file that none
+        recognises, or one that is no text where text is needed.
     """
     plugins = _plugged_in()
     readers = _readers(plugins)
     known = ", ".join(reader.name for reader in readers)
-    if name is not None:
-        for reader in readers:
-            if reader.name == name:
-                return reader
+    found = next((x for x in readers if (x.name == name if name else x.detect(source))), None)
+    if name is not None and found is None:
         if name in plugins.troubles:
             raise InputError(f"{source.file}: format '{name}': {plugins.troubles[name]}")
         raise InputError(f"{source.file}: format '{name}' is not known; accepted: {known}")
-    for reader in readers:
-        if reader.detect(source):
-            return reader
+    if found is None or found in _OF_TEXT:
+        told = found is not None and found.detect(source)
+        if kind := binary_kind(source.content, may_have_zeros=told):
+            raise source.error(None, f"found {kind}; a record is needed")
+    if found is not None:
+        return found
     lines = enumerate(source.lines, start=1)
     number, line = next(((i, x) for i, x in lines if x.strip()), (1, source.line(1)))
     raise source.error(
         number,
-        f"not an accelerogram in a known format ({known}); found {line.strip()[:60]!r}",
+        f"not an accelerogram in a known format ({known}); found {line.strip()[:60]!r}. Plain "
+        "numbers are read after comment lines (#) and at most one line of titles",
     )
 
 

@@ -1,4 +1,4 @@
-"""SAC and miniSEED, read by ObsPy, an optional extra.
+"""SAC and miniSEED (SEED with headers, too), read by ObsPy, an optional extra.
 
 miniSEED usually has counts, which need the sensitivity of the instrument: from a StationXML
 file, ``response``, or as the unit of a count, ``units = "2.3e-6 m/s2"``. A SAC header has no
@@ -22,7 +22,7 @@ from eventpound.errors import InputError
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
 from eventpound.motion.readers.header import Header, record_data, unit_factor
 
-_MINISEED = re.compile(rb"\d{6}[DRQM][ \x00]|MS\x03")
+_MINISEED = re.compile(rb"\d{6}[DRQMVAST][ \x00*]|MS\x03")
 _SAC_HEADER_BYTES = 632
 _VERSION_AT, _COUNT_AT, _KIND_AT = 304, 316, 344
 _VERSIONS = (6, 7)

@@ -28,7 +28,7 @@ def test_the_name_of_the_file_says_nothing(tmp_path: Path) -> None:
         (b"", "the file is empty"),
         (b" \r\n\n", "the file is empty"),
         (b"Period [sec]\tAcc\r\nSpectrum \xbf\xc6\r\n0.1 0.2\r\n", "line 1: .*found 'Period"),
-        (b"\x00\x01\x02SAC\xff", r"line 1: .*found '\\x00\\x01"),
+        (b"\x00\x01\x02SAC\xff", r"a.txt: found a binary file; write the accelerations as text"),
     ],
 )
 def test_other_files_are_refused(tmp_path: Path, content: bytes, message: str) -> None:

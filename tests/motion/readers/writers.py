@@ -75,7 +75,9 @@ def esm(a: Floats, dt: float) -> Written:
     return Written(text + rows(100.0 * a, 1, ".6f"), 0.5e-8, ("HNE",))
 
 
-def cosmos(a: Floats, dt: float) -> Written:
+def cosmos(
+    a: Floats, dt: float, data: str = "pts, approx {0:4.0f} secs, units=cm/sec2(04),Format=(8F10.5)"
+) -> Written:
     def part(values: Floats, channel: int, azimuth: int) -> str:
         text = [
             "Corrected acceleration    (Format v01.20 with 13 text lines)",
@@ -101,13 +103,18 @@ def cosmos(a: Floats, dt: float) -> Written:
             + " 100 Real-header values follow on  17 lines, Format= (6F13.6)\n"
             + rows(reals.tolist(), 6, "13.6f")
             + '  1 Comment line(s) follow, each starting with a "|":\n| 12 34\n'
-            + f"{a.size:8d} acceleration pts, approx {a.size * dt:4.0f} secs, "
-            + "units=cm/sec2(04),Format=(8F10.5)\n"
+            + f"{a.size:8d} acceleration {data.format(a.size * dt)}\n"
             + rows((100.0 * values).tolist(), 8, "10.5f")
             + "End-of-data for Chan acceleration\n"
         )
 
-    return Written(part(a, 1, 340) + part(-0.5 * a, 2, 70), 0.5e-7, ("340", "70"))
+    text = part(a, 1, 340) + part(-0.5 * a, 2, 70)
+    return Written(text, 0.5e-7, ("340", "70"), format="cosmos")
+
+
+def cosmos_v1c(a: Floats, dt: float) -> Written:
+    """As the California survey writes it, but for the unit: a point after it, a comma less."""
+    return cosmos(a, dt, "pts, approx {0:4.0f} secs, units=cm/sec2.  (04)Format=(8f10.5)   ")
 
 
 def csmip_v2(a: Floats, dt: float) -> Written:
@@ -150,6 +157,176 @@ def csmip_v1(a: Floats, dt: float) -> Written:
     ]
     text = "\n".join(head) + "\n" + rows(a / 9.80665, 8, "9.6f") + "/&  --- End of Data ---\n"
     return Written(text, 0.5e-6 * 9.80665, ("360",), format="csmip")
+
+
+def csmip_structure(a: Floats, dt: float) -> Written:
+    """Channels of a building, each with a location behind its name."""
+    text = csmip_v2(a, dt).text
+    for name, place in ((" 90 DEG", "Abutment 1"), ("UP", "Deck: center")):
+        line = f": {name}\r\n"
+        text = text.replace(line, f": {name}                   Location: {place}\r\n")
+    return Written(text, 0.5e-5, ("90", "UP"), format="csmip")
+
+
+def volume_1(a: Floats, dt: float) -> Written:
+    """CDMG and RENADIC: pairs, of which fields touch from 100 s on."""
+
+    def part(values: Floats, channel: int, name: str) -> str:
+        g_10 = values / 0.980665
+        head = [
+            "UNCORRECTED ACCELEROGRAM DATA              PROCESSED: 01/02/99",
+            "NOWHERE EARTHQUAKE",
+            "JAN 2, 1999 03:04 PDT                (ORIGIN: 01/02/99)",
+            "-",
+            "STATION NO. 1   1.000N, 1.000W     SMA-1  S/N 1",
+            "MADE UP",
+            f"CHAN  {channel}: {name}        (STA CHN:  {channel})",
+            *["-"] * 3,
+            f"NO. OF POINTS = {values.size:6d}  RECORD LENGTH ={values.size * dt:7.3f} SEC",
+            "UNITS OF UNCOR ACCEL ARE SEC AND G/10.     "
+            f"MAX  = {0.1 * g_10[np.argmax(np.abs(g_10))]:6.3f} G, AT  1.000 SEC",
+            "RMS ACCEL OF COMPLETE RECORD = 0.021 G",
+        ]
+        pairs = np.column_stack([np.arange(values.size) * dt, g_10]).ravel().tolist()
+        numbers = rows([0] * 100, 16, "5d") + rows([0.0] * 50, 8, "10.3f")
+        numbers += rows(pairs, 10, "7.3f")
+        return "\n".join(head) + "\n" + numbers + f"/&  --- END OF DATA FOR CHANNEL {channel} ---\n"
+
+    text = part(a, 1, " 90 DEG") + part(0.3 * a, 2, "UP")
+    return Written(text, 0.5e-3 * 0.980665, ("90", "UP"), format="cdmg")
+
+
+def volume_2(a: Floats, dt: float) -> Written:
+    """USC and Caltech; the line before the numbers does not say the unit."""
+    head = [
+        "CORRECTED ACCELEROGRAM  IIBA338  87.420.0 COMP S58W   FILE   0  CORRESPONDING T",
+        "FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:                  VOL1",
+        *["-"] * 3,
+        "STATION USC# 0001   1 00 00N, 1 00 00W                                  39VOL1",
+        "1 STREET, MADE UP                                                       42VOL1",
+        "COMP S58W                                                               9 VOL1",
+        "NOWHERE EARTHQUAKE   JAN 2, 1999 -0304 GMT                              52VOL1",
+        *["-"] * 2,
+        "NO. OF POINTS =   2275      DURATION =  11.435 SEC                      50VOL1",
+        f"PEAK ACCELERATION = {100 * a[np.argmax(np.abs(a))]:11.3f}  CMS/SEC/SEC AT 1.0 SEC.",
+        " 0 2 1 338",
+    ]
+    text = "\n".join(head) + "\n"
+    for what, series in (("ACC", a), ("VEL", np.cumsum(a) * dt)):
+        text += f"{a.size:6d} POINTS OF {what} DATA EQUALLY SPACED AT {dt:6.3f} SEC.\n"
+        text += rows((100.0 * series).tolist(), 8, "10.3f")
+    return Written(text, 0.5e-5, ("S58W",), format="csmip")
+
+
+def bhrc(a: Floats, dt: float) -> Written:
+    def part(values: Floats, name: str) -> str:
+        head = [
+            "* VOL1DS FILE:  0001/01",
+            "Inst Type = SSA-2",
+            "Origin Time : 1999/01/02   03:04:05",
+            *["", name[0], "", f"COMP {name}"],
+            "Made up                   Station   1.0 N 1.0 E   Altitude 1m   Azimuth L 352   T 82",
+            *["-"] * 2,
+            f"NO. OF POINTS = {values.size:6d}      DURATION = {values.size * dt:7.3f}",
+            "UNITS ARE SECONDS AND G/10",
+            "",
+        ]
+        reals = np.zeros(42)
+        reals[6] = 1.0 / dt
+        numbers = rows([0] * 88, 14, "5d") + rows(reals.tolist(), 6, "14.6E")
+        numbers += rows(values / 0.980665, 10, "14.6E")
+        return "\n".join(head) + "\n" + numbers + "/&\n"
+
+    text = part(a, "L1") + part(0.2 * a, "V2") + part(-0.4 * a, "T3")
+    return Written(text, 0.5e-6 * 2.5, ("L", "V", "T"))
+
+
+def unam(a: Floats, dt: float) -> Written:
+    rule = "---------+" * 8
+    head = [
+        "*" * 86,
+        "                       INSTITUTO DE INGENIERIA, UNAM",
+        "*" * 86,
+        "ARCHIVO ESTANDAR DE ACELERACION:",
+        "=" * 80,
+        "NOMBRE DE LA ESTACION                  : MADE UP",
+        "CLAVE DE LA ESTACION                   : MADE",
+        "ORIENTACION C1-C6 (rumbo;orientacion)  : /V/N90E/N00E",
+        f"INTERVALO DE MUESTREO, C1-C6 (s)       : /{dt}/{dt}/{dt}",
+        "FECHA DEL SISMO [GMT]                  : 1999/01/02",
+        f"NUM. TOTAL DE MUESTRAS, C1-C6          : /{a.size}/{a.size}/{a.size}",
+        "UNIDADES DE LOS DATOS                  : Gal (cm/s/s)",
+        "DATOS DE ACELERACION:",
+        rule,
+        "   CANAL-1   CANAL-2   CANAL-3",
+        "         V      N90E      N00E",
+        rule,
+    ]
+    columns = np.column_stack([100.0 * a, -50.0 * a, 30.0 * a])
+    text = "\n".join(head) + "\n" + rows(columns.ravel().tolist(), 3, "10.4f")
+    return Written(text, 0.5e-6, ("V", "N90E", "N00E"))
+
+
+def csmnc(a: Floats, dt: float) -> Written:
+    head = [
+        "000MADE19990102030401",
+        "0199001020304 1999-01-02 3:4:5 BTM",
+        "NOWHERE EARTHQUAKE",
+        "EPICENTER   1.000N   1.000E DEPTH 1 KM",
+        "MAGNITUDE  1.0(Ms)",
+        "STATION: MADE  1.000N   1.000E",
+        "SITE CONDITION: ROCK",
+        "INSTRUMENT TYPE: NONE",
+        "OBSERVING POINT: GROUND",
+        "COMP. EW",
+        "UNCORRECTED ACCELERATION          UNIT: CM/SEC/SEC",
+        f"NO. OF POINTS: {a.size:6d}  EQUALLY SPACED INTERVALS OF:  {dt:5.3f}  SEC",
+        f"PEAK VALUE:  {100 * a[np.argmax(np.abs(a))]:10.3f}   AT   1.00 SEC    DURATION:  9 SEC",
+        "PRE-EVENT TIME:  20  SEC",
+        "CSMNC",
+        "",
+    ]
+    return Written("\n".join(head) + "\n" + rows(100.0 * a, 8, "14.6E"), 0.5e-6 * 2.5, ("EW",))
+
+
+def slist(a: Floats, dt: float) -> Written:
+    """Two channels; numbers run along lines."""
+
+    def part(values: Floats, name: str) -> str:
+        line = f"TIMESERIES XX_MADE__{name}_R, {values.size} samples, {1.0 / dt:g} sps, "
+        line += "1999-01-02T03:04:05.000000, SLIST, FLOAT, M/S**2\n"
+        return line + rows(values, 6, "12.6f")
+
+    text = part(a, "HNE") + part(0.5 * a, "HNN")
+    return Written(text, 0.5e-6, ("HNE", "HNN"), format="timeseries")
+
+
+def tspair(a: Floats, dt: float) -> Written:
+    """As ObsPy writes it where it does not know the unit."""
+    start = np.datetime64("1999-01-02T03:04:05.000000")
+    text = f"TIMESERIES XX_MADE__HNE_R, {a.size} samples, {1.0 / dt:g} sps, "
+    text += f"{start}, TSPAIR, FLOAT, Counts\n"
+    for i, value in enumerate(a):
+        text += f"{start + np.timedelta64(round(1e6 * i * dt), 'us')}  {value:+.10e}\n"
+    return Written(text, 1e-9, ("HNE",), "m/s2", format="timeseries")
+
+
+def sac_alphanumeric(a: Floats, dt: float) -> Written:
+    reals, integers = np.full(70, -12345.0), np.full(40, -12345)
+    reals[0] = dt
+    integers[6], integers[9], integers[15], integers[16], integers[35] = 6, a.size, 1, 8, 1
+    names = [["-12345  "] * 3 for _ in range(8)]
+    names[0][0], names[6][2] = "MADE    ", "HNE     "
+    text = rows(reals.tolist(), 5, "15.7g") + rows(integers.tolist(), 5, "10d")
+    text += "".join("".join(line) + "\n" for line in names) + rows(a, 5, "15.7g")
+    return Written(text, 0.5e-6, ("HNE",), "m/s2", format="sac-alphanumeric")
+
+
+def deepsoil(a: Floats, dt: float) -> Written:
+    """Number and step on the first line, then times and accelerations."""
+    pairs = np.column_stack([np.arange(a.size) * dt, a]).ravel().tolist()
+    text = f"{a.size} {dt}\n" + rows(pairs, 2, "12.6f")
+    return Written(text, 0.5e-6, units="m/s2", format="count-and-step")
 
 
 def smc(a: Floats, dt: float) -> Written:
@@ -206,17 +383,23 @@ def knet(a: Floats, dt: float) -> Written:
     return Written(text + rows(counts.tolist(), 8, "9d"), 3920e-2 / 6170801, ("NS2",))
 
 
-def geonet(a: Floats, dt: float) -> Written:
+def geonet(a: Floats, dt: float, *, corrected: bool = True) -> Written:
+    sampled = (
+        f"Instrument corrected data at {dt:5.3f} sec intervals"
+        if corrected
+        else f"Raw readings in units of 1.00 mm/s/s  at intervals of {dt:5.3f} s"
+    )
+
     def part(values: Floats, name: str) -> str:
         head = [
-            "Corrected accelerogram 19990102_030405_MADE GNS Science",
+            f"{'Corrected' if corrected else 'Uncorrected'} accelerogram 1999_MADE GNS Science",
             "Site MADE      1 1 1S  1 1 1E",
             "Made Up",
             *["-"] * 4,
             "1999 January 02         03:04:05 UT",
             "-",
             f"Number of points {values.size:5d}    Duration {values.size * dt:6.2f} sec",
-            f"Instrument corrected data at {dt:5.3f} sec intervals",
+            sampled,
             "Band-pass filter",
             f"Component {name}  Some Axis",
             f"Acceleration:  peak {1000 * values[np.argmax(np.abs(values))]:8.1f} mm/s/s at  1 sec",
@@ -224,10 +407,15 @@ def geonet(a: Floats, dt: float) -> Written:
             *["  1 2 3"] * 10,
         ]
         series = [values, np.cumsum(values) * dt, np.cumsum(np.cumsum(values)) * dt**2]
+        series = series if corrected else series[:1]
         return "\n".join(head) + "\n" + "".join(rows(1000.0 * s, 10, "8.1f") for s in series)
 
     text = part(a, "N28W") + part(-0.4 * a, "S62W") + part(0.2 * a, "Up")
-    return Written(text, 0.5e-4, ("N28W", "S62W", "Up"))
+    return Written(text, 0.5e-4, ("N28W", "S62W", "Up"), format="geonet")
+
+
+def geonet_v1(a: Floats, dt: float) -> Written:
+    return geonet(a, dt, corrected=False)
 
 
 def cwb(a: Floats, dt: float) -> Written:
@@ -262,7 +450,7 @@ def usc(a: Floats, dt: float) -> Written:
     ]
     body = rows([0] * 100, 16, "5d") + rows([0.0] * 50, 8, "10.3f")
     data = "".join(" " + line + "\n" for line in rows(pairs.tolist(), 10, "7.3f").splitlines())
-    return Written("\n".join(text) + "\n" + body + data, 0.5e-3 * 0.980665, ("N00W",), None, dt)
+    return Written("\n".join(text) + "\n" + body + data, 0.5e-3 * 0.980665, ("N00W",))
 
 
 def afad(a: Floats, dt: float) -> Written:
@@ -331,11 +519,23 @@ WRITERS: dict[str, Callable[[Floats, float], Written]] = {
     "at2": at2,
     "esm": esm,
     "cosmos": cosmos,
+    "cosmos_v1c": cosmos_v1c,
     "csmip_v2": csmip_v2,
     "csmip_v1": csmip_v1,
+    "csmip_structure": csmip_structure,
+    "volume_1": volume_1,
+    "volume_2": volume_2,
+    "bhrc": bhrc,
+    "unam": unam,
+    "csmnc": csmnc,
+    "slist": slist,
+    "tspair": tspair,
+    "sac_alphanumeric": sac_alphanumeric,
+    "deepsoil": deepsoil,
     "smc": smc,
     "knet": knet,
     "geonet": geonet,
+    "geonet_v1": geonet_v1,
     "cwb": cwb,
     "usc": usc,
     "afad": afad,

@@ -1,0 +1,211 @@
+"""Formats by which programs hand on a series: SLIST and TSPAIR, SAC as text, a count and a step."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from itertools import islice
+
+import numpy as np
+
+from eventpound.motion.readers.base import Given, Source
+from eventpound.motion.readers.block import StatedCount, numbers_of_block
+from eventpound.motion.readers.extents import Extent, groups_of, word_pattern
+from eventpound.motion.readers.labelled import Dialect, Labelled, Series
+from eventpound.motion.readers.numbers import NUMBER, numbers_of_line, split_token, to_float
+from eventpound.motion.readers.rows import COMMENT, SEPARATOR
+
+# EarthScope and ObsPy, described in obspy.io.ascii: a line "TIMESERIES NET_STA_LOC_CHAN_Q,
+# 12 samples, 40 sps, 2003-05-29T02:13:22.043400, SLIST, INTEGER, Counts" before each series, whose
+# samples run along lines (SLIST) or stand one a line behind their times (TSPAIR).
+
+_TIMESERIES = word_pattern(
+    r"\s*TIMESERIES\s+(?P<station>[^_,]*_[^_,]*)_[^_,]*_(?P<component>[^_,\s]*)[^,]*,"
+    rf"\s*(?P<samples>\d+)\s*samples?\s*,\s*(?P<rate>{NUMBER})\s*sps\s*,\s*(?P<date>[^,\s]+)\s*,"
+    r"\s*(?P<layout>SLIST|TSPAIR)\b\s*,?[^,]*(?:,\s*(?P<units>\S+)\s*)?$"
+)
+
+
+def _timeseries_extents(source: Source) -> Iterator[Extent]:
+    """The series; none twice, as a channel with gaps would be."""
+    names = set()
+    for number, line in enumerate(source.lines, start=1):
+        if found := _TIMESERIES.match(line):
+            name = line.split(",")[0].split()[-1].casefold()
+            if name in names:
+                raise source.error(number, f"channel {name} begins again, after a gap")
+            names.add(name)
+            known = groups_of(found, number)
+            if "units" in known and known["units"][0].casefold() in ("count", "counts"):
+                del known["units"]
+            yield Extent(number, number, number, known)
+
+
+def _timeseries_numbers(
+    dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
+) -> Series:
+    """Samples up to the line that begins the next series, which must be as many as stated."""
+    source, first = head.source, head.extent.end + 1
+    rest = enumerate(source.lines[first - 1 :], start=first)
+    end = next((i for i, x in rest if _TIMESERIES.match(x)), len(source.lines) + 1)
+    own = Source(source.file, "\n".join(source.lines[: end - 1]).encode())
+    if (head.text("layout") or "").upper() == "TSPAIR":
+        rate, _ = head.number("rate", positive=True)
+        own = _without_times(own, first, rate)
+    return Series(*numbers_of_block(own, first, stated))
+
+
+def _without_times(source: Source, first: int, rate: float) -> Source:
+    """The file with the times left out, which must be those of the rate (Hz)."""
+    lines, start = source.lines[: first - 1], None
+    for number, line in enumerate(source.lines[first - 1 :], start=first):
+        time, _, sample = line.strip().partition(" ")
+        try:
+            at = np.datetime64(time.upper().rstrip("Z"), "us") if time else None
+        except ValueError as error:
+            raise source.error(number, f"found {time!r}; a time is expected") from error
+        start = at if start is None else start
+        if at is not None and start is not None:
+            off = (at - start) / np.timedelta64(1, "s") - (number - first) / rate
+            if abs(off) > _OFF / rate:
+                raise source.error(number, f"its time is {off:g} s off those of {rate:g} Hz")
+        lines.append(sample)
+    return Source(source.file, "\n".join(lines).encode())
+
+
+_OFF = 0.1
+"""How far a time may be from that of the rate, in steps; it may be rounded to milliseconds."""
+TIMESERIES = Dialect(
+    name="timeseries",
+    begins=(_TIMESERIES.pattern,),
+    extents=_timeseries_extents,
+    count="samples",
+    rate="rate",
+    numbers=_timeseries_numbers,
+)
+
+# SAC as text ("alphanumeric"), described in the manual of SAC: 14 lines of five reals, 8 of five
+# integers, 8 of names, then the samples. The first real is the time step, the tenth integer the
+# number of samples, the 17th what they are (7 velocities, 6 displacements), the 36th whether their
+# times are even. -12345 is what is not known. As in the other SAC, there is no unit.
+
+_REALS, _INTEGERS, _SAC_HEAD = 14, 8, 30
+_VERSION_AT, _COUNT_AT, _KIND_AT, _EVEN_AT = 6, 9, 16, 35
+_KINDS = {6: "displacements", 7: "velocities"}
+
+
+def _sac_head(source: Source) -> list[float] | None:
+    """All reals and integers of a head; None unless it is one."""
+    lines = source.lines[: _REALS + _INTEGERS]
+    rows = [numbers_of_line(line, 15 if i < _REALS else 10)[0] for i, line in enumerate(lines)]
+    if [len(row) for row in rows] != [5] * (_REALS + _INTEGERS):
+        return None
+    head = [number for row in rows for number in row]
+    return head if head[5 * _REALS + _VERSION_AT] in (6.0, 7.0) and -12345.0 in head else None
+
+
+def _sac_extent(source: Source) -> list[Extent]:
+    head = _sac_head(source)
+    if head is None:
+        raise source.error(1, "not a SAC file of text: 14 lines of five reals, 8 of five integers")
+    integers = [int(number) for number in head[5 * _REALS :]]
+    if kind := _KINDS.get(integers[_KIND_AT]):
+        raise source.error(18, f"its header says {kind}, not accelerations")
+    if integers[_EVEN_AT] == 0:
+        raise source.error(22, "its header says that its times are uneven")
+    names = {"station": (23, 0), "component": (29, 16)}
+    known = {name: (source.line(i)[at : at + 8].strip(), i) for name, (i, at) in names.items()}
+    known = {name: value for name, value in known.items() if not value[0].startswith("-12345")}
+    known |= {"DELTA": (repr(head[0]), 1), "NPTS": (f"{integers[_COUNT_AT]}", 16)}
+    return [Extent(1, _SAC_HEAD, _SAC_HEAD, known)]
+
+
+SAC_ALPHANUMERIC = Dialect(
+    name="sac-alphanumeric",
+    begins=(),
+    also=lambda source: _sac_head(source) is not None,
+    extents=_sac_extent,
+    count="NPTS",
+    step="DELTA",
+    width=15,
+)
+
+# A line "2000 0.01" (or "0.01 2000") with the number of samples and the time step, perhaps after
+# lines of text, and then the samples: DEEPSOIL has a time beside each, eqsig a title before the
+# line, others run along lines. Nothing states units.
+
+_MOST_TITLES = 4
+_LARGEST_STEP = 1.0
+
+
+def _count_and_step(source: Source) -> Extent | None:
+    """The line with both, unless what follows goes on from it as a second row would."""
+    texts = (
+        (i, x) for i, x in enumerate(source.lines, start=1) if x.strip() and not COMMENT.match(x)
+    )
+    before = 0
+    for number, line in texts:
+        row = _row(line)
+        if row is None:
+            before += 1
+            if before > _MOST_TITLES:
+                return None
+            continue
+        found = sorted(row, key=to_float, reverse=True)
+        if len(row) != 2 or not re.fullmatch(r"\d+", found[0]) or int(found[0][:12]) < 2:
+            return None
+        count, step = int(found[0][:12]), to_float(found[1])
+        following = [_row(x) for _, x in islice(texts, 2)]
+        if not 0.0 < step <= _LARGEST_STEP or len(following) < 2 or None in following:
+            return None
+        first, second = ([to_float(x) for x in other or ()] for other in following)
+        pairs = len(first) == 2
+        if pairs and not (first[0] in (0.0, step) and abs(second[0] - first[0] - step) < step / 2):
+            return None
+        known = {"samples": (f"{count}", number), "step": (found[1], number)}
+        known |= {"pairs": ("pairs", number)} if pairs else {}
+        return Extent(number, number, number, known)
+    return None
+
+
+def _row(line: str) -> list[str] | None:
+    """Numbers of a line as printed; None where there is a word."""
+    parts = [split_token(token) for token in SEPARATOR.split(line.strip(" \t,;"))]
+    return None if None in parts else [number for part in parts for number in part or ()]
+
+
+def _count_and_step_numbers(
+    dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
+) -> Series:
+    """Samples, or those of pairs (t, a) whose times must be as stated."""
+    source, first = head.source, head.extent.end + 1
+    commas = Source(source.file, re.sub(rb"[,;]", b" ", source.content))
+    if "pairs" not in head:
+        return Series(*numbers_of_block(commas, first, stated))
+    pairs = StatedCount(2 * stated.count, stated.line, f"twice the {stated.name}")
+    numbers = numbers_of_block(commas, first, pairs)[0]
+    step, _ = head.number("step")
+    off = np.abs(np.diff(numbers[0::2]) - step) > _OFF * step
+    if off.any():
+        raise source.error(
+            head.line("step"), f"a time step of {step:g} s is stated, that of its times differs"
+        )
+    return Series(numbers[1::2])
+
+
+def _count_and_step_extents(source: Source) -> list[Extent]:
+    extent = _count_and_step(source)
+    if extent is None:
+        raise source.error(1, "no line with a number of samples and a time step, as '2000 0.01'")
+    return [extent]
+
+
+COUNT_AND_STEP = Dialect(
+    name="count-and-step",
+    begins=(),
+    also=lambda source: _count_and_step(source) is not None,
+    extents=_count_and_step_extents,
+    count="samples",
+    step="step",
+    numbers=_count_and_step_numbers,
+)

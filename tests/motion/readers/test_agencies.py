@@ -1,0 +1,227 @@
+"""What agencies and programs write otherwise than their format says, and what is no text at all."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eventpound.errors import InputError
+from eventpound.motion import read_record
+from eventpound.motion.readers import UnstatedError, components_of
+from tests.motion.readers import writers
+from tests.motion.readers.writers import motion
+
+STEP = 0.01
+MOTION = motion(400, STEP)
+
+
+def written(path: Path, text: str, name: str = "record") -> Path:
+    file = path / name
+    file.write_text(text)
+    return file
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        "pts, approx {0:4.0f} secs, units=cm/sec2(04),Format=(8F10.5)",
+        "pts, approx {0:4.0f} secs, units=cm/sec2.    (04)Format=(8f10.5)   ",
+        "points approx {0:.2f} sec  units = cm/s/s (04) format (8F10.5)",
+        "pts., approx. {0:4.0f} secs., UNITS: CM/SEC/SEC, FORMAT=(8F10.5)",
+        "accel. pts,units=gal,Format=(8F10.5)",
+    ],
+)
+def test_cosmos_is_read_by_meaning(data: str, tmp_path: Path) -> None:
+    file = written(tmp_path, writers.cosmos(MOTION, STEP, data).text)
+    read = read_record(file, component="70")
+    np.testing.assert_allclose(read.acceleration, -0.5 * MOTION, rtol=0.0, atol=0.6e-7)
+    assert (read.time_step, read.acceleration.size) == (STEP, MOTION.size)
+
+
+def test_cosmos_with_the_step_of_the_raw_record_alone(tmp_path: Path) -> None:
+    text = writers.cosmos(MOTION, STEP).text
+    line = next(x for x in text.splitlines() if "    10.000000" in x)
+    raw = text.splitlines()[text.splitlines().index(line) - 5]
+    assert raw.split()[3] == "-999.000000"
+    changed = raw[:39] + f"{STEP:13.6f}" + raw[52:]
+    text = text.replace(line, line.replace("    10.000000", "  -999.000000"))
+    text = text.replace(raw, changed)
+    assert read_record(written(tmp_path, text), component="70").time_step == STEP
+
+
+def test_cosmos_counts_are_no_accelerations(tmp_path: Path) -> None:
+    data = "pts, approx {0:4.0f} secs, units=counts (50),Format=(8F10.5)"
+    file = written(tmp_path, writers.cosmos(MOTION, STEP, data).text)
+    with pytest.raises(InputError, match="accelerations and not counts, as its V1 and V2 have"):
+        read_record(file, component="#1")
+
+
+def test_a_channel_of_a_structure_is_named_without_its_location(tmp_path: Path) -> None:
+    text = writers.csmip_structure(MOTION, STEP).text
+    file = written(tmp_path, text)
+    assert components_of(file) == ["90", "UP"]
+    for asked in ("up", "#2", "Chan 2", "deck: center"):
+        assert read_record(file, component=asked).component == "UP"
+    both = written(tmp_path, text.replace("UP  ", " 90 DEG  "), "both")
+    assert components_of(both) == ["#1", "#2"]
+    with pytest.raises(InputError, match=r"'90' is the name of 2 .*: #1 90 \(CHAN  1, Abutment 1"):
+        read_record(both, component="90")
+    assert read_record(both, component="deck: center").component == "90"
+
+
+def test_pairs_at_uneven_times_need_a_time_step(tmp_path: Path) -> None:
+    """Every other time is 1 ms late: a straight line is sampled as itself."""
+    t = STEP * np.arange(200)
+    late = t + 0.001 * (np.arange(200) % 2)
+    text = writers.volume_1(1.3 * t, STEP).text
+    pairs = np.column_stack([t, 1.3 * t / 0.980665]).ravel().tolist()
+    moved = np.column_stack([late, 1.3 * late / 0.980665]).ravel().tolist()
+    text = text.replace(writers.rows(pairs, 10, "7.3f"), writers.rows(moved, 10, "7.3f"))
+    file = written(tmp_path, text)
+    with pytest.raises(UnstatedError, match=r"0.009 to 0.011 s apart; give time_step"):
+        read_record(file, component="90")
+    read = read_record(file, component="90", time_step=0.02)
+    np.testing.assert_allclose(
+        read.acceleration, 1.3 * 0.02 * np.arange(read.acceleration.size), atol=2e-3
+    )
+    assert any("200 samples at uneven times" in note for note in read.notes)
+
+
+def test_times_are_those_of_the_rate(tmp_path: Path) -> None:
+    text = writers.tspair(MOTION, STEP).text
+    with pytest.raises(InputError, match=r"line 3: its time is -0.01 s off those of 50 Hz"):
+        read_record(written(tmp_path, text.replace("100 sps", "50 sps")), units="m/s2")
+    changed = written(tmp_path, text.replace("1999-01-02T03:04:05.000000  ", "noon "))
+    with pytest.raises(InputError, match=r"line 2: found 'noon'; a time is expected"):
+        read_record(changed, units="m/s2")
+
+
+def test_a_channel_in_pieces_is_refused(tmp_path: Path) -> None:
+    text = writers.slist(MOTION, STEP).text.replace("HNN", "HNE")
+    with pytest.raises(InputError, match="channel xx_made__hne_r begins again, after a gap"):
+        read_record(written(tmp_path, text))
+
+
+def test_more_samples_than_a_series_states_are_refused(tmp_path: Path) -> None:
+    text = writers.slist(MOTION, STEP).text.replace("400 samples", "384 samples", 1)
+    with pytest.raises(InputError, match=r"400 numbers found .* states samples = 384"):
+        read_record(written(tmp_path, text), component="HNE")
+
+
+@pytest.mark.parametrize(
+    ("index", "value", "message"),
+    [(16, 7, "says velocities"), (16, 6, "says displacements"), (35, 0, "its times are uneven")],
+)
+def test_sac_that_is_no_accelerogram(index: int, value: int, message: str, tmp_path: Path) -> None:
+    lines = writers.sac_alphanumeric(MOTION, STEP).text.splitlines()
+    line, at = 14 + index // 5, 10 * (index % 5)
+    lines[line] = lines[line][:at] + f"{value:10d}" + lines[line][at + 10 :]
+    with pytest.raises(InputError, match=message):
+        read_record(written(tmp_path, "\n".join(lines)), units="m/s2")
+
+
+COLUMN = "".join(f"{x:.6f}\n" for x in MOTION)
+PAIRS = "".join(f"{i * STEP:.2f}\t{x:.6f}\n" for i, x in enumerate(MOTION))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"400 0.01\n{PAIRS}",
+        f"400, 0.01\n{COLUMN}",
+        f"0.01 400\n{COLUMN}",
+        f"A title of 3 words\n400 0.01\n{COLUMN}",
+        f"# made up\n400\t1e-2\n{PAIRS}".replace("\t", ","),
+        "Title\nAnother 2\n 400 .01\n" + writers.rows(MOTION, 8, "9.6f"),
+    ],
+    ids=["deepsoil", "column", "step-first", "eqsig", "commas", "along-lines"],
+)
+def test_a_count_and_a_step_before_the_samples(text: str, tmp_path: Path) -> None:
+    file = written(tmp_path, text)
+    read = read_record(file, units="m/s2")
+    np.testing.assert_allclose(read.acceleration, MOTION, rtol=0.0, atol=0.51e-6)
+    assert (read.time_step, read.format) == (STEP, "count-and-step")
+    with pytest.raises(InputError, match=r"0.02 s was given, but the file has a time step of 0.01"):
+        read_record(file, units="m/s2", time_step=0.02)
+    cut = written(tmp_path, "\n".join(text.splitlines()[:-20]), "cut")
+    with pytest.raises(InputError, match=r"numbers found up to line \d+; line \d states .*samples"):
+        read_record(cut, units="m/s2")
+
+
+def test_times_beside_a_count_and_a_step_are_as_stated(tmp_path: Path) -> None:
+    text = f"400 0.01\n{PAIRS}".replace("\n2.00\t", "\n2.005\t")
+    with pytest.raises(InputError, match=r"a time step of 0.01 s is stated, that of its times"):
+        read_record(written(tmp_path, text), units="m/s2")
+
+
+def test_rows_of_times_are_no_count_and_step(tmp_path: Path) -> None:
+    text = "".join(f"{10 + i} {0.01 * i + 0.01:.2f}\n" for i in range(5))
+    assert read_record(written(tmp_path, text), units="m/s2").format == "columns"
+
+
+def test_rows_that_repeat_the_last_are_no_samples(tmp_path: Path) -> None:
+    text = writers.unam(MOTION, STEP).text
+    filled = text + 2 * (text.splitlines()[-1] + "\n")
+    read = read_record(written(tmp_path, filled), component="V")
+    assert read.acceleration.size == MOTION.size
+    assert read.notes == ("2 rows that repeat the last one passed over",)
+    with pytest.raises(InputError, match="401 rows found"):
+        read_record(written(tmp_path, text + " 1.0 2.0 3.0\n"), component="V")
+
+
+def test_wide_characters_are_text(tmp_path: Path) -> None:
+    file = tmp_path / "record"
+    file.write_bytes(PAIRS.encode("utf-16"))
+    read = read_record(file, units="m/s2")
+    np.testing.assert_allclose(read.acceleration, MOTION, rtol=0.0, atol=0.51e-6)
+
+
+def _zip(*names: str) -> bytes:
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        for name in names:
+            archive.writestr(name, PAIRS)
+    return content.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (_zip("a.V2", "b.V2"), r"found a zip archive with a.V2, b.V2; unpack it and name the file"),
+        (_zip("a.at2"), r"a zip archive with a.at2; unpack it"),
+        (_zip("a.V2")[:60], "a zip archive that is damaged"),
+        (_zip("[Content_Types].xml"), "an Office file .*; write the accelerations as text"),
+        (gzip.compress(PAIRS.encode()), "a gzip archive; unpack it"),
+        (b"\x89HDF\r\n\x1a\n" + bytes(100), "an HDF5 file"),
+        (b"MATLAB 5.0 MAT-file" + bytes(100), "a MATLAB file"),
+        (b"\x93NUMPY\x01\x00", "a NumPy file"),
+        (bytes(range(256)), "a binary file; write the accelerations as text"),
+        (bytes(257) + b"ustar\x00", "a tar archive"),
+    ],
+)
+def test_what_is_no_text_is_named_and_never_shown(
+    content: bytes, message: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "record"
+    file.write_bytes(content)
+    for name in (None, "at2", "columns"):
+        with pytest.raises(InputError, match=message) as caught:
+            read_record(file, format=name, units="g")
+        assert str(caught.value).isprintable()
+        assert "\\x" not in str(caught.value)
+
+
+@pytest.mark.parametrize("begins", [b"000001V 010", b"000001D \x00", b"000001R*", b"MS\x03\x00"])
+def test_seed_without_obspy_is_named(
+    begins: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "obspy", None)
+    file = tmp_path / "record"
+    file.write_bytes(begins + bytes(200))
+    with pytest.raises(InputError, match=r"'miniseed' is read by ObsPy, which is not installed"):
+        read_record(file, units="g")
