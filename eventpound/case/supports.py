@@ -7,9 +7,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
-from eventpound.basics.input_files import read_bytes
 from eventpound.case.excitation import Excitation, read_excitation
 from eventpound.case.frequency import required_frequency
 from eventpound.case.record_file import find_record
@@ -18,6 +15,11 @@ from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.motion import GroundMotion, NoMotion, Record
 from eventpound.motion.constant import Constant, PhasedSine
+from eventpound.motion.readers import Given
+from eventpound.motion.readers.base import load
+from eventpound.motion.readers.columns import table_of
+from eventpound.motion.readers.time_column import even_step
+from eventpound.motion.readers.titles import Kind
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.force import Force, constant_force
 from eventpound.scene.support import Support
@@ -25,8 +27,8 @@ from eventpound.units import Dimension
 
 _CYCLES = {"half-sine": 0.5, "sine": 1.0, "harmonic": None}
 """Periods that forces by a formula last."""
-_EVEN = 1e-6
-"""Part of the time step by which the times of a force may be off."""
+_SECONDS = Given(time_step=1.0)
+"""Whole numbers that count up are seconds beside a force."""
 _AMOUNT = (
     'a force: a number in N, or a string like "-12 kN"; or an acceleration like "-9.81 m/s^2", '
     "for each unit of mass"
@@ -234,43 +236,26 @@ def read_force(path: Path) -> tuple[float, float, Floats]:
     Parameters
     ----------
     path : Path
-        Times and forces with a comma, semicolon or blank between; the first line may be a
-        heading.
+        Times and forces as in a record of columns, in s and N unless titles say otherwise.
 
     Raises
     ------
     InputError
         Naming the file, the line and what is accepted.
     """
-    try:
-        text = read_bytes(path).decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read as text: {error}") from error
-    rows: list[tuple[float, float]] = []
-    for number, line in enumerate(text.splitlines(), 1):
-        words = line.replace(";", " ").replace(",", " ").split()
-        if not words or words[0].startswith("#"):
-            continue
-        try:
-            t, force = (float(word) for word in words)
-        except ValueError:
-            if not rows and number == 1:
-                continue
-            raise InputError(
-                f"{path}: line {number}: found {line.strip()[:40]!r}; accepted: a time (s) and a "
-                "force (N)"
-            ) from None
-        rows.append((t, force))
-    values = np.array(rows, float).reshape(-1, 2)
-    steps = np.diff(values[:, 0])
-    if not np.isfinite(values).all() or steps.size == 0 or not steps.min() > 0.0:
-        raise InputError(
-            f"{path}: found {len(rows)} rows; accepted: two or more finite ones, times increasing"
-        )
-    step = float((values[-1, 0] - values[0, 0]) / steps.size)
-    if np.abs(steps - step).max() > max(_EVEN * step, 4e-16 * np.abs(values[:, 0]).max()):
-        raise InputError(
-            f"{path}: found time steps from {steps.min():.6g} to {steps.max():.6g} s; accepted: "
-            "equal ones"
-        )
-    return float(values[0, 0]), step, values[:, 1].copy()
+    source = load(path)
+    table = table_of(source, _SECONDS)
+    rows, times = table.rows, table.times
+    if rows.bad:
+        raise InputError(source.unreadable(rows.bad))
+    rows.refuse_other_widths(source)
+    if rows.width != 2 or len(times) != 1:
+        accepted = "accepted: two, a time (s) and a force (N)"
+        raise source.error(rows.lines[0], f"found {rows.width} columns; {accepted}")
+    time, force = times[0], 1 - times[0]
+    title = table.titles[force]
+    if title.kind not in (None, Kind.FORCE):
+        raise source.error(rows.lines[0] - 1, f"'{title.text}' is no force but {title.kind.value}")
+    unit = table.titles[time].factor
+    step = even_step(source, rows.column_texts(time), rows.lines, table.stated.time_step, unit)
+    return unit * float(rows.column(time)[0]), step, title.factor * rows.column(force)

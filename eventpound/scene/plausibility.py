@@ -8,7 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+import numpy as np
+
 from eventpound.errors import InputError
+from eventpound.motion.base import GroundMotion
+from eventpound.motion.intensity import peak_velocity
+from eventpound.motion.plausible import LENGTH, PEAK, PERIOD, PGD, PGV, STEP
+from eventpound.motion.record import Record
 from eventpound.scene.damping import ratio_coefficient
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import local_periods, longest_period, nominal_stiffness
@@ -19,11 +25,6 @@ from eventpound.units import STANDARD_GRAVITY
 
 LARGEST_RATIO = 0.3
 """Of critical damping."""
-SHORTEST_PERIOD, LONGEST_PERIOD = 0.02, 20.0
-"""Of a structure or a ground motion (s)."""
-_PERIODS = f"usual are {SHORTEST_PERIOD:g} to {LONGEST_PERIOD:g} s"
-WEAKEST, STRONGEST = 0.01, 2.0
-"""Peak acceleration of a ground motion (g)."""
 LIKE_G = 0.05, 1.0
 """Numbers without a unit, so in m/s^2, that are weak motions, and usual ones in g."""
 LARGEST_YIELD_FORCE = 2.0
@@ -71,7 +72,8 @@ def doubts(
     scene = grounded(scene)
     found: Iterable[Doubt] = (
         *_unit_doubts(bare),
-        *_motion_doubts(scene),
+        *_motion_doubts("excitation", scene.motion),
+        *_support_doubts(scene),
         *_spring_doubts(scene),
         *_load_doubts(scene),
         *(_ratio_doubts(ratios) or _damping_doubts(scene)),
@@ -98,16 +100,40 @@ def _unit_doubts(bare: Sequence[tuple[str, float]]) -> Iterator[Doubt]:
             )
 
 
-def _motion_doubts(scene: Scene) -> Iterator[Doubt]:
-    scales = scene.motion.scales()
-    if scales is None:
-        return
-    peak, period = scales.a_g / STANDARD_GRAVITY, scales.period
-    if not WEAKEST <= peak <= STRONGEST:
-        usual = f"usual are {WEAKEST:g} to {STRONGEST:g} g"
-        yield "peak", f"excitation: a peak of {scales.a_g:.4g} m/s^2 is {peak:.3g} g; {usual}"
-    if not SHORTEST_PERIOD <= period <= LONGEST_PERIOD:
-        yield "motion's period", f"excitation: a period of {period:.4g} s; {_PERIODS}"
+def _motion_doubts(where: str, motion: GroundMotion) -> Iterator[Doubt]:
+    for kind, text in motion_doubts(motion):
+        yield kind, f"{where}: {text}"
+
+
+def _support_doubts(scene: Scene) -> Iterator[Doubt]:
+    for support in scene.supports:
+        if support.motion is not None:
+            yield from _motion_doubts(f"support '{support.name}'", support.motion)
+
+
+def motion_doubts(motion: GroundMotion) -> Iterator[Doubt]:
+    """What is hardly meant of a ground motion by itself.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        As it is scaled.
+    """
+    scales = motion.scales()
+    if scales is not None:
+        peak = scales.a_g / STANDARD_GRAVITY
+        if peak not in PEAK:
+            yield "peak", f"a peak of {scales.a_g:.4g} m/s^2 is {peak:.3g} g; {PEAK.usual}"
+        if text := PERIOD.doubt(scales.period):
+            yield "motion's period", text
+    if isinstance(motion, Record):
+        sampled = [(STEP, motion.time_step), (PGV, peak_velocity(motion))]
+        sampled.append((PGD, float(np.max(np.abs(motion.displacement(motion.times))))))
+        if not motion.begins.size:
+            sampled.append((LENGTH, motion.end - motion.start))
+        for usual, value in sampled:
+            if text := usual.doubt(value):
+                yield usual.what, text
 
 
 def _spring_doubts(scene: Scene) -> Iterator[Doubt]:
@@ -209,18 +235,18 @@ def _isolation_doubts(scene: Scene) -> Iterator[Doubt]:
 def _period_doubts(scene: Scene, output_step: float | None) -> Iterator[Doubt]:
     shortest = local_periods(scene)
     for name, period in shortest.items():
-        if period < SHORTEST_PERIOD:
+        if period < PERIOD.least:
             yield (
                 "short period",
-                f"body '{name}': a period of {period:.3g} s on its springs; {_PERIODS}",
+                f"body '{name}': a period of {period:.3g} s on its springs; {PERIOD.usual}",
             )
     if len(scene.bodies) <= _MOST_BODIES:
         try:
             longest = longest_period(scene)
         except InputError:
             longest = None
-        if longest is not None and longest > LONGEST_PERIOD:
-            yield "long period", f"a period of {longest:.4g} s; {_PERIODS}"
+        if longest is not None and longest > PERIOD.most:
+            yield "long period", PERIOD.doubt(longest)
     least = min(shortest.values(), default=0.0)
     if output_step is not None and output_step > least / ROWS_A_PERIOD:
         yield (

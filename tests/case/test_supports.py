@@ -104,9 +104,9 @@ def test_forces(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "holds"),
     [
-        ("t,p\n", "0 rows"),
-        ("0,1\n1,2\n3,1\n", "time steps from 1 to 2"),
-        ("0,1\n0,2\n", "increasing"),
+        ("t,p\n", "no line of numbers"),
+        ("0,1\n1,2\n3,1\n", "line 3: the time step is not even: found 2 s, expected 1 s"),
+        ("0,1\n0,2\n", "does not increase"),
         ("0,1\n1,x\n", "line 2"),
         ("0,1,2\n1,1,2\n", "accepted"),
         ("0,1\n1,inf\n", "finite"),
@@ -221,3 +221,14 @@ def test_check_shows_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "0.25" in out
     assert "constant" in out
     assert "19.62" in out
+
+
+def test_titles_of_forces_say_their_units(tmp_path: Path) -> None:
+    rows = "".join(f"{1000.0 * i / 512.0:.1f}\t{i % 7}\n" for i in range(100))
+    (tmp_path / "p.txt").write_text("t [ms]\tF [kN]\n" + rows)
+    start, step, force = read_force(tmp_path / "p.txt")
+    assert (start, step) == (0.0, 1.0 / 512.0)
+    assert force[:3].tolist() == [0.0, 1000.0, 2000.0]
+    (tmp_path / "p.txt").write_text("t [ms]\ta [cm/s2]\n" + rows)
+    with pytest.raises(InputError, match=r"'a \[cm/s2\]' is no force but an acceleration"):
+        read_force(tmp_path / "p.txt")

@@ -2,9 +2,10 @@
 
 Columns are separated by blanks, tabs, commas or semicolons. Lines that begin
 with ``#``, ``%``, ``!`` or ``//`` and one line of titles before the numbers are
-passed over; titles name the components. Units are never in such a file, nor is
-the time step where there are no times: both are asked for. The first sample is
-where the motion starts, whatever time stands beside it.
+passed over; titles name the components, say which columns are accelerations and
+times, and in which units (`titles`). What neither they nor a count and a step before
+the numbers (`beside_samples`) state is asked for. Times may be those of a clock. The
+first sample is where the motion starts, whatever time stands beside it.
 
 Where one series runs along lines of several numbers, as in files of OpenSees examples, the
 format is `opensees`: its smoothness tells (`rows.runs_along_lines`). Lines of text after its
@@ -14,25 +15,27 @@ numbers are passed over.
 from __future__ import annotations
 
 import re
-from functools import partial
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 
 import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.motion.parametric import require_positive
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
+from eventpound.motion.readers.beside_samples import body_of, counts, without_counts, without_head
 from eventpound.motion.readers.block import FOLLOWING_WORD
-from eventpound.motion.readers.header import Header, ask_for_missing, record_data
+from eventpound.motion.readers.header import Header, ask_for_missing, record_data, unit_factor
 from eventpound.motion.readers.numbers import to_float
 from eventpound.motion.readers.rows import (
     COMMENT,
-    SEPARATOR,
     NumberRows,
     numbers_begin,
     read_rows,
     runs_along_lines,
 )
 from eventpound.motion.readers.time_column import even_step, increases
+from eventpound.motion.readers.titles import Kind, Title, titles_of
 from eventpound.numerics.arrays import Floats
 
 _LEADING_CONSTANT = 10.0
@@ -44,19 +47,108 @@ def _detect(source: Source) -> bool:
     return numbers_begin(source) is not None
 
 
-def _channels(source: Source, given: Given) -> list[Channel]:
-    """The components: all columns but that of times.
+@dataclass(frozen=True)
+class Table:
+    """Rows of samples, the titles of their columns, and what stands before them.
+
+    Parameters
+    ----------
+    rows : NumberRows
+        Without a count, a step and numbers of rows.
+    titles : list of Title
+        One a column; empty ones where there are none.
+    stated : Header
+        With the step before the samples.
+    notes : tuple of str
+        What was passed over.
+    """
+
+    rows: NumberRows
+    titles: list[Title]
+    stated: Header = field(default_factory=Header)
+    notes: tuple[str, ...] = ()
+
+    @cached_property
+    def times(self) -> list[int]:
+        """Columns of times: those that titles call so, else the first if it goes up."""
+        width = self.rows.width
+        titled = [i for i, title in enumerate(self.titles) if title.kind is Kind.TIME]
+        if titled or width == 1 or self.titles[0].kind is not None:
+            return titled if width > 1 else []
+        untitled = width == 2 and not self.titles[0].text
+        return [0] if untitled or increases(self.rows.column_texts(0)) else []
+
+    @property
+    def components(self) -> list[int]:
+        """Columns that may be accelerations."""
+        kinds = enumerate(title.kind for title in self.titles)
+        return [i for i, kind in kinds if kind not in _OTHERS and i not in self.times]
+
+
+_OTHERS = (Kind.VELOCITY, Kind.DISPLACEMENT, Kind.FORCE)
+
+
+def table_of(source: Source, given: Given) -> Table:
+    """What stands in a file, as far as its numbers can be read.
 
     Raises
     ------
     InputError
-        For decimal commas, tokens that are not numbers, rows of another length,
-        or several columns of which the first is no time, unless one is asked for.
+        For what may be numbers of samples or not.
+    """
+    rows = read_rows(source)
+    if rows.bad:
+        return Table(rows, [Title()] * rows.width)
+    rows, stated, notes = without_head(source, rows, given.time_step)
+    before = [COMMENT.sub("", line) for line in rows.before[-2:]]
+    titles = titles_of(before, rows.width)
+    if titles is None and ":" in source.line(rows.lines[0]):
+        # A date and a clock are one column.
+        titles = (titles_of(before, rows.width + 1) or [])[1:]
+    titles = titles or [Title()] * rows.width
+    for index in reversed(range(rows.width)):
+        if rows.width > 1 and _counts_rows(source, rows, index, titles[index], given):
+            rows = rows.without_column(index)
+            titles = titles[:index] + titles[index + 1 :]
+            notes += (f"column {index + 1} counts the rows",)
+    return Table(rows, titles, stated, notes + _passed_over(rows))
+
+
+def _counts_rows(source: Source, rows: NumberRows, index: int, title: Title, given: Given) -> bool:
+    """Whether a column is numbers of rows or samples.
+
+    Raises
+    ------
+    UnstatedError
+        Where it may be seconds as well.
+    """
+    if title.kind is Kind.COUNT:
+        texts = rows.column_texts(index)
+        return increases(texts) and all(text.isdecimal() for text in texts)
+    if title.kind is not None or index not in (0, rows.width - 1) or not counts(rows, index):
+        return False
+    if index == 0 and rows.width == 2 and given.time_step is None:
+        raise UnstatedError(
+            f"{source.file}, line {rows.lines[0]}: the first column counts; if these are samples, "
+            'give their time_step = "... s", if seconds, time_step = "1 s"',
+            ["time_step"],
+        )
+    return index > 0 or rows.width > 2 or given.time_step != 1.0
+
+
+def _channels(source: Source, given: Given) -> list[Channel]:
+    """The components: all columns but those of times and of other quantities.
+
+    Raises
+    ------
+    InputError
+        For decimal commas, tokens that are not numbers, rows of another length, no
+        acceleration, or several columns of which none is a time, unless one is asked for.
     """
     _refuse_decimal_commas(source)
-    rows = read_rows(source)
-    timed = rows.width == 2 or (rows.width > 2 and increases(rows.column_texts(0)))
-    if rows.width > 2 and not timed and given.component is None:
+    table = table_of(source, given)
+    rows, components = table.rows, table.components
+    if len(components) > 1 and rows.width > 2 and not table.times and given.component is None:
         raise UnstatedError(
             f"{source.file}, line {rows.lines[0]}: {rows.width} numbers on a line, the first of "
             'which is no time; give component = "#1" to take the first column, or '
@@ -66,11 +158,13 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     if rows.bad:
         raise InputError(source.unreadable(rows.bad))
     rows.refuse_other_widths(source)
-    first = 1 if timed else 0
-    names = _titles(rows)
+    if not components:
+        found = [f"'{t.text}' is {t.kind.value}" for t in table.titles if t.kind in _OTHERS]
+        raise source.error(rows.lines[0] - 1, f"{', '.join(found)}; an acceleration is needed")
+    names = [table.titles[i].name or None if rows.width > 2 else None for i in components]
     return [
-        Channel(names[column], partial(_read, source, given, rows, column, timed, names[column]))
-        for column in range(first, rows.width)
+        Channel(name, partial(_read, source, given, table, i, name), (table.titles[i].text,))
+        for i, name in zip(components, names, strict=True)
     ]
 
 
@@ -79,8 +173,7 @@ COLUMNS = Reader("columns", _detect, _channels)
 
 def _detect_along_lines(source: Source) -> bool:
     """Whether there are lines of three numbers and more, along which a series runs."""
-    first = numbers_begin(source)
-    return first is not None and len(first) > 2 and runs_along_lines(read_rows(source))
+    return numbers_begin(source) is not None and runs_along_lines(body_of(read_rows(source)))
 
 
 def _channels_along_lines(source: Source, given: Given) -> list[Channel]:
@@ -93,13 +186,16 @@ def _channels_along_lines(source: Source, given: Given) -> list[Channel]:
         bad = [one for one in rows.bad if one not in after]
         if bad:
             raise InputError(source.unreadable(bad))
+        rows, stated, notes = without_head(source, rows, given.time_step)
         rows.refuse_other_widths(source, all_but_last=True)
-        notes = _passed_over(rows)
+        rows, dropped = without_counts(rows)
+        notes += _passed_over(rows)
+        notes += ("numbers of the lines passed over",) if dropped else ()
         if after:
             line, text = after[0][0], source.line(after[0][0]).strip()[:60]
             notes += (f"line {line}: text after the last sample passed over: '{text}'",)
         values = np.array([to_float(text) for row in rows.rows for text in row])
-        return record_data(source, OPENSEES.name, Header(), values, given, notes)
+        return record_data(source, OPENSEES.name, stated, values, given, notes)
 
     return [Channel(None, read)]
 
@@ -107,49 +203,48 @@ def _channels_along_lines(source: Source, given: Given) -> list[Channel]:
 OPENSEES = Reader("opensees", _detect_along_lines, _channels_along_lines)
 
 
-def _read(
-    source: Source, given: Given, rows: NumberRows, column: int, timed: bool, name: str | None
-) -> RecordData:
+def _read(source: Source, given: Given, table: Table, column: int, name: str | None) -> RecordData:
     """One column.
 
     Raises
     ------
     InputError
-        Without units or time step; for an uneven time step, or a first number
-        that looks like a scale factor.
+        Without units or time step; for an uneven time step, columns of times that disagree, or
+        a first number that looks like a scale factor.
     """
+    rows, title, stated = table.rows, table.titles[column], table.stated
     ask_for_missing(
         source,
-        units=given.units is None,
-        time_step=not timed and given.time_step is None,
+        units=given.units is None and title.unit is None,
+        time_step=not table.times and stated.time_step is None and given.time_step is None,
         line=rows.lines[0],
     )
+    step, line = stated.time_step, stated.time_step_line
+    for i in table.times:
+        known = given.time_step if step is None else step
+        unit = table.titles[i].factor
+        found = even_step(source, rows.column_texts(i), rows.lines, known, unit)
+        if step is not None and found != step:
+            raise source.error(
+                line, f"a time step of {step!r} s is stated, column {i + 1} has one of {found!r} s"
+            )
+        step, line = found, rows.lines[1]
     values = rows.column(column)
-    if timed:
-        step = even_step(source, rows.column_texts(0), rows.lines)
-        header = Header(time_step=step, time_step_line=rows.lines[1], component=name)
-    else:
+    if step is None:
         assert given.time_step is not None
         require_positive("record", "time_step", given.time_step)
         _refuse_leading_constant(source, rows, column, values)
-        header = Header(component=name)
-    return record_data(source, COLUMNS.name, header, values, given, _passed_over(rows))
+    units = title.unit
+    if units is not None and unit_factor(units) != title.factor:
+        units = "g" if title.factor == unit_factor("g") else f"{title.factor!r} m/s2"
+    header = Header(units, rows.lines[0] - 1, step, line, component=name)
+    return record_data(source, COLUMNS.name, header, values, given, table.notes)
 
 
 def _passed_over(rows: NumberRows) -> tuple[str, ...]:
     """A note on lines before the numbers."""
     count = len(rows.before)
     return (f"{count} lines before the numbers passed over",) if count else ()
-
-
-def _titles(rows: NumberRows) -> list[str | None]:
-    """Names of the columns, from the line before the numbers where it has one for each."""
-    if rows.width > 2 and rows.before:
-        line = COMMENT.sub("", rows.before[-1])
-        names = [name.strip("\"' ") for name in SEPARATOR.split(line.strip())]
-        if len(names) == rows.width and all(names):
-            return list(names)
-    return [None] * rows.width
 
 
 def _refuse_decimal_commas(source: Source) -> None:

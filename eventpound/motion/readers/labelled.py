@@ -339,7 +339,7 @@ class Dialect:
         if not last or any(row != last[0] for row in after):
             raise InputError(miscounted(source, stated, len(rows.rows), rows.lines[-1], "rows"))
         if self.timed:
-            step = even_step(source, rows.column_texts(0), rows.lines)
+            step = even_step(source, rows.column_texts(0), rows.lines, header.time_step)
             if header.time_step is None or abs(step - header.time_step) > 1e-9 * step:
                 raise source.error(
                     header.time_step_line,

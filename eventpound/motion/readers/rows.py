@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import chain
 
 import numpy as np
 
 from eventpound.motion.readers.base import Source
+from eventpound.motion.readers.clock import with_seconds
 from eventpound.motion.readers.numbers import clean_numbers, split_token, to_float
 from eventpound.motion.readers.time_column import increases
 from eventpound.numerics.arrays import Floats
@@ -62,6 +63,16 @@ class NumberRows:
                     number, f"{len(row)} numbers; {width or self.width} expected{as_first}"
                 )
 
+    def without_rows(self, count: int) -> NumberRows:
+        """The same after so many rows."""
+        numbers = None if self.numbers is None else self.numbers[count * self.width :]
+        return replace(self, lines=self.lines[count:], rows=self.rows[count:], numbers=numbers)
+
+    def without_column(self, index: int) -> NumberRows:
+        """The same without one number of every row."""
+        rows = [[x for i, x in enumerate(row) if i != index % len(row)] for row in self.rows]
+        return replace(self, rows=rows, numbers=None)
+
     def column_texts(self, index: int) -> list[str]:
         """Numbers of one column as printed; those of rows that are too short are left out."""
         return [row[index] for row in self.rows if len(row) > index]
@@ -73,7 +84,7 @@ def numbers_begin(source: Source) -> list[str] | None:
     None where the file begins otherwise.
     """
     found = 0
-    for line in source.lines:
+    for line in _lines(source):
         if line.strip() and not COMMENT.match(line):
             numbers, token = _numbers(line)
             if token is None:
@@ -102,7 +113,8 @@ def read_rows(source: Source, header: int = 0) -> NumberRows:
     before: list[str] = []
     bad: list[tuple[int, str]] = []
     titles, commas = 0, not header
-    for number, line in enumerate(source.lines[header:], start=header + 1):
+    printed = source.lines if header else _lines(source)
+    for number, line in enumerate(printed[header:], start=header + 1):
         if not line.strip():
             continue
         row, token = _numbers(line, commas)
@@ -117,7 +129,7 @@ def read_rows(source: Source, header: int = 0) -> NumberRows:
             if (
                 not rows
                 and not bad
-                and (table := _clean(source, number, len(row), before, commas=not header))
+                and (table := _clean(printed, number, len(row), before, commas=not header))
             ):
                 return table
             lines.append(number)
@@ -128,10 +140,10 @@ def read_rows(source: Source, header: int = 0) -> NumberRows:
 
 
 def _clean(
-    source: Source, start: int, width: int, before: list[str], commas: bool
+    printed: list[str], start: int, width: int, before: list[str], commas: bool
 ) -> NumberRows | None:
     """The rows from a line on, where nothing in them is odd."""
-    lines = [(i, x) for i, x in enumerate(source.lines[start - 1 :], start=start) if x.strip()]
+    lines = [(i, x) for i, x in enumerate(printed[start - 1 :], start=start) if x.strip()]
     text = "\n".join(line for _, line in lines)
     if commas and _has_empty_fields(text):
         return None
@@ -142,6 +154,12 @@ def _clean(
         return None
     numbers = clean_numbers(list(chain.from_iterable(rows)))
     return None if numbers is None else NumberRows([i for i, _ in lines], rows, before, [], numbers)
+
+
+@lru_cache(maxsize=1)
+def _lines(source: Source) -> list[str]:
+    """Lines of a file, with seconds for clock times."""
+    return with_seconds(source.lines) if b":" in source.content else source.lines
 
 
 def _has_empty_fields(text: str) -> bool:

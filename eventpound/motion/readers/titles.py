@@ -1,0 +1,186 @@
+"""Titles of columns: what stands in a column, and in which unit.
+
+A unit stands in brackets, ``Time (sec)`` and ``t [ms]``, or after the name of what it measures,
+``time_ms``, ``acc, cm/s2`` and ``disp in mm``. Letter case does not matter.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass, replace
+from enum import Enum
+
+from eventpound.errors import InputError
+from eventpound.motion.readers.header import unit_factor
+from eventpound.units import STANDARD_GRAVITY, Dimension, quantity
+
+
+class Kind(Enum):
+    """What a column holds; the value is what messages call it."""
+
+    TIME = "a time"
+    COUNT = "a count of the rows"
+    ACCELERATION = "an acceleration"
+    VELOCITY = "a velocity"
+    DISPLACEMENT = "a displacement"
+    FORCE = "a force"
+
+
+_NAMES = {
+    Kind.TIME: r"t|([a-z]+\W*)?times?(\W+(of|since|from|after)\b.*)?|date|timestamp|datetime|clock|"
+    r"zeit|temps|tiempo|tempo",
+    Kind.COUNT: r"(data)?\W*(samples?|index|idx|i|n|no|nr|num|number|points?|pts?|row|record|rec|"
+    r"step|scan|id|count)?\W*(no|nr|num|number|index|id|#)?",
+    Kind.ACCELERATION: r"(.*[^a-z])?acc(el.*|[^a-z].*)?|a_?g|a([^a-z].*)?",
+    Kind.VELOCITY: r"(.*[^a-z])?vel(oc.*|[^a-z].*)?",
+    Kind.DISPLACEMENT: r"(.*[^a-z])?dis(pl?|placem.*)?([^a-z].*)?",
+    Kind.FORCE: r"(.*[^a-z])?(force|load)s?|f|p",
+}
+"""What they are called, each with everything before a unit."""
+_BESIDE_ACCELERATION = {"v": Kind.VELOCITY, "d": Kind.DISPLACEMENT, "u": Kind.DISPLACEMENT}
+"""Letters with which names begin that are components elsewhere (V is vertical)."""
+_LETTER = re.compile(r"([vdu])([^a-z].*)?", re.IGNORECASE)
+_SECONDS = {
+    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), 1.0),
+    **dict.fromkeys(("ms", "msec", "msecs", "millisec", "millisecond", "milliseconds"), 1e-3),
+    **dict.fromkeys(("us", "µs", "μs", "usec", "microsec", "microsecond", "microseconds"), 1e-6),
+    **dict.fromkeys(("min", "minute", "minutes"), 60.0),
+    **dict.fromkeys(("h", "hr", "hour", "hours"), 3600.0),
+}
+_ACCELERATIONS = {
+    "gs": STANDARD_GRAVITY,
+    "mg": 0.001 * STANDARD_GRAVITY,
+    "%g": 0.01 * STANDARD_GRAVITY,
+    "gals": 0.01,
+    "in/s2": 0.0254,
+    "ft/s2": 0.3048,
+}
+"""Those of titles that `unit_factor` does not know (m/s^2)."""
+_LENGTHS = {
+    **{"m": 1.0, "cm": 0.01, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6},
+    **dict.fromkeys(("in", "inch", "inches"), 0.0254),
+    **dict.fromkeys(("ft", "foot", "feet"), 0.3048),
+}
+_BRACKETED = re.compile(r"(.*?)\s*[(\[{<]\s*([^()\[\]{}<>]*)[)\]}>]\s*")
+_PLACES = re.compile(r"[\s,;:_/-]+")
+"""Where a unit without brackets may begin."""
+_BETWEEN_BLANKS = re.compile(r"\s+(?![(\[])(?![^(\[]*[)\]])")
+_OUTRIGHT = re.compile(r".*/.*|gals?|m?secs?|m?s|g")
+"""Units that need no name."""
+
+
+@dataclass(frozen=True)
+class Title:
+    """The title of a column.
+
+    Parameters
+    ----------
+    text : str
+        As printed.
+    name : str
+        Without its unit.
+    kind : Kind or None
+        What is in the column; None where the title does not say.
+    unit : str or None
+        As printed; None where there is none that is known.
+    factor : float
+        Its SI value; 1 without one.
+    """
+
+    text: str = ""
+    name: str = ""
+    kind: Kind | None = None
+    unit: str | None = None
+    factor: float = 1.0
+
+
+def title_of(text: str) -> Title:
+    """What a title says."""
+    bracketed = _BRACKETED.fullmatch(text)
+    if bracketed is not None:
+        name, unit = bracketed.groups()
+        named = _kind_of(name)
+        if (found := _measured(unit.strip(), named)) is not None:
+            return Title(text, name or text, found[0], unit.strip(), found[1])
+        return Title(text, text, named)
+    starts = [match.end() for match in _PLACES.finditer(text)]
+    for start in [0, *starts]:
+        name, unit = _PLACES.sub(" ", text[:start]).strip(), text[start:].strip()
+        name = re.sub(r"\s+in$", "", name)
+        named = _kind_of(name) if name else None
+        sure = named is not None or _OUTRIGHT.fullmatch(unit.lower())
+        # "a_g" is what the ground's acceleration is called.
+        ground = name.lower() in ("a", "u", "v") and unit.lower() == "g"
+        if not unit or not sure or ground or (name and named is None and len(unit) < 2):
+            continue
+        if (found := _measured(unit, named)) is not None and named in (None, found[0]):
+            return Title(text, name or text, found[0], unit, found[1])
+    return Title(text, text, _kind_of(text))
+
+
+def titles_of(lines: list[str], width: int) -> list[Title] | None:
+    """Titles of so many columns, from the last of the lines before them; None where there are none.
+
+    Parameters
+    ----------
+    lines : list of str
+        Without the marks of comments.
+    width : int
+        Number of columns.
+    """
+    found = _fields(lines[-1], width) if lines else None
+    if found is None:
+        return None
+    titles = [title_of(text) for text in found]
+    above = _fields(lines[-2], width) if len(lines) > 1 else None
+    if above is not None and all(title.unit and title.name == title.text for title in titles):
+        # A line of names, and one of units below it.
+        bare = [text.strip("()[]{}<> ") for text in found]
+        titles = [title_of(f"{name} [{unit}]") for name, unit in zip(above, bare, strict=True)]
+    if any(title.kind is Kind.ACCELERATION for title in titles):
+        for i, title in enumerate(titles):
+            if title.kind is None and (letter := _LETTER.fullmatch(title.name)):
+                titles[i] = replace(title, kind=_BESIDE_ACCELERATION[letter.group(1).lower()])
+    return titles
+
+
+def _fields(line: str, width: int) -> list[str] | None:
+    """A line parted into so many titles, which may have blanks within; None where it has not."""
+    line = line.strip()
+    by_mark = (next(csv.reader([line], delimiter=mark), []) for mark in "\t,;")
+    by_blanks = (pattern.split(line) for pattern in (re.compile(r"\s{2,}"), _BETWEEN_BLANKS))
+    for parts in (*by_mark, *by_blanks, re.split(r"\s*[,;]\s*|\s+", line)):
+        fields = [part.strip("\"' \t") for part in parts]
+        if len(fields) == width and all(fields):
+            return fields
+    return None
+
+
+def _kind_of(name: str) -> Kind | None:
+    """What a name says is in its column."""
+    plain = name.strip(" .:").lower()
+    if not plain:
+        return None
+    return next((kind for kind, like in _NAMES.items() if re.fullmatch(like, plain)), None)
+
+
+def _measured(unit: str, named: Kind | None) -> tuple[Kind, float] | None:
+    """What is measured in a unit, and its SI value; None for what is no unit."""
+    plain = re.sub(r"[\s*^.'’]", "", unit.lower()).replace("²", "2").replace("_", "/")
+    if plain in _SECONDS and named in (None, Kind.TIME):
+        return Kind.TIME, _SECONDS[plain]
+    if named is Kind.FORCE:
+        try:
+            return named, quantity(f"1 {unit}", Dimension.FORCE)
+        except InputError:
+            return None
+    plain = re.sub(r"sec(onds?)?", "s", plain).replace("/s/s", "/s2")
+    plain = re.sub(r"(?<=[mnt])/?s-?2", "/s2", plain)
+    factor = _ACCELERATIONS.get(plain) or unit_factor(plain)
+    if factor is not None:
+        return Kind.ACCELERATION, factor
+    length, slash, per = plain.partition("/")
+    if length in _LENGTHS and per == ("s" if slash else ""):
+        return (Kind.VELOCITY if slash else Kind.DISPLACEMENT), _LENGTHS[length]
+    return None
