@@ -47,6 +47,7 @@ def run_suite(case: Case, options: Options, out: Path) -> int:
 
         for path in plot_suite(case, table, out):
             print(f"figure    {path}")
+    _say_what_is_unlikely(table)
     _say_what_failed(table)
     return 0
 
@@ -112,6 +113,16 @@ def _summary(case: Case, table: pd.DataFrame) -> Iterator[str]:
     if case.scene.bodies:
         read, solve = (1e3 * done[f"seconds.{part}"].median() for part in ("read", "solve"))
         yield f"time      {read:.2f} ms to read, {solve:.2f} ms to solve a record (medians)"
+
+
+def _say_what_is_unlikely(table: pd.DataFrame) -> None:
+    from eventpound.study.records import UNLIKELY
+
+    noted = table[table["notes"].fillna("").str.contains(UNLIKELY)]
+    if not noted.empty:
+        record, note = noted.iloc[0][["record", "notes"]]
+        more = f"; {len(noted) - 1} more as their notes say" if len(noted) > 1 else ""
+        complain(f"warning: {record}: {note.partition(UNLIKELY)[2]}{more}")
 
 
 def _say_what_failed(table: pd.DataFrame) -> None:

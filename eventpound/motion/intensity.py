@@ -89,7 +89,7 @@ def intensity(record: Record) -> Intensity:
     return Intensity(
         pga=float(abs(a[peak])),
         pgv=peak_velocity(record),
-        pgd=_largest(record.displacement(np.concatenate([t, _turns(record, t)]))),
+        pgd=peak_displacement(record),
         time_of_pga=peak * dt,
         arias=0.5 * math.pi / STANDARD_GRAVITY * float(husid[-1]),
         duration_from=float(at_from),
@@ -102,6 +102,12 @@ def peak_velocity(record: Record) -> float:
     """PGV of a record as it is scaled (m/s)."""
     a, dt, t = record.values, record.time_step, record.times
     return _largest(record.velocity(np.concatenate([t, t[:-1] + _zeros_of_acceleration(a, dt)])))
+
+
+def peak_displacement(record: Record) -> float:
+    """PGD of a record as it is scaled (m)."""
+    t = record.times
+    return _largest(record.displacement(np.concatenate([t, _turns(record, t)])))
 
 
 def _largest(values: Floats) -> float:

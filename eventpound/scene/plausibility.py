@@ -8,11 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-import numpy as np
-
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
-from eventpound.motion.intensity import peak_velocity
+from eventpound.motion.intensity import peak_displacement, peak_velocity
 from eventpound.motion.plausible import LENGTH, PEAK, PERIOD, PGD, PGV, STEP
 from eventpound.motion.record import Record
 from eventpound.scene.damping import ratio_coefficient
@@ -21,6 +19,7 @@ from eventpound.scene.periods import local_periods, longest_period, nominal_stif
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Backfill, BoucWen, Slider
 from eventpound.scene.structures import isolated, joined_groups, structures_of
+from eventpound.scene.support import Support
 from eventpound.units import STANDARD_GRAVITY
 
 LARGEST_RATIO = 0.3
@@ -69,11 +68,11 @@ def doubts(
         The first of a kind stands for the others, which it counts.
     """
     kinds: dict[str, list[str]] = {}
-    scene = grounded(scene)
+    supports, scene = scene.supports, grounded(scene)
     found: Iterable[Doubt] = (
         *_unit_doubts(bare),
         *_motion_doubts("excitation", scene.motion),
-        *_support_doubts(scene),
+        *_support_doubts(supports),
         *_spring_doubts(scene),
         *_load_doubts(scene),
         *(_ratio_doubts(ratios) or _damping_doubts(scene)),
@@ -105,8 +104,8 @@ def _motion_doubts(where: str, motion: GroundMotion) -> Iterator[Doubt]:
         yield kind, f"{where}: {text}"
 
 
-def _support_doubts(scene: Scene) -> Iterator[Doubt]:
-    for support in scene.supports:
+def _support_doubts(supports: Iterable[Support]) -> Iterator[Doubt]:
+    for support in supports:
         if support.motion is not None:
             yield from _motion_doubts(f"support '{support.name}'", support.motion)
 
@@ -127,8 +126,8 @@ def motion_doubts(motion: GroundMotion) -> Iterator[Doubt]:
         if text := PERIOD.doubt(scales.period):
             yield "motion's period", text
     if isinstance(motion, Record):
-        sampled = [(STEP, motion.time_step), (PGV, peak_velocity(motion))]
-        sampled.append((PGD, float(np.max(np.abs(motion.displacement(motion.times))))))
+        sampled = [(STEP, motion.time_step)]
+        sampled += [(PGV, peak_velocity(motion)), (PGD, peak_displacement(motion))]
         if not motion.begins.size:
             sampled.append((LENGTH, motion.end - motion.start))
         for usual, value in sampled:

@@ -18,12 +18,15 @@ from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
 from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.plausibility import motion_doubts
 from eventpound.solvers.base import Extremes
 from eventpound.study.plan import OfSuite
 from eventpound.study.runs import Results
 from eventpound.study.sweep import Sweep, Wanted
 
 FILE, FAILED = "file", "failed"
+UNLIKELY = "hardly meant: "
+"""Begins notes on what is possible but unlike earthquakes."""
 _IDENTITY = (
     *("event", "date", "station", "component", "format", "sha256", "samples", "time_step", "notes"),
 )
@@ -50,12 +53,16 @@ def about(member: Member, period: float | None) -> dict[str, object]:
         motion = member.motion()
         assert motion.source is not None
         row |= _identity(motion.source)
+        doubts = [f"{UNLIKELY}{text}" for _, text in motion_doubts(motion)]
         scales = motion.scales()
         for name, own in member.supports:
             row[f"{FILE}.{name}"] = own.file
             moved = own.at_support(name)
             row[f"sha256.{name}"] = None if moved.source is None else moved.source.sha256
             row[f"PGA.{name}"] = moved.peak
+            own_doubts = motion_doubts(moved)
+            doubts += [f"{UNLIKELY}support '{name}': {text}" for _, text in own_doubts]
+        row["notes"] = "; ".join((*motion.source.notes, *doubts))
     except EventpoundError as error:
         row[FAILED] = reason(str(error), member.file)
         with suppress(EventpoundError):

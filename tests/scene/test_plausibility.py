@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +20,7 @@ from eventpound.scene import (
     Scene,
     Slider,
     Spring,
+    Support,
 )
 from eventpound.scene.plausibility import doubts
 
@@ -38,8 +40,14 @@ def spring(k: float, q: float, u_y: float) -> tuple[Spring, ...]:
     return (Spring("piers", (GROUND, "deck"), BoucWen(k, q, u_y)), USUAL.springs[1])
 
 
+def record(time_step: float) -> Record:
+    """Two cycles of 200 samples."""
+    return Record(3.0 * np.sin(np.arange(200) * math.pi / 50.0), time_step)
+
+
 def test_a_usual_scene_is_silent() -> None:
     assert doubts(USUAL, 0.005, [("[[dashpot]] 1", 0.3)]) == []
+    assert doubts(replace(USUAL, motion=record(0.01))) == []
     assert doubts(replace(USUAL, motion=Record(np.array([0.0, 1.0, -2.0, 0.0]), 0.1))) == []
 
 
@@ -49,6 +57,12 @@ def test_a_usual_scene_is_silent() -> None:
         ({"motion": Cosine(0.04, 0.8)}, "excitation: a peak of 0.04 m/s^2 is 0.00408 g"),
         ({"motion": Cosine(40.0, 0.8)}, "excitation: a peak of 40 m/s^2 is 4.08 g"),
         ({"motion": Cosine(4.0, 0.0008)}, "excitation: a period of 0.0008 s; usual are 0.02"),
+        ({"motion": record(10.0)}, "excitation: a time step of 10 s; usual are 0.0005 to 0.1 s"),
+        ({"motion": record(1e-5)}, "excitation: a time step of 1e-05 s; usual are 0.0005"),
+        ({"motion": record(10.0)}, "excitation: a length of 1990 s; usual are 0.1 to 1000 s"),
+        ({"motion": record(1.0)}, "excitation: a peak velocity of "),
+        ({"motion": record(1.0)}, "excitation: a peak displacement of "),
+        ({"supports": (Support("pier", motion=record(10.0)),)}, "support 'pier': a time step of"),
         ({"springs": spring(4e6, 1.2e7, 0.02)}, "times the weight of 4e+05 kg"),
         ({"springs": spring(4e6, 5e5, 0.8)}, "spring 'piers': a yield displacement of 0.8 m"),
         ({"springs": spring(4e6, 1e6, 0.01), "motion": Cosine(0.2, 0.8)}, "is 12.5 times mass x"),

@@ -163,7 +163,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         raise source.error(rows.lines[0] - 1, f"{', '.join(found)}; an acceleration is needed")
     names = [table.titles[i].name or None if rows.width > 2 else None for i in components]
     return [
-        Channel(name, partial(_read, source, given, table, i, name), (table.titles[i].text,))
+        Channel(name, partial(read_column, source, given, table, i, name), (table.titles[i].text,))
         for i, name in zip(components, names, strict=True)
     ]
 
@@ -203,8 +203,21 @@ def _channels_along_lines(source: Source, given: Given) -> list[Channel]:
 OPENSEES = Reader("opensees", _detect_along_lines, _channels_along_lines)
 
 
-def _read(source: Source, given: Given, table: Table, column: int, name: str | None) -> RecordData:
-    """One column.
+def read_column(
+    source: Source, given: Given, table: Table, column: int, name: str | None
+) -> RecordData:
+    """One column of a table.
+
+    Parameters
+    ----------
+    source, given : Source, Given
+        The file, and what the caller says.
+    table : Table
+        What stands in it.
+    column : int
+        Which of its columns.
+    name : str or None
+        What the component is called.
 
     Raises
     ------

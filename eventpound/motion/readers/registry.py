@@ -10,7 +10,15 @@ from functools import cache
 
 from eventpound.basics.plugins import Plugins, plugged_in
 from eventpound.errors import InputError
-from eventpound.motion.readers import archives, columns, dialects, interchange, volumes, waveforms
+from eventpound.motion.readers import (
+    archives,
+    columns,
+    dialects,
+    interchange,
+    knet_csv,
+    volumes,
+    waveforms,
+)
 from eventpound.motion.readers.base import Reader, Source
 from eventpound.motion.readers.binary import binary_kind
 
@@ -36,7 +44,12 @@ _DIALECTS = (
     interchange.SAC_ALPHANUMERIC,
     interchange.COUNT_AND_STEP,
 )
-_OF_TEXT = (*(dialect.reader() for dialect in _DIALECTS), columns.OPENSEES, columns.COLUMNS)
+_OF_TEXT = (
+    *(dialect.reader() for dialect in _DIALECTS),
+    knet_csv.KNET_CSV,
+    columns.OPENSEES,
+    columns.COLUMNS,
+)
 READERS: tuple[Reader, ...] = (waveforms.MINISEED, waveforms.SAC, *_OF_TEXT)
 
 GROUP = "eventpound.readers"

@@ -383,6 +383,28 @@ def knet(a: Floats, dt: float) -> Written:
     return Written(text + rows(counts.tolist(), 8, "9d"), 3920e-2 / 6170801, ("NS2",))
 
 
+def knet_csv(a: Floats, dt: float) -> Written:
+    """KiK-net: six components with the offsets of the sensors, over midnight."""
+    offsets = np.array([0.1, 1.7, -16.5, 3.0, 0.25, -2.0])
+    titles = ",".join(f"{i}(gal)" for i in range(1, 7))
+    head = (
+        "#K-NET CSV\n#Event\n#OriginTime,Latitude,Longitude,Depth(km),Magnitude\n"
+        "#1999/01/02 23:59:00,1.0,1.0,5,2.4\n#Station\n#Code,Latitude,Longitude,Height1(m),"
+        "Height2(m)\n#MADE01,1.0,1.0,1,101\n#Record\n#SamplingFrequency(Hz)\n"
+        f"#{1.0 / dt:.0f}\n#DurationTime(s)\n#{a.size * dt:g}\n#Offset\n#{titles}\n"
+        f"#{','.join(f'{x:.2f}' for x in offsets)}\n#Time,RelativeTime(s),{titles}\n"
+    )
+    lines = []
+    for i, x in enumerate(a):
+        since = 86399.97 + i * dt
+        day, t = int(2 + since // 86400), since % 86400
+        clock = f"1999/01/{day:02d} {int(t // 3600):02d}:{int(t % 3600 // 60):02d}:{t % 60:05.2f}"
+        samples = 100.0 * x * np.array([1.0, -0.5, 0.2, 1.5, 2.0, 0.1]) + offsets
+        lines.append(f"{clock},{i * dt:.2f},{','.join(f'{sample:.2f}' for sample in samples)}\n")
+    components = ("NS1", "EW1", "UD1", "NS2", "EW2", "UD2")
+    return Written(head + "".join(lines), 0.5e-4, components, format="knet-csv")
+
+
 def geonet(a: Floats, dt: float, *, corrected: bool = True) -> Written:
     sampled = (
         f"Instrument corrected data at {dt:5.3f} sec intervals"
@@ -534,6 +556,7 @@ WRITERS: dict[str, Callable[[Floats, float], Written]] = {
     "deepsoil": deepsoil,
     "smc": smc,
     "knet": knet,
+    "knet_csv": knet_csv,
     "geonet": geonet,
     "geonet_v1": geonet_v1,
     "cwb": cwb,
