@@ -13,9 +13,11 @@ from eventpound.accuracy.estimate import estimate_of
 from eventpound.basics.given import Count, checked, number, positive
 from eventpound.basics.warned import warn_caller
 from eventpound.case.case import Case
+from eventpound.case.options import EQUILIBRIUM, INITIAL
 from eventpound.case.solver_words import solver_word
-from eventpound.errors import AccuracyWarning
+from eventpound.errors import AccuracyWarning, InputError
 from eventpound.response import Response
+from eventpound.scene.check import check_scene
 from eventpound.scene.continuation import FinalState, continued
 from eventpound.scene.scene import Scene
 from eventpound.simulation import Progress
@@ -41,7 +43,7 @@ def simulate(
     progress: Progress | bool | None = None,
     max_steps: Count | None = None,
     error_estimate: bool | None = None,
-    start: FinalState | None = None,
+    start: FinalState | str | None = None,
 ) -> Response:
     """Compute how a scene moves, and estimate by how much that is wrong.
 
@@ -76,9 +78,11 @@ def simulate(
         they are for ``cvode``, ``ida`` and ``fast``, by what is at hand; True asks for the most
         independent run, False for none (page "accuracy" of the docs). A case may say
         so, too.
-    start : mapping, optional
+    start : mapping or str, optional
         The state that another run ended in, its ``response.final``: displacements, velocities and
-        z begin there (page "aftershocks" of the docs).
+        z begin there (page "aftershocks" of the docs). ``"equilibrium"``: where forces, springs
+        and contacts hold the bodies at the start; ``"initial"``: where they are given. Dashpots
+        and scales of a case stay as they were read.
 
     Returns
     -------
@@ -98,7 +102,7 @@ def simulate(
         Where the tolerance does not tell a number or an event, or the error is not known.
     """
     if start is not None:
-        case = _going_on(case, start)
+        case = _started(case, start)
     response = simulation.simulate(
         case,
         solver,
@@ -122,11 +126,30 @@ def simulate(
     return response if estimate is None else replace(response, error_estimate=estimate)
 
 
-def _going_on(case: Case | Scene, final: FinalState) -> Case | Scene:
-    """The same from the end of another run on."""
-    if isinstance(case, Scene):
-        return continued(case, final)
-    return replace(case, scene=continued(case.scene, final, case.run.start_time))
+def _started(case: Case | Scene, start: FinalState | str) -> Case | Scene:
+    """The same in equilibrium, as it is, or from the end of another run on."""
+    if isinstance(case, Case):
+        if case.run.in_equilibrium and isinstance(start, str):
+            if start == EQUILIBRIUM:
+                return case
+            raise InputError(f"start: found {start!r}; accepted: a case that starts there")
+        scene = _started_scene(case.scene, start, case.run.start_time)
+        return replace(case, scene=scene)
+    return _started_scene(case, start, 0.0)
+
+
+def _started_scene(scene: Scene, start: FinalState | str, time: float) -> Scene:
+    if not isinstance(start, str):
+        return continued(scene, start, time)
+    if start == INITIAL:
+        return scene
+    if start != EQUILIBRIUM:
+        accepted = f"{INITIAL!r}, {EQUILIBRIUM!r}, or the final state of a run"
+        raise InputError(f"start: found {start!r}; accepted: {accepted}")
+    from eventpound.scene.statics import in_equilibrium
+
+    check_scene(scene, None)
+    return in_equilibrium(scene, time)
 
 
 def _shown(t: float) -> None:

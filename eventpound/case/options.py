@@ -28,7 +28,8 @@ LISTED = {"slip": LawName.SLIDER, "soil": LawName.BACKFILL}
 """Words of ``events``, each with the law of the springs whose events it lists."""
 OWN_SOLVERS = (REFERENCE, "ida", FAST, "moreau", "penalty")
 """Solvers that need no other package, by their names."""
-EQUILIBRIUM = "equilibrium"
+INITIAL, EQUILIBRIUM = "initial", "equilibrium"
+"""Words of ``start``."""
 MOST_ROWS = 10_000_000
 """Rows of a history at equal steps; more is a slip of the unit."""
 

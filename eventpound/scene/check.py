@@ -13,7 +13,6 @@ import numpy as np
 from eventpound.basics.given import accepted_numbers, numbers_of
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
-from eventpound.motion.delayed import travelled
 from eventpound.scene.contact import BARRIER, Contact, opening
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
 from eventpound.scene.grounded import grounded
@@ -21,6 +20,7 @@ from eventpound.scene.periods import joined
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, DegradingBoucWen, Law, Series, Slider
+from eventpound.scene.support_drift import starts_of_supports
 from eventpound.tolerances import EPS
 
 _KEYS = {word: f"initial.{word}" for word in ("displacement", "velocity")}
@@ -241,23 +241,6 @@ def _dissipates(scene: Scene) -> bool:
     matrix = joined([body.name for body in scene.bodies], links)
     values = np.linalg.eigvalsh(matrix)
     return bool(values[0] >= -values.size * EPS * values[-1])
-
-
-def starts_of_supports(scene: Scene, start: float) -> dict[str, float]:
-    """Displacement of each support relative to the ground as a run starts (m).
-
-    Those that have no motion are left out.
-    """
-    if not scene.supports:
-        return {}
-    now = np.array(start)
-    reference = travelled(scene.motion, now)[0]
-    return {
-        support.name: float(travelled(support.moved_by(scene.motion), now)[0] - reference)
-        for support in scene.supports
-        if isinstance(support.motion, GroundMotion)
-        or (support.delay is not None and support.delay >= 0.0)
-    }
 
 
 def _support_problems(scene: Scene) -> Iterator[Problem]:

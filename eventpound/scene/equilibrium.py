@@ -1,6 +1,8 @@
-"""Where springs and contacts that only push hold forces: the least of a convex potential.
+"""Where springs, sliders and contacts that only push hold forces: the least of a convex potential.
 
     Σ_s B_sᵀ F_s(B_s u) = p + Wᵀ λ,   0 <= g + W u ⊥ λ >= 0
+
+A slider is such a row, too: g + W u is its slip, -Q <= λ <= Q, and λ = Q or -Q against a slip.
 
 A proximal method of multipliers (R. T. Rockafellar, Math. Oper. Res. 1, 1976) turns it into
 problems without constraints, in which each contact is a spring that pushes and a small stiffness
@@ -18,9 +20,9 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import null_space
-from scipy.optimize import brentq, nnls
+from scipy.optimize import brentq, lsq_linear, nnls
 
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.least_distance import least_distance
 
 PUSHING, HARDEST = 1e3, 1e11
@@ -45,7 +47,7 @@ SHUT = 1e-12
 
 @dataclass(frozen=True)
 class Potential:
-    """N bodies on S springs, with K contacts.
+    """N bodies on S springs, with K contacts and sliders.
 
     Parameters
     ----------
@@ -64,6 +66,8 @@ class Potential:
         which there is none (m).
     length : float
         The largest of the lengths given (m).
+    least, most : ndarray, shape (K,)
+        Between which its force is (N): 0 and infinity of a contact, -Q and Q of a slider.
     """
 
     springs: Floats
@@ -76,6 +80,8 @@ class Potential:
     far: Floats
     slack: Floats
     length: float
+    least: Floats
+    most: Floats
 
     def elongations(self, u: Floats) -> Floats:
         """Of the springs (m), shape (S,)."""
@@ -84,6 +90,11 @@ class Potential:
     def gaps(self, u: Floats) -> Floats:
         """Openings of the contacts (m), shape (K,)."""
         return self.gap + self.contacts @ u
+
+    @property
+    def slides(self) -> Bools:
+        """Which contacts are sliders, shape (K,)."""
+        return np.isfinite(self.most)
 
     def largest(self, u: Floats) -> float:
         """The largest of all lengths (m), and of what forces do to springs alone."""
@@ -106,8 +117,11 @@ class Potential:
         size = np.abs(step).max()
         x = self.springs @ step
         x[np.abs(x) <= CERTAIN * size] = 0.0
+        y = self.contacts @ step
+        y[np.abs(y) <= CERTAIN * size] = 0.0
         held = np.where(x < 0.0, *self.far)[x != 0.0] @ x[x != 0.0]
-        if (self.contacts @ step < -CERTAIN * size).any() or not np.isfinite(held):
+        held -= np.where(y < 0.0, self.most, self.least)[y != 0.0] @ y[y != 0.0]
+        if not np.isfinite(held):
             return False
         return bool(self.load @ step - held > CERTAIN * np.abs(self.load * step).sum())
 
@@ -129,7 +143,8 @@ def equilibrium(potential: Potential, start: Floats) -> Floats:
         Where forces move a body without end, or contacts leave no room.
     """
     u = _some_equilibrium(potential, start)
-    overlapping = np.flatnonzero(potential.gaps(u) < -SHUT * potential.largest(u))
+    overlaps = (potential.gaps(u) < -SHUT * potential.largest(u)) & ~potential.slides
+    overlapping = np.flatnonzero(overlaps)
     if overlapping.size:
         raise NoEquilibriumError(overlapping=overlapping.tolist())
     return _closed(potential, _nearest(potential, u, start))
@@ -173,7 +188,8 @@ class _Step:
 
     def pressing(self, u: Floats) -> Floats:
         """Forces of the contacts as springs that push."""
-        return np.maximum(self.pressed - self.pushing * self.potential.gaps(u), 0.0)
+        of = self.potential
+        return np.clip(self.pressed - self.pushing * of.gaps(u), of.least, of.most)
 
     def unbalanced(self, u: Floats) -> Floats:
         """Gradient of what is to be least (N), shape (N,)."""
@@ -202,7 +218,8 @@ class _Step:
         """A step; forces of contacts are unknown in it, so that a hard one is no rounding."""
         of = self.potential
         slope = of.law(of.elongations(u))[1]
-        pushed = self.pressing(u) > 0.0
+        pressing = self.pressing(u)
+        pushed = (pressing > of.least) & (pressing < of.most)
         unit, size = of.body_stiffness**-0.5, of.pushing(1.0)[pushed]
         B, W = of.springs * unit, of.contacts[pushed] * unit * np.sqrt(size)[:, None]
         K = (B.T * slope) @ B + np.diag(self.drawing * unit**2)
@@ -229,23 +246,33 @@ def _nearest(potential: Potential, u: Floats, start: Floats) -> Floats:
     that are slack; and contacts are shut that are pressed by any forces in balance with them.
     """
     force = potential.law(potential.elongations(u))[0]
-    shut = potential.gaps(u) <= SHUT * potential.largest(u)
-    pressing = np.zeros(shut.size)
-    if shut.any():
-        rest = force @ potential.springs - potential.load
-        pressing[shut] = nnls(potential.contacts[shut].T, rest)[0]
+    gaps, slides, W = potential.gaps(u), potential.slides, potential.contacts
+    shut = gaps <= SHUT * potential.largest(u)
+    slipped = slides & (np.abs(gaps) > SHUT * potential.largest(u))
+    pressing = np.where(slipped, np.where(gaps < 0.0, potential.most, potential.least), 0.0)
+    rest = force @ potential.springs - potential.load - pressing @ W
+    held = np.where(slides, ~slipped, shut)
+    if (held & slides).any():
+        limits = potential.least[held], potential.most[held]
+        pressing[held] = lsq_linear(W[held].T, rest, limits, tol=1e-14).x
+    elif held.any():
+        pressing[held] = nnls(W[held].T, rest)[0]
     largest = max(np.abs(v).max(initial=0.0) for v in (force, pressing, potential.load))
     low, high = potential.slack
     slack = (low < high) & (np.abs(force) <= CERTAIN * largest)
-    pressed = pressing > CERTAIN * largest
-    Z = null_space(np.vstack((potential.springs[~slack], potential.contacts[pressed])), CERTAIN)
+    pressed = (pressing - potential.least > CERTAIN * largest) & (
+        potential.most - pressing > CERTAIN * largest
+    )
+    Z = null_space(np.vstack((potential.springs[~slack], W[pressed])), CERTAIN)
     if Z.size == 0:
         return u
     u = u + Z @ (Z.T @ (start - u))
     B = potential.springs[slack]
     x = potential.elongations(u)[slack]
-    rows = np.vstack((potential.contacts[~pressed], B, -B))
-    room = np.concatenate((potential.gaps(u)[~pressed], x - low[slack], high[slack] - x))
+    # A slider at its limit may slip on, and not back.
+    way = np.where(slides & (pressing > 0.0), -1.0, 1.0)[~pressed]
+    rows = np.vstack((way[:, None] * W[~pressed], B, -B))
+    room = np.concatenate((way * potential.gaps(u)[~pressed], x - low[slack], high[slack] - x))
     bounded = np.isfinite(room)
     return np.asarray(u + Z @ least_distance(rows[bounded] @ Z, -room[bounded]))
 

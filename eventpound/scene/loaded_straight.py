@@ -1,21 +1,24 @@
-"""Bouc-Wen springs loaded straight from their initial state, in closed form.
+"""Bouc-Wen springs and backfill loaded straight from their initial state, in closed form.
 
-While an elongation grows one way, ``y = ±z / b``, b the bound of z, follows ``y' = 1 - κ |y|^n``
-over the travel in parts of ``u_y b``: κ is 1 for y > 0, and ``(β - γ) / (β + γ)`` before. Its
-inverse is ``y ₂F₁(1, 1/n; 1 + 1/n; κ y^n)``, which Newton's method solves for y: the function is
-convex or concave, and the start on that side of the root from where every step stays there.
+While the elongation of a Bouc-Wen spring grows one way, ``y = ±z / b``, b the bound of z, follows
+``y' = 1 - κ |y|^n`` over the travel in parts of ``u_y b``: κ is 1 for y > 0, and
+``(β - γ) / (β + γ)`` before. Its inverse is ``y ₂F₁(1, 1/n; 1 + 1/n; κ y^n)``, which Newton's
+method solves for y: the function is convex or concave, and the start on that side of the root from
+where every step stays there. One that degrades is integrated. Backfill is on its backbone or on the
+line of unloading above it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.special import hyp2f1
 
 from eventpound.numerics.arrays import Floats
-from eventpound.scene.spring import BoucWen, Hysteretic
+from eventpound.scene.spring import Backfill, BoucWen, DegradingBoucWen
 
 ALL_BUT = 1e-12
 """Distance of y from 1 below which it falls exponentially, to rounding."""
@@ -64,11 +67,6 @@ class Loops(NamedTuple):
         """Elongations at which they yield (m)."""
         return self.yield_displacement
 
-    def pull(self, travel: Floats) -> tuple[Floats, Floats]:
-        """What each pulls with beside its elastic part (N), and the slope (N/m), as of `loaded`."""
-        z, slope = self.loaded(travel)
-        return self.strength * z, self.strength * slope
-
     def loaded(self, travel: Floats) -> tuple[Floats, Floats]:
         """The z of each after an elongation by `travel` (m) one way, and its slope (1/m).
 
@@ -88,13 +86,90 @@ class Loops(NamedTuple):
         return z, np.maximum(1.0 - kappa * y**n, 0.0) / self.yield_displacement
 
 
-def not_convex(law: Hysteretic) -> tuple[str, str] | None:
-    """Why a law loaded straight has no convex potential known, and what has; None where it has."""
-    if not isinstance(law, BoucWen) or law.beyond_bouc_wen:
-        return f"is {law.word.value}", '"initial", or springs of another law'
-    if law.gamma >= 0.0:
-        return None
-    return f"unloads with a negative stiffness (gamma = {law.gamma!r})", "gamma >= 0"
+class Worn:
+    """A degrading law loaded straight one way from its initial state, integrated as far as asked.
+
+    Beyond its largest force (`last`, in parts of u_y) it has no convex potential, and keeps that.
+    """
+
+    def __init__(self, law: DegradingBoucWen, way: float) -> None:
+        self._law, self._way = law, way
+        self._end, begin = 0.0, np.array([law.initial_z, law.second_at])
+        self._curve: Callable[[float], Floats] = lambda t: begin
+        self.last = np.inf
+
+    def at(self, travel: float) -> tuple[float, float, float]:
+        """The z after an elongation by `travel` (m), its slope (1/m), and epsilon."""
+        law, t = self._law, abs(travel) / self._law.yield_displacement
+        if t > self._end and self.last == np.inf:
+            self._integrate(2.0 * t)
+        z, epsilon = self._curve(min(t, self.last))
+        slope = self._growth(z, epsilon) / law.yield_displacement
+        if t > self.last:
+            slope = -law.stiffness / law.strength
+            z += slope * self._way * (t - self.last) * law.yield_displacement
+        return float(z), float(slope), float(epsilon)
+
+    def _growth(self, z: float, epsilon: float) -> float:
+        """Rate of z over the travel in parts of u_y."""
+        law = self._law
+        nu, eta = law.worn_by(epsilon)
+        bend = law.beta + law.gamma * np.sign(z * self._way)
+        return float((1.0 - nu * np.abs(z) ** law.exponent * bend) / eta)
+
+    def _integrate(self, end: float) -> None:
+        law, way = self._law, self._way
+
+        def rate(t: float, y: Floats) -> tuple[float, float]:
+            return way * self._growth(*y), way * y[0]
+
+        def hardening(t: float, y: Floats) -> float:
+            return law.stiffness * law.yield_displacement + law.strength * self._growth(*y)
+
+        hardening.terminal, hardening.direction = True, -1.0  # type: ignore[attr-defined]
+        begin = [law.initial_z, law.second_at]
+        tolerance = {"rtol": 1e-12, "atol": 1e-14, "dense_output": True}
+        done = solve_ivp(rate, (0.0, end), begin, "DOP853", events=hardening, **tolerance)
+        self._end, self._curve = end, done.sol
+        self.last = float(done.t_events[0][0]) if done.t_events[0].size else np.inf
+
+
+class Soils(NamedTuple):
+    """Backfill as arrays: K0 (N/m), Q (N), where it is virgin and where it is touched (m)."""
+
+    stiffness: Floats
+    strength: Floats
+    virgin: Floats
+    touched: Floats
+
+    @classmethod
+    def of(cls, laws: Sequence[Backfill], x_0: Floats) -> Soils:
+        """Those of some laws, loaded straight from elongations (m)."""
+        # On the backbone it was pushed in up to here, and is unloaded from there.
+        pairs = zip(laws, x_0.tolist(), strict=True)
+        touched = [x - law.yield_displacement * law.z_at(x) for law, x in pairs]
+        columns = [
+            (law.initial_stiffness, law.strength, law.offset, at)
+            for law, at in zip(laws, touched, strict=True)
+        ]
+        return cls(*np.array(columns, float).reshape(-1, 4).T)
+
+    def loaded(self, x: Floats) -> Floats:
+        """The z of each at elongations (m)."""
+        u_y = self.strength / self.stiffness
+        depth = np.maximum(self.virgin - x, 0.0)
+        return np.where(
+            depth > 0.0,
+            np.maximum((x - self.touched) / u_y, -depth / (u_y + depth)),
+            (x - self.touched) / u_y,
+        )
+
+    def pull(self, x: Floats) -> tuple[Floats, Floats]:
+        """What each pulls with at elongations (m), in N, and the slope (N/m)."""
+        z = self.loaded(x)
+        first = z > (x - self.touched) * self.stiffness / self.strength
+        slope = np.where(first, (1.0 + z) ** 2, 1.0)
+        return self.strength * np.minimum(z, 0.0), self.stiffness * np.where(z < 0.0, slope, 0.0)
 
 
 def _last(kappa: Floats) -> Floats:

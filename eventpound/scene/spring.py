@@ -162,6 +162,10 @@ class Hysteretic:
         """The z of a start at an elongation (m)."""
         raise NotImplementedError
 
+    def tangents(self, elongation: float) -> tuple[float, float]:
+        """Stiffness (N/m) as it closes and as it opens from its start at an elongation (m)."""
+        raise NotImplementedError
+
     def going_on(self, elongation: float, state: Mapping[str, float]) -> Self:
         """The same law where a run ended, at an elongation (m), its memory in that state."""
         raise NotImplementedError
@@ -215,6 +219,22 @@ class BoucWen(Hysteretic):
     def initial_stiffness(self) -> float:
         """K0 (N/m), that at z = 0."""
         return self.stiffness + self.strength / self.yield_displacement
+
+    def tangents(self, elongation: float) -> tuple[float, float]:
+        """Stiffness (N/m) as it closes and as it opens from its start."""
+        nu, eta = self.worn
+        own = self.strength / (eta * self.yield_displacement)
+        spent = nu * abs(self.initial_z) ** self.exponent
+        # Where gamma is negative, it may unload downwards; that is no stiffness.
+        factors = (1.0 - spent * (self.beta - self.gamma * way) for way in (1.0, -1.0))
+        back, on = (max(factor, 0.0) for factor in factors)
+        unloads, loads = self.stiffness + own * back, self.stiffness + own * on
+        return (unloads, loads) if self.initial_z > 0.0 else (loads, unloads)
+
+    @property
+    def worn(self) -> tuple[float, float]:
+        """Factors nu and eta of a start, by which it degrades."""
+        return 1.0, 1.0
 
     @property
     def yield_force(self) -> float:
@@ -322,6 +342,18 @@ class DegradingBoucWen(BoucWen):
         """The epsilon of a start: what was lost, and what z holds."""
         a = 0.5 * self.stiffness_degradation * self.initial_z**2
         return self.initial_loss * math.exp(a) + 0.5 * self.initial_z**2 * _mean_growth(a)
+
+    @property
+    def worn(self) -> tuple[float, float]:
+        """Factors nu and eta of a start."""
+        return self.worn_by(self.second_at)
+
+    def worn_by(self, epsilon: float) -> tuple[float, float]:
+        """Factors nu and eta at a hysteretic energy in parts of ``Q u_y``."""
+        return (
+            1.0 + self.strength_degradation * epsilon,
+            1.0 + self.stiffness_degradation * epsilon,
+        )
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -450,9 +482,24 @@ class Backfill(Hysteretic):
         """Elongation at which the soil is touched (m)."""
         return -self.gap
 
+    @property
+    def touched(self) -> float:
+        """Elongation at which it is touched at the start (m)."""
+        return -max(self.initial_gap, self.gap)
+
+    def tangents(self, elongation: float) -> tuple[float, float]:
+        """Stiffness (N/m) as it closes and as it opens from its start at an elongation (m)."""
+        z = self.z_at(elongation)
+        if z > 0.0:
+            return 0.0, 0.0
+        # On the backbone it is pushed in for the first time; short of it, it is reloaded.
+        first = z > (elongation - self.touched) / self.yield_displacement
+        closing = self.initial_stiffness * ((1.0 + z) ** 2 if first else 1.0)
+        return closing, self.initial_stiffness if z < 0.0 else 0.0
+
     def z_at(self, elongation: float) -> float:
         """The z of a start at an elongation (m), never beyond the backbone."""
-        z = (elongation + max(self.initial_gap, self.gap)) / self.yield_displacement
+        z = (elongation - self.touched) / self.yield_displacement
         depth = self.offset - elongation
         return max(z, -self.push(depth) / self.strength) if depth > 0.0 else z
 
@@ -574,6 +621,10 @@ class Slider(Hysteretic):
             length = self.normal_force / self.stiffness
             found["T_slip"] = 2.0 * math.pi * math.sqrt(length / STANDARD_GRAVITY)
         return found
+
+    def tangents(self, elongation: float) -> tuple[float, float]:
+        """Stiffness (N/m) beside its friction: what sticks has none, what slips has this one."""
+        return self.stiffness, self.stiffness
 
     def z_at(self, elongation: float) -> float:
         """The z of a start: its sign is on the branches of the law."""

@@ -1,25 +1,26 @@
 """Where a scene stands still under its forces: from there a run may start.
 
 The forces of springs and contacts balance those on the bodies; that is where a convex potential
-is least (`eventpound.scene.equilibrium`). A Bouc-Wen spring is loaded straight from its initial
-state. Of many equilibria the scene takes the nearest to where its bodies are given.
+is least (`eventpound.scene.equilibrium`). A spring with a memory is loaded straight from its
+initial state; a slider sticks there as long as its friction holds it. Of many equilibria the scene
+takes the nearest to where its bodies are given.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.scene.check import starts_of_supports
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, elastic_force
-from eventpound.scene.equilibrium import NoEquilibriumError, Potential, equilibrium
-from eventpound.scene.loaded_straight import Loops, not_convex
+from eventpound.scene.equilibrium import CERTAIN, NoEquilibriumError, Potential, equilibrium
+from eventpound.scene.linkage import Linkage, linkage_of
+from eventpound.scene.loaded_straight import Loops, Soils, Worn
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen, Hysteretic
+from eventpound.scene.spring import Backfill, BoucWen, DegradingBoucWen, Law, Slider
 
 
 def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
@@ -39,22 +40,38 @@ def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
         Where there is no equilibrium, as of a body that nothing holds.
     """
     _check(scene)
-    springs = _Springs.of(scene)
+    link = linkage_of(scene, start)
     given = np.array([body.displacement for body in scene.bodies], float)
-    potential = _potential(scene, springs, given, start)
+    springs = _Springs.of(scene, link.moved + link.springs @ given)
+    potential = _potential(scene, springs, link, given)
     try:
         u = equilibrium(potential, given)
     except NoEquilibriumError as error:
-        raise _none(scene, error) from None
-    return _standing(scene, springs, potential.springs @ (u - given), u)
+        raise _none(scene, error, springs.softened()) from None
+    if past := springs.softened(potential.elongations(u)):
+        raise _none(scene, NoEquilibriumError(), past)
+    laws = springs.loaded(potential.elongations(u))
+    return replace(
+        scene,
+        bodies=tuple(
+            replace(body, displacement=float(at)) for body, at in zip(scene.bodies, u, strict=True)
+        ),
+        springs=tuple(
+            replace(spring, law=law) for spring, law in zip(scene.springs, laws, strict=True)
+        ),
+    )
 
 
 def _refused(found: str, accepted: str) -> InputError:
     return InputError(f'start: found "equilibrium", {found}; accepted: {accepted}')
 
 
-def _none(scene: Scene, error: NoEquilibriumError) -> InputError:
-    """Why a scene has no equilibrium."""
+def _none(scene: Scene, error: NoEquilibriumError, softened: Sequence[int]) -> InputError:
+    """Why a scene has no equilibrium, where springs perhaps lost too much of their strength."""
+    if softened:
+        names = ", ".join(repr(scene.springs[i].name) for i in softened)
+        found = f"but forces go beyond what degrading springs bear ({names})"
+        return _refused(found, '"initial", or smaller forces')
     if error.loose:
         names = ", ".join(repr(scene.bodies[i].name) for i in error.loose)
         return _refused(
@@ -75,45 +92,82 @@ def _check(scene: Scene) -> None:
             f"beside the contact {soft[0]!r}, which has a law of its own", "contacts that are rigid"
         )
     for spring in scene.springs:
-        if isinstance(spring.law, Hysteretic):
-            why = not_convex(spring.law)
-            if why:
-                raise _refused(f"with the spring {spring.name!r}, which {why[0]}", why[1])
+        law = spring.law
+        if isinstance(law, BoucWen) and law.gamma < 0.0:
+            found = f"which unloads with a negative stiffness (gamma = {law.gamma!r})"
+            raise _refused(f"with the spring {spring.name!r}, {found}", "gamma >= 0")
 
 
 @dataclass(frozen=True)
 class _Springs:
-    """Springs (S,) as arrays: elastic parts and, of those with a memory, loops."""
+    """Springs (S,) as arrays: elastic parts, and those with a memory, loaded straight from x_0."""
 
+    laws: Sequence[Law]
     elastic: ElasticLaws
-    hysteretic: Ints
+    x_0: Floats
+    yielding: Ints
     loops: Loops
+    worn: Mapping[int, tuple[Worn, Worn]]
+    soil: Ints
+    soils: Soils
 
     @classmethod
-    def of(cls, scene: Scene) -> _Springs:
-        """Those of a scene."""
+    def of(cls, scene: Scene, x_0: Floats) -> _Springs:
+        """Those of a scene, at elongations from which they are loaded (m)."""
         laws = [spring.law for spring in scene.springs]
-        loops = {i: law for i, law in enumerate(laws) if isinstance(law, Hysteretic)}
+        loops = {i: law for i, law in enumerate(laws) if isinstance(law, BoucWen)}
+        soils = {i: law for i, law in enumerate(laws) if isinstance(law, Backfill)}
+        soil = np.array([*soils], np.int64)
         return cls(
+            laws,
             as_arrays(laws),
+            x_0,
             np.array([*loops], np.int64),
-            # No other law passes the check.
-            Loops.of([law for law in loops.values() if isinstance(law, BoucWen)]),
+            Loops.of(list(loops.values())),
+            {
+                j: (Worn(law, 1.0), Worn(law, -1.0))
+                for j, law in enumerate(loops.values())
+                if isinstance(law, DegradingBoucWen)
+            },
+            soil,
+            Soils.of(list(soils.values()), x_0[soil]),
         )
 
-    def answer(self, x: Floats, x_0: Floats) -> tuple[Floats, Floats]:
-        """Forces (N) and slopes (N/m) at elongations, loaded from others (m), all (S,)."""
+    def answer(self, x: Floats) -> tuple[Floats, Floats]:
+        """Forces (N) and slopes (N/m) at elongations (m), all (S,)."""
         force, slope = elastic_force(self.elastic, x)
-        pull, growth = self.loops.pull((x - x_0)[self.hysteretic])
-        force[self.hysteretic] += pull
-        slope[self.hysteretic] += growth
+        for which, (pull, growth) in (
+            (self.yielding, self.loops.strength * self._loaded(x)[:2]),
+            (self.soil, self.soils.pull(x[self.soil])),
+        ):
+            force[which] += pull
+            slope[which] += growth
         return force, slope
+
+    def _loaded(self, x: Floats) -> Floats:
+        """The z of those that yield, its slope (1/m) and epsilon, at elongations (m)."""
+        travel = (x - self.x_0)[self.yielding]
+        found = np.array((*self.loops.loaded(travel), np.zeros(travel.size)))
+        for j, ways in self.worn.items():
+            found[:, j] = ways[int(travel[j] < 0.0)].at(float(travel[j]))
+        return found
+
+    def softened(self, x: Floats | None = None) -> list[int]:
+        """Which springs are loaded past their largest force, or were if no elongations are told."""
+        past = []
+        for j, ways in self.worn.items():
+            i = int(self.yielding[j])
+            end = np.inf if x is None else abs(x - self.x_0)[i] / self.loops.yield_displacement[j]
+            if any(way.last < end for way in ways):
+                past.append(i)
+        return past
 
     @property
     def stiffness(self) -> Floats:
         """The largest of each (N/m)."""
         found = np.maximum(self.elastic.compression, self.elastic.extension)
-        found[self.hysteretic] += self.loops.steepest
+        found[self.yielding] += self.loops.steepest
+        found[self.soil] += self.soils.stiffness
         return found
 
     @property
@@ -121,7 +175,8 @@ class _Springs:
         """Forces far in compression and far in extension (N), shape (2, S)."""
         sides = np.array((self.elastic.compression, self.elastic.extension))
         found = np.where(sides > 0.0, np.inf, 0.0)
-        found[:, self.hysteretic] += self.loops.largest
+        found[:, self.yielding] += self.loops.largest
+        found[0, self.soil] = self.soils.strength
         return found * np.array([[-1.0], [1.0]])
 
     @property
@@ -134,61 +189,47 @@ class _Springs:
                 np.where(e.extension == 0.0, np.inf, e.offset),
             )
         )
-        found[:, self.hysteretic[self.loops.largest > 0.0]] = 0.0
+        found[:, self.yielding[self.loops.largest > 0.0]] = 0.0
+        found[0, self.soil] = self.soils.touched
         return found
 
+    def loaded(self, x: Floats) -> list[Law]:
+        """The laws at elongations (m), with what they then remember."""
+        laws = list(self.laws)
+        z, _, epsilon = self._loaded(x)
+        for i, each, lost in zip(self.yielding, z.tolist(), epsilon.tolist(), strict=True):
+            law = laws[i]
+            if isinstance(law, DegradingBoucWen):
+                laws[i] = law.going_on(float(x[i]), {"z": each, "epsilon": lost})
+            elif isinstance(law, BoucWen):
+                laws[i] = replace(law, initial_z=each)
+        for i, each in zip(self.soil, self.soils.loaded(x[self.soil]).tolist(), strict=True):
+            law = laws[i]
+            assert isinstance(law, Backfill)
+            if (
+                law.residual_gap(float(x[i]), each)
+                > -law.touched + CERTAIN * law.yield_displacement
+            ):
+                laws[i] = law.going_on(float(x[i]), {"z": each})
+        return laws
 
-def _potential(scene: Scene, springs: _Springs, given: Floats, start: float) -> Potential:
+
+def _potential(scene: Scene, springs: _Springs, link: Linkage, given: Floats) -> Potential:
     """The potential of a scene whose bodies are given at these displacements (N,)."""
-    index = {body.name: i for i, body in enumerate(scene.bodies)}
-    placed = starts_of_supports(scene, start)
-
-    def rows(ends: Iterable[Iterable[tuple[str, float]]]) -> tuple[Floats, Floats]:
-        of_bodies, by_supports = [], []
-        for pairs in ends:
-            row = np.zeros(len(index))
-            moved = 0.0
-            for end, weight in pairs:
-                if end in index:
-                    row[index[end]] += weight
-                moved += weight * placed.get(end, 0.0)
-            of_bodies.append(row)
-            by_supports.append(moved)
-        return np.array(of_bodies).reshape(-1, len(index)), np.array(by_supports)
-
-    B, moved = rows(zip(s.between, (-1.0, 1.0), strict=True) for s in scene.springs)
-    W, shifted = rows(contact.direction for contact in scene.contacts)
-    gap = np.array([c.gap for c in scene.contacts], float) + shifted
-    load = np.zeros(len(index))
-    for force in scene.forces:
-        i = index[force.body]
-        factor = scene.bodies[i].mass if force.per_mass else 1.0
-        load[i] += factor * float(force.history.acceleration(np.array(start)))
-    x_0 = moved + B @ given
-    lengths = (given, gap, x_0, springs.elastic.offset, springs.loops.knee)
+    sliders = {i: law.strength for i, law in enumerate(springs.laws) if isinstance(law, Slider)}
+    slides, friction = list(sliders), np.array([*sliders.values()])
+    lengths = (given, link.gap, springs.x_0, springs.elastic.offset, springs.loops.knee)
     return Potential(
-        B,
-        W,
-        moved,
-        gap,
-        load,
-        lambda x: springs.answer(x, x_0),
+        link.springs,
+        np.vstack((link.contacts, link.springs[slides])),
+        link.moved,
+        np.append(link.gap, (link.moved - springs.x_0)[slides]),
+        link.load,
+        springs.answer,
         springs.stiffness,
         springs.far,
         springs.slack,
         max(float(np.abs(each).max(initial=0.0)) for each in lengths),
+        np.append(np.zeros(link.gap.size), -friction),
+        np.append(np.full(link.gap.size, np.inf), friction),
     )
-
-
-def _standing(scene: Scene, springs: _Springs, travel: Floats, u: Floats) -> Scene:
-    """The scene at displacements (N,), its springs loaded by a travel (S,)."""
-    z = springs.loops.loaded(travel[springs.hysteretic])[0]
-    laws = list(scene.springs)
-    for i, each in zip(springs.hysteretic, z, strict=True):
-        law = laws[i].law
-        if isinstance(law, BoucWen):
-            laws[i] = replace(laws[i], law=replace(law, initial_z=float(each)))
-    bodies = tuple(
-        replace(body, displacement=float(each)) for body, each in zip(scene.bodies, u, strict=True)
-    )
-    return replace(scene, bodies=bodies, springs=tuple(laws))

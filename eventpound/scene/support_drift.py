@@ -1,4 +1,4 @@
-"""Whether supports end where they may: warnings on motions that leave them drifting."""
+"""Where supports start, and whether they end where they may: motions that leave them drifting."""
 
 from __future__ import annotations
 
@@ -12,6 +12,23 @@ DRIFTING = 1e-3
 """Part of the largest velocity of the motions that may be left between them at their end."""
 _SAMPLED = 2000
 """Times at which the largest velocity of a motion is looked for."""
+
+
+def starts_of_supports(scene: Scene, start: float) -> dict[str, float]:
+    """Displacement of each support relative to the ground as a run starts (m).
+
+    Those that have no motion are left out.
+    """
+    if not scene.supports:
+        return {}
+    now = np.array(start)
+    reference = travelled(scene.motion, now)[0]
+    return {
+        support.name: float(travelled(support.moved_by(scene.motion), now)[0] - reference)
+        for support in scene.supports
+        if isinstance(support.motion, GroundMotion)
+        or (support.delay is not None and support.delay >= 0.0)
+    }
 
 
 def support_warnings(scene: Scene, end: float) -> list[str]:

@@ -1,6 +1,6 @@
 """Equilibria of random scenes beside an independent program, and runs that stay there.
 
-``python -m tests.equilibria [COUNT] [SEED]``
+``python -m tests.equilibria [COUNT] [SEED] [memory]``
 
 Prints every scene that is wrong, refused without need or moves, and the counts.
 """
@@ -22,7 +22,7 @@ def main() -> int:
     words: Counter[str] = Counter()
     worst: dict[str, float] = {}
     for seed in range(first, first + count):
-        found = examine(seed)
+        found = examine(seed, memory="memory" in sys.argv)
         words[found.word] += 1
         for name, value in found.numbers.items():
             worst[name] = max(worst.get(name, 0.0), value)

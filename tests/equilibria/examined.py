@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,7 +14,7 @@ from eventpound.scene.statics import in_equilibrium
 from eventpound.solvers import solver_named, takes_points
 from eventpound.solvers.base import Task
 from tests.equilibria.oracle import judge, loose, room
-from tests.equilibria.scenes import Drawn
+from tests.equilibria.scenes import SI, Drawn
 
 KN_MM = (1e3, 1.0 / 1.7, 3.0)
 """Units that are no powers of two of the first."""
@@ -55,9 +56,11 @@ def moved(standing: Scene, solver: str, period: float) -> float:
     return float(max(np.abs(each).max() for each in extremes))
 
 
-def examine(seed: int, solvers: tuple[str, ...] = ("fast", "cvode")) -> Examined:
-    """Everything about a scene."""
-    scene = Drawn(seed).scene()
+def examine(
+    seed: int, solvers: tuple[str, ...] = ("fast", "cvode"), memory: bool = False
+) -> Examined:
+    """Everything about a scene, perhaps one with soil, sliders and springs that degrade."""
+    scene = drawn(seed, memory)
     try:
         standing = in_equilibrium(scene)
     except InputError as error:
@@ -67,7 +70,7 @@ def examine(seed: int, solvers: tuple[str, ...] = ("fast", "cvode")) -> Examined
     verdict = judge(scene, standing)
     numbers = {name: getattr(verdict, name) for name in ("unbalanced", "overlap", "farther")}
     length = max(np.abs(places(standing)).max(), 1e-3)
-    other = places(in_equilibrium(Drawn(seed, KN_MM).scene())) / KN_MM[0]
+    other = places(in_equilibrium(drawn(seed, memory, KN_MM))) / KN_MM[0]
     numbers["units"] = float(np.abs(other - places(standing)).max() / length)
     try:
         check_scene(standing)
@@ -80,11 +83,19 @@ def examine(seed: int, solvers: tuple[str, ...] = ("fast", "cvode")) -> Examined
     return Examined("wrong" if over else "right", ", ".join(over), numbers)
 
 
+def drawn(seed: int, memory: bool, units: Sequence[float] = SI) -> Scene:
+    """A scene of a seed."""
+    made = Drawn(seed, units)
+    return made.with_memory() if memory else made.scene()
+
+
 def _refused(scene: Scene, said: str) -> Examined:
     """Whether a refusal gives the true reason."""
     away = loose(scene)
     if "no room" in said:
         return Examined("no room", said if room(scene) else "")
+    if "degrading springs bear" in said:
+        return Examined("beyond what degrading springs bear")
     if "nothing holds" in said and away is not None:
         name = said.split("'")[1]
         i = [body.name for body in scene.bodies].index(name)

@@ -4,7 +4,8 @@ Nothing of `eventpound.scene.statics` or `eventpound.mechanics` is used. Laws ar
 anew, hysteresis is integrated. The potential is convex, so that balanced forces *prove* an
 equilibrium, and a direction in which it falls without end that there is none:
 
-* no gap is negative, and forces of shut contacts that only push balance the rest (NNLS);
+* no gap is negative, and forces of shut contacts that only push, and of sliders that stick,
+  balance the rest (bounded least squares);
 * nowhere else nearer to the given place is one (NNLS for the conditions of that projection);
 * where it is refused, a linear program finds the body that nothing holds, or no room.
 """
@@ -15,9 +16,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import linprog, nnls
+from scipy.optimize import linprog, lsq_linear, nnls
 
-from eventpound.scene import BilinearElastic, BoucWen, Linear, Scene, Series, Spring
+from eventpound.scene import (
+    Backfill,
+    BilinearElastic,
+    BoucWen,
+    DegradingBoucWen,
+    Linear,
+    Scene,
+    Series,
+    Slider,
+    Spring,
+)
 
 SHUT = 1e-13
 """Part of the lengths below which a gap is shut."""
@@ -103,9 +114,46 @@ def hysteresis(law: BoucWen, travel: float) -> float:
     return float(np.clip(done.y[0, -1], -bound, bound))
 
 
+def degraded(law: DegradingBoucWen, travel: float) -> tuple[float, float]:
+    """The z and epsilon after a travel one way, integrated by Radau's method."""
+    way, u_y = np.sign(travel), law.yield_displacement
+
+    def rate(_: float, y: np.ndarray) -> tuple[float, float]:
+        z, epsilon = y
+        nu = 1.0 + law.strength_degradation * epsilon
+        pull = nu * (law.gamma * abs(z) ** (law.exponent - 1.0) * z * way)
+        pull += nu * law.beta * abs(z) ** law.exponent
+        return way * (1.0 - pull) / (1.0 + law.stiffness_degradation * epsilon), way * z
+
+    begin = (law.initial_z, law.second_at)
+    if travel == 0.0:
+        return begin
+    done = solve_ivp(rate, (0.0, abs(travel) / u_y), begin, "Radau", rtol=1e-10, atol=1e-13)
+    return float(done.y[0, -1]), float(done.y[1, -1])
+
+
+def soil(law: Backfill, x_0: float, x: float) -> float:
+    """Force after one way from x_0 to x: reloaded by a line, never above the hyperbola."""
+
+    def hyperbola(at: float) -> float:
+        y = max(-(at + law.gap), 0.0)
+        return y / (1.0 / law.initial_stiffness + law.failure_ratio * y / law.ultimate_force)
+
+    left = max(law.gap, law.initial_gap)
+    first = min(law.initial_stiffness * max(-(x_0 + left), 0.0), hyperbola(x_0))
+    open_by = max(x_0 + left, 0.0) if first == 0.0 else 0.0
+    line = first + law.initial_stiffness * (x_0 - x - open_by)
+    return -max(min(line, hyperbola(x)), 0.0)
+
+
 def far(spring: Spring) -> tuple[float, float]:
     """Forces far in compression (its size) and far in extension."""
     law = spring.law
+    if isinstance(law, Backfill):
+        return law.ultimate_force / law.failure_ratio, 0.0
+    if isinstance(law, Slider):
+        most = law.friction * law.normal_force
+        return (np.inf, np.inf) if law.stiffness > 0.0 else (most, most)
     if isinstance(law, BoucWen):
         most = law.strength * (law.beta + law.gamma) ** (-1.0 / law.exponent)
         return (np.inf, np.inf) if law.stiffness > 0.0 else (most, most)
@@ -135,10 +183,29 @@ def judge(scene: Scene, placed: Scene) -> Verdict:
     force, stiff = np.zeros(x.size), np.zeros(x.size)
     bounded: list[np.ndarray] = []
     fixed: list[np.ndarray] = []
+    stuck: list[tuple[np.ndarray, float]] = []
     lengths = [np.abs(v).max(initial=0.0) for v in (u, u_0, x, k.gap)]
     for i, (spring, other) in enumerate(zip(scene.springs, placed.springs, strict=True)):
-        law = spring.law
-        if isinstance(law, BoucWen):
+        law, x_0 = spring.law, float((k.x + k.B @ u_0)[i])
+        if isinstance(law, Slider):
+            force[i], friction = law.stiffness * x[i], law.friction * law.normal_force
+            stiff[i] = law.stiffness
+            if abs(x[i] - x_0) > SHUT * np.abs(np.concatenate((u, u_0, x))).max():
+                force[i] += np.sign(x[i] - x_0) * friction
+            else:
+                stuck.append((-k.B[i], friction))
+        elif isinstance(law, Backfill):
+            force[i], stiff[i] = soil(law, x_0, float(x[i])), law.initial_stiffness
+            lengths.append(law.ultimate_force / law.initial_stiffness)
+        elif isinstance(law, DegradingBoucWen):
+            z, epsilon = degraded(law, x[i] - x_0)
+            assert isinstance(other.law, DegradingBoucWen)
+            assert abs(other.law.initial_z - z) <= 1e-8, (spring.name, other.law.initial_z, z)
+            assert abs(other.law.second_at / (epsilon or 1.0) - 1.0) <= 1e-7 or epsilon < 1e-12
+            force[i] = law.stiffness * x[i] + law.strength * other.law.initial_z
+            stiff[i] = law.stiffness + law.strength / law.yield_displacement
+            lengths.append(law.yield_displacement)
+        elif isinstance(law, BoucWen):
             z = hysteresis(law, x[i] - (k.x + k.B @ u_0)[i])
             assert isinstance(other.law, BoucWen)
             assert abs(other.law.initial_z - z) <= 1e-9, (spring.name, other.law.initial_z, z)
@@ -153,12 +220,35 @@ def judge(scene: Scene, placed: Scene) -> Verdict:
     length = max(lengths)
     shut = np.abs(g) <= SHUT * length
     wanted = k.B.T @ force - k.load
-    pushing = nnls(k.W[shut].T, wanted)[0] if shut.any() else np.zeros(0)
-    residual = k.W[shut].T @ pushing - wanted
-    largest = max(np.abs(v).max(initial=0.0) for v in (force, k.load, pushing))
+    pushing = np.zeros(shut.sum())
+    holding, rows = np.zeros(len(stuck)), np.array([r for r, _ in stuck]).reshape(-1, u.size)
+    if stuck:
+        most = np.array([friction for _, friction in stuck])
+        all_of = np.vstack((k.W[shut], rows))
+        low, high = np.append(0.0 * pushing, -most), np.append(pushing + np.inf, most)
+        found = lsq_linear(all_of.T, wanted, (low, high), tol=1e-14).x
+        pushing, holding = found[: pushing.size], found[pushing.size :]
+    elif shut.any():
+        pushing = nnls(k.W[shut].T, wanted)[0]
+    residual = k.W[shut].T @ pushing + rows.T @ holding - wanted
+    largest = max(np.abs(v).max(initial=0.0) for v in (force, k.load, pushing, holding))
+    for (row, friction), held in zip(stuck, holding, strict=True):
+        if friction - abs(held) > 1e-9 * largest:
+            fixed.append(row)
+        else:
+            bounded.append(-np.sign(held) * row)
     for i, spring in enumerate(scene.springs):
         law = spring.law
-        below, above, at = (1.0, 1.0, 0.0) if isinstance(law, BoucWen) else sides(law)
+        if isinstance(law, Slider):
+            fixed += [k.B[i]] if law.stiffness > 0.0 else []
+            continue
+        below, above, at = (1.0, 1.0, 0.0)
+        if isinstance(law, Backfill):
+            placed_law = placed.springs[i].law
+            assert isinstance(placed_law, Backfill)
+            below, above, at = 1.0, 0.0, -max(placed_law.gap, placed_law.initial_gap)
+        elif not isinstance(law, BoucWen):
+            below, above, at = sides(law)
         if min(below, above) > 0.0 or abs(force[i]) > SLACK * largest:
             fixed.append(k.B[i])
         elif max(below, above) > 0.0 and abs(x[i] - at) <= 1e-12 * length:

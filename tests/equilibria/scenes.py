@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -11,20 +12,23 @@ from eventpound.motion import Sine
 from eventpound.scene import (
     BARRIER,
     GROUND,
+    Backfill,
     BilinearElastic,
     Body,
     BoucWen,
     Contact,
+    DegradingBoucWen,
     Force,
     Linear,
     Scene,
     Series,
+    Slider,
     Spring,
     Support,
 )
 from eventpound.scene.point import Point
 
-Law = Linear | BilinearElastic | Series | BoucWen
+Law = Linear | BilinearElastic | Series | BoucWen | Backfill | Slider
 SI = (1.0, 1.0, 1.0)
 """Units of length, mass and time."""
 EXPONENTS = (1.0, 1.5, 2.0, 5.0, 20.0, 50.0)
@@ -73,6 +77,37 @@ class Drawn:
             supports=supports,
             forces=self._forces(names),
         )
+
+    def with_memory(self) -> Scene:
+        """The scene, some of whose springs are backfill, degrade or are sliders."""
+        scene = self.scene()
+        kinds = 2 if any(contact.at_point for contact in scene.contacts) else 3
+        springs = [
+            replace(spring, law=self._memory(kinds)) if self.chance(0.6) else spring
+            for spring in scene.springs
+        ]
+        return replace(scene, springs=tuple(springs))
+
+    def _memory(self, kinds: int) -> Law:
+        k = self.stiffness * 10.0 ** self.number(-2.0, 2.0)
+        strength = k * 0.03 * self.length * self.number(0.1, 1.0)
+        hardening = float(self.rng.choice([0.0, 0.01, 0.1]))
+        kind = self.rng.integers(0, kinds)
+        if kind == 0:
+            gap, wider = (0.01 * self.length * self.number(0.0, 1.0) for _ in range(2))
+            return Backfill(
+                k, strength, self.number(0.5, 1.0), gap, (gap + wider) * self.chance(0.3)
+            )
+        if kind == 2:
+            return Slider(0.1, 10.0 * strength, hardening * k)
+        n, u_y = (
+            float(self.rng.choice(EXPONENTS[:5])),
+            self.length * 10.0 ** self.number(-3.0, -1.0),
+        )
+        beta, gamma = SHAPES[self.rng.integers(0, 2)]
+        z = 0.9 * self.number(-1.0, 1.0) if self.chance(0.3) else 0.0
+        loss = [0.1 * self.number(0.0, 1.0) for _ in range(3)]
+        return DegradingBoucWen(hardening * k, strength, u_y, n, beta, gamma, z, *loss)
 
     def _frames(self) -> Scene:
         stories = [[f"{c}{i}" for i in range(int(self.rng.integers(1, 5)))] for c in "AB"]

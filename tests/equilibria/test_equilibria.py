@@ -33,6 +33,18 @@ def test_random_scenes_stand_where_forces_balance(seed: int) -> None:
     assert not found.wrong, found
 
 
+@pytest.mark.parametrize("seed", range(30))
+def test_random_scenes_with_soil_and_sliders_stand_where_forces_balance(seed: int) -> None:
+    found = examine(seed, solvers=(), memory=True)
+    assert not found.wrong, found
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_scenes_with_soil_and_sliders_stay_there(seed: int) -> None:
+    found = examine(seed, solvers=("cvode",), memory=True)
+    assert not found.wrong, found
+
+
 @pytest.mark.parametrize("seed", [LOCKED, *range(4)])
 @pytest.mark.parametrize("solver", ["fast", "cvode"])
 def test_random_scenes_stay_there(seed: int, solver: str) -> None:

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
+from eventpound import simulate
 from eventpound.case import read_case
 from eventpound.errors import InputError
 from eventpound.mechanics.model import assemble
@@ -16,14 +18,17 @@ from eventpound.motion import Cosine
 from eventpound.scene import (
     BARRIER,
     GROUND,
+    Backfill,
     BilinearElastic,
     Body,
     BoucWen,
     Contact,
+    DegradingBoucWen,
     Force,
     Linear,
     Scene,
     Series,
+    Slider,
     Spring,
     Support,
 )
@@ -31,6 +36,7 @@ from eventpound.scene.check import check_scene
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.loaded_straight import Loops
 from eventpound.scene.point import Point
+from eventpound.scene.spring import Law
 from eventpound.scene.statics import in_equilibrium
 
 G = 9.81
@@ -202,6 +208,66 @@ def test_a_law_that_unloads_downwards_is_refused() -> None:
         in_equilibrium(scene)
 
 
+def held_by(law: Law, force: float, u: float = 0.0) -> Scene:
+    return Scene(
+        (Body("a", 1.0, u),), (Spring("s", (GROUND, "a"), law),), forces=(Force("a", force),)
+    )
+
+
+@pytest.mark.parametrize("u", [0.0, 0.01])
+def test_a_slider_sticks_until_its_friction_is_reached(u: float) -> None:
+    law = Slider(0.1, 50.0, 200.0)
+    for force in (200.0 * u, 200.0 * u + 4.99, 200.0 * u - 4.99):
+        assert displacements(held_by(law, force, u)) == [u]
+    for slip in (0.02, -0.03):
+        force = 200.0 * (u + slip) + np.sign(slip) * 5.0
+        assert displacements(held_by(law, force, u)) == pytest.approx([u + slip], rel=1e-12)
+    with pytest.raises(InputError, match="nothing holds the body 'a'"):
+        in_equilibrium(held_by(Slider(0.1, 50.0), 5.1))
+
+
+def test_backfill_is_pushed_in_and_let_go() -> None:
+    """On its hyperbola y/(1/K0 + R_f y/F_ult); from there on the line of K0, to a wider gap."""
+    soil = Backfill(1e3, 20.0, 0.8, gap=0.01)
+    pushed = in_equilibrium(held_by(soil, -8.0))
+    depth = 8.0 / 1e3 / (1.0 - 0.8 * 8.0 / 20.0)
+    (body,), (spring,) = pushed.bodies, pushed.springs
+    assert body.displacement == pytest.approx(-0.01 - depth, rel=1e-12)
+    less = in_equilibrium(replace(pushed, forces=(Force("a", -3.0),)))
+    assert less.bodies[0].displacement == pytest.approx(body.displacement + 5e-3, rel=1e-12)
+    gone = in_equilibrium(replace(less, forces=()))
+    assert gone.bodies[0].displacement == pytest.approx(body.displacement + 8e-3, rel=1e-12)
+    assert isinstance(spring.law, Backfill)
+    assert spring.law.initial_gap == pytest.approx(0.01 + depth - 8e-3, rel=1e-12)
+    again = in_equilibrium(replace(gone, forces=(Force("a", -8.0),)))
+    assert again.bodies[0].displacement == pytest.approx(body.displacement, rel=1e-12)
+    with pytest.raises(InputError, match="nothing holds the body 'a'"):
+        in_equilibrium(held_by(soil, -26.0))
+    untouched = held_by(soil, 0.0)
+    assert in_equilibrium(untouched) == untouched
+
+
+def test_a_degrading_spring_is_loaded_straight_as_far_as_it_grows_stronger() -> None:
+    """Without degradation as Bouc-Wen; with eta alone z' eta = 1 while it is elastic."""
+    plain = BoucWen(10.0, 5.0, 0.1, 2.0)
+    same = DegradingBoucWen(10.0, 5.0, 0.1, 2.0)
+    found = displacements(held_by(same, 4.0))
+    assert found == pytest.approx(displacements(held_by(plain, 4.0)), rel=1e-11)
+    # epsilon = (e^a - 1)/delta, a = delta z^2/2, and u_y z' = e^-a, so x/u_y = int e^a dz.
+    soft = DegradingBoucWen(0.0, 5.0, 0.1, 200.0, stiffness_degradation=4.0)
+    standing = in_equilibrium(held_by(soft, 2.5))
+    x = 0.1 * quad(lambda z: np.exp(2.0 * z**2), 0.0, 0.5)[0]
+    assert standing.bodies[0].displacement == pytest.approx(x, rel=1e-10)
+    (spring,) = standing.springs
+    assert isinstance(spring.law, DegradingBoucWen)
+    assert spring.law.second_at == pytest.approx(np.expm1(0.5) / 4.0, rel=1e-10)
+    assert spring.law.initial_loss == pytest.approx(0.0, abs=1e-10)
+    weak = DegradingBoucWen(0.0, 5.0, 0.1, 2.0, strength_degradation=1.0)
+    for force in (4.9, 1e3):
+        with pytest.raises(InputError, match=r"beyond what degrading springs bear \(.s.\)"):
+            in_equilibrium(held_by(weak, force))
+
+
 @pytest.mark.parametrize("travel", [-0.5, -0.1, 0.02, 0.3, 3.0])
 @pytest.mark.parametrize("z", [0.0, -0.4, 0.9])
 def test_springs_loaded_straight(travel: float, z: float) -> None:
@@ -213,6 +279,41 @@ def test_springs_loaded_straight(travel: float, z: float) -> None:
     expected = way * (ahead + x if x < back else ahead)
     found = loops.loaded(np.array([travel]))[0]
     assert found == pytest.approx([expected], rel=4e-15, abs=4e-15)
+
+
+def test_a_scene_from_python_starts_in_equilibrium_by_the_word_of_the_case() -> None:
+    scene = Scene(
+        (Body("joint", 1e3),),
+        (Spring("frame", (GROUND, "joint"), Linear(3.3e8)),),
+        forces=(Force("joint", 7e5),),
+    )
+    response = simulate(scene, duration=0.1, start="equilibrium", error_estimate=False)
+    u = 7e5 / 3.3e8
+    assert response.peaks.loc["joint", "min"] == pytest.approx(u, rel=1e-12)
+    assert response.peaks.loc["joint", "max"] == pytest.approx(u, rel=1e-12)
+    swinging = simulate(scene, duration=0.1, start="initial", error_estimate=False)
+    assert swinging.peaks.loc["joint", "max"] == pytest.approx(2.0 * u, rel=1e-6)
+    with pytest.raises(InputError, match="start: found 'rest'; accepted: 'initial', 'equilibrium'"):
+        simulate(scene, duration=0.1, start="rest")
+    with pytest.raises(InputError, match="nothing holds the body 'joint'"):
+        simulate(replace(scene, springs=()), duration=0.1, start="equilibrium")
+    with pytest.raises(InputError, match=r"body 1 .joint.: mass"):
+        simulate(replace(scene, bodies=(Body("joint", -1.0),)), duration=0.1, start="equilibrium")
+
+
+@pytest.mark.parametrize("solver", ["cvode", "fast"])
+def test_what_soil_sliders_and_degrading_springs_hold_stays(solver: str) -> None:
+    laws = (
+        (Backfill(1e3, 20.0, 0.8, gap=0.01), -8.0),
+        (Slider(0.1, 50.0, 200.0), 4.0),
+        (DegradingBoucWen(10.0, 5.0, 0.1, 2.0, stiffness_degradation=2.0), 3.0),
+    )
+    for law, force in laws:
+        scene = in_equilibrium(held_by(law, force))
+        (u,) = (body.displacement for body in scene.bodies)
+        response = simulate(scene, solver, 1e-10, duration=5.0, error_estimate=False)
+        extremes = response.peaks.loc["a", ["min", "max"]].to_numpy(float)
+        assert extremes == pytest.approx([u, u], abs=1e-9)
 
 
 def test_in_a_case() -> None:
