@@ -14,10 +14,10 @@ from dataclasses import replace
 from eventpound.case.frequency import optional_frequency
 from eventpound.case.table import Table
 from eventpound.errors import InputError
+from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.body import Body
 from eventpound.scene.damping import (
     dashpots_beside,
-    initial_stiffness,
     rayleigh_coefficients,
     rayleigh_dashpots,
     springs_of_group,
@@ -26,7 +26,6 @@ from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.modal_damping import modal_dashpots, springs_on
 from eventpound.scene.modes import coefficient_at_mode, modes_of
-from eventpound.scene.periods import nominal_stiffness
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Spring
 from eventpound.units import Dimension, quantity
@@ -38,7 +37,7 @@ def read_damping(
     bodies: Sequence[Body],
     springs: Sequence[Spring],
     supports: Sequence[str] = (),
-) -> tuple[tuple[Dashpot, ...], list[str]]:
+) -> tuple[Dashpot, ...]:
     """Dashpots from the ``[[rayleigh]]`` and ``[[modal_damping]]`` tables.
 
     Parameters
@@ -46,7 +45,7 @@ def read_damping(
     rayleigh, modal : sequence of Table
         One a group.
     bodies, springs : sequence
-        Those of the scene.
+        Those of the scene at rest.
     supports : sequence of str
         Names of supports, which count as the ground.
 
@@ -54,8 +53,6 @@ def read_damping(
     -------
     tuple of Dashpot
         What the groups add to the scene.
-    list of str
-        Warnings.
     """
     taken: set[str] = set()
     damped: set[str] = set()
@@ -63,7 +60,6 @@ def read_damping(
         replace(spring, between=ends_on_ground(spring.between, supports)) for spring in springs
     ]
     dashpots: list[Dashpot] = []
-    warnings: list[str] = []
     for table in [*rayleigh, *modal]:
         key = "bodies"
         if table in modal:
@@ -81,17 +77,12 @@ def read_damping(
             beside = springs_of_group([body.name for body in group], standing) if b > 0.0 else []
             if not math.isnan(a + b):
                 dashpots += rayleigh_dashpots(group, springs, a, b, supports, ground)
-        warnings += [
-            f"{table.where}: spring '{spring.name}' has a kink and is given no damping"
-            for spring in beside
-            if initial_stiffness(spring.law) is None
-        ]
         table.close()
         names = dict.fromkeys(spring.name for spring in beside)
         for name in names.keys() & damped:
             table.report(key, f"damps spring {name!r} again; accepted: every spring in one group")
         damped |= names.keys()
-    return tuple(dashpots), warnings
+    return tuple(dashpots)
 
 
 def _read_springs(table: Table, springs: Sequence[Spring]) -> list[Spring]:
@@ -103,8 +94,8 @@ def _read_springs(table: Table, springs: Sequence[Spring]) -> list[Spring]:
     for name in names:
         if name not in by_name:
             table.report("springs", f"found {name!r}; accepted: some of {', '.join(by_name)}")
-        elif initial_stiffness(by_name[name].law) is None:
-            table.report("springs", f"found {name!r}; accepted: springs without a kink")
+        elif stiffness_of(by_name[name]) == 0.0:
+            table.report("springs", f"found {name!r}; accepted: springs that resist at rest")
     if len(set(names)) < len(names):
         table.reject("springs", "every spring once")
     return [by_name[name] for name in dict.fromkeys(names) if name in by_name]
@@ -134,7 +125,7 @@ def _read_stiffness_coefficient(
         omega, _ = optional_frequency(table) or (math.nan, math.nan)
         table.require(key, omega != 0.0, "a positive frequency (rad/s)")
         return 2.0 * ratio / omega if omega else math.nan
-    stiffnesses = [nominal_stiffness(spring) for spring in standing]
+    stiffnesses = [stiffness_of(spring) for spring in standing]
     usable = all(body.mass > 0.0 for body in bodies) and all(k >= 0.0 for k in stiffnesses)
     if not (usable and named):
         # What is wrong is said where it stands.
@@ -165,7 +156,7 @@ def _read_modal(
             return [], ()
     beside = springs_on(names, springs, {GROUND, base, *supports})
     usable = all(body.mass > 0.0 for body in group) and all(
-        nominal_stiffness(spring) >= 0.0 for spring in beside
+        stiffness_of(spring) >= 0.0 for spring in beside
     )
     if not (ratios and usable):
         # What is wrong is said where it stands.
@@ -272,7 +263,7 @@ def _read_two_frequencies(
 def _frequencies_of_modes(
     table: Table, numbers: Sequence[object], group: Sequence[Body], springs: Sequence[Spring]
 ) -> tuple[float, float]:
-    """Angular frequencies (rad/s) of two modes of a group at its initial stiffness."""
+    """Angular frequencies (rad/s) of two modes of a group at rest."""
     chosen = [n for n in numbers if isinstance(n, int) and not isinstance(n, bool)]
     if len(chosen) < 2 or not 1 <= min(chosen) <= max(chosen) <= len(group):
         table.reject("modes", f"two numbers of modes, from 1 to {len(group)}")

@@ -1,8 +1,8 @@
 """Dashpots of a case: coefficients and damping ratios.
 
 A ratio of a dashpot between a body of mass m and the ground is of the critical
-damping 2 sqrt(k m), with k the stiffnesses of the springs between the same
-ends, or of 2 m omega.
+damping 2 sqrt(k m), with k the stiffnesses at rest of the springs between the
+same ends, or of 2 m omega.
 """
 
 from __future__ import annotations
@@ -14,16 +14,14 @@ from eventpound.case.frequency import agree, frequency_or_period
 from eventpound.case.spring_stiffness import held_mass
 from eventpound.case.table import Table
 from eventpound.errors import InputError
-from eventpound.scene.damping import initial_stiffness, post_yield_stiffness, ratio_coefficient
+from eventpound.scene.at_rest import stiffness_of
+from eventpound.scene.damping import ratio_coefficient
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import Spring
 from eventpound.units import Dimension, quantity
 
-_STIFFNESSES = {
-    "initial-stiffness": initial_stiffness,
-    "post-yield-stiffness": post_yield_stiffness,
-}
+_YIELDED = {"initial-stiffness": False, "post-yield-stiffness": True}
 _REFERS_TO = (
     '"initial-stiffness", "post-yield-stiffness", or a frequency or period such as "6.3 rad/s"'
 )
@@ -44,7 +42,7 @@ def read_dashpot(
     masses : mapping of str to float
         Masses of the bodies (kg).
     springs : iterable of Spring
-        Springs of the scene.
+        Springs of the scene at rest.
     supports : sequence of str
         Names of supports, which count as the ground.
 
@@ -99,7 +97,7 @@ def _from_ratio(
             "ratio", "coefficient; a ratio is defined for a dashpot to the ground only (one mass)"
         )
         return math.nan
-    if refers_to is not None and refers_to not in list(_STIFFNESSES):
+    if refers_to is not None and refers_to not in list(_YIELDED):
         try:
             return 2.0 * ratio * mass * frequency_or_period(refers_to)
         except InputError:
@@ -117,18 +115,17 @@ def _referred_stiffness(
     if not parallel:
         table.reject("ratio", "coefficient; no spring has the same ends, refer to a frequency")
         return math.nan
-    sums: dict[object, float] = {}
-    for word, stiffness_of in _STIFFNESSES.items():
-        values = [stiffness_of(spring.law) for spring in parallel]
-        stiffnesses = [value for value in values if value is not None]
-        if len(stiffnesses) < len(values):
-            kinked = parallel[values.index(None)].name
-            table.reject(
-                "ratio", f"coefficient; spring '{kinked}' has a kink, refer to a frequency"
-            )
-            return math.nan
-        sums[word] = sum(stiffnesses)
+    sums = {
+        word: sum(stiffness_of(spring, yielded) for spring in parallel)
+        for word, yielded in _YIELDED.items()
+    }
+    if math.isnan(sums["initial-stiffness"]):
+        return math.nan
+    if sums["initial-stiffness"] == 0.0:
+        idle = f"spring '{parallel[0].name}' does not resist at rest"
+        table.reject("ratio", f"coefficient; {idle}, refer to a frequency")
+        return math.nan
     if refers_to is None and not agree(*sums.values()):
         table.report_missing("refers_to", _REFERS_TO)
         return math.nan
-    return sums[refers_to or "initial-stiffness"]
+    return sums[str(refers_to or "initial-stiffness")]

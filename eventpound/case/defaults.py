@@ -5,8 +5,7 @@
     output step    the record's own time step, else a 2000th of the duration
 
 T_p = 2 pi / omega_g is the period of the motion. T_1 is the longest period of
-the undamped linear system K x = omega^2 M x with every spring at its initial
-stiffness (one with a kink at the smaller of its stiffnesses that are not zero);
+the undamped linear system K x = omega^2 M x of the scene at rest;
 motions that no spring resists are left out. Where there is no such period,
 5 T_1 is left out too.
 """
@@ -20,6 +19,7 @@ from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion, moves
 from eventpound.motion.delayed import Delayed
 from eventpound.motion.record import Record
+from eventpound.scene.at_rest import at_rest
 from eventpound.scene.body import Body
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import longest_period
@@ -63,7 +63,7 @@ def default_duration(scene: Scene, start_time: float) -> float:
         raise InputError(
             f"duration: missing, and {reason} sets none; accepted: {Dimension.TIME.accepted}"
         )
-    after = max(_after(motion, scene) for motion in shaking)
+    after = max(_after(motion, scene, start_time) for motion in shaking)
     duration = end + after - start_time
     if duration <= 0.0:
         raise InputError(
@@ -73,10 +73,10 @@ def default_duration(scene: Scene, start_time: float) -> float:
     return duration
 
 
-def _after(motion: GroundMotion, scene: Scene) -> float:
+def _after(motion: GroundMotion, scene: Scene, start: float) -> float:
     """Time for which a run goes on after a motion (s)."""
     if isinstance(motion.motion if isinstance(motion, Delayed) else motion, Record):
-        return _PERIODS_AFTER_RECORD * _longest_period(scene)
+        return _PERIODS_AFTER_RECORD * _longest_period(scene, start)
     scales = motion.scales()
     return 0.0 if scales is None else _PERIODS_AFTER_FORMULA * scales.period
 
@@ -86,10 +86,10 @@ def default_output_step(motion: GroundMotion, duration: float) -> float:
     return motion.time_step if isinstance(motion, Record) else duration / _ROWS
 
 
-def _longest_period(scene: Scene) -> float:
+def _longest_period(scene: Scene, start: float) -> float:
     """T_1 (s); zero where no spring resists anything."""
     try:
-        return _period_of(scene.bodies, grounded(scene).springs)
+        return _period_of(scene.bodies, grounded(at_rest(scene, start)).springs)
     except InputError as error:
         raise InputError(f"missing, and {error}; accepted: {Dimension.TIME.accepted}") from error
 

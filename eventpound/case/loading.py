@@ -7,7 +7,7 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,7 +20,14 @@ from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, bare_accelerations, for_scene, read_excitation
 from eventpound.case.figure import Figure, read_figure
-from eventpound.case.options import EQUILIBRIUM, default_solver, read_run, read_solver, to_be_placed
+from eventpound.case.options import (
+    EQUILIBRIUM,
+    INITIAL,
+    default_solver,
+    read_run,
+    read_solver,
+    to_be_placed,
+)
 from eventpound.case.pi import OF_SCENE, read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.spring_stiffness import masses_carried
@@ -31,11 +38,13 @@ from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import SOURCED, understood_case
 from eventpound.errors import InputError
 from eventpound.motion.free import NoMotion
-from eventpound.scene.check import scene_problems, scene_warnings
+from eventpound.scene.at_rest import at_rest
+from eventpound.scene.check import Problem, scene_problems, scene_warnings
 from eventpound.scene.continuation import continued
 from eventpound.scene.plausibility import doubts
 from eventpound.scene.scene import Scene
-from eventpound.scene.support_drift import support_warnings
+from eventpound.scene.spring import Linear
+from eventpound.scene.support_drift import starts_of_supports, support_warnings
 from eventpound.units import Dimension, quantity
 
 CASE_FILE = "case.toml"
@@ -154,6 +163,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     document = with_buildings(document, file)
     problems: list[CaseProblem] = []
     top = Table(with_unit_scales(document), "", problems)
+    start = _start_time(top)
     title = top.text("title", "some text", default=file.resolve().parent.name)
     if top.has("study"):
         # What its axes give is missing here; to say so as well would mislead.
@@ -171,14 +181,14 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     else:
         needed = figure is None or figure.kind.needs_scene
         scene, warnings, carried, driven, sources = _read_scene(
-            top, excitation, problems, needed, file.parent
+            top, excitation, problems, needed, run_table, file.parent
         )
+    if pi is not None and run_table.has("start") and not problems and excitation is not None:
+        scene = _at_start(run_table, scene, start, file.parent)
     if excitation is not None and not problems:
-        excitation, scene = _at_own_period(top, excitation, scene, pi is not None)
+        excitation, scene = _at_own_period(top, excitation, scene, start, pi is not None)
     suite = _suite(top, excitation, driven, file.parent)
     sound = not problems and excitation is not None
-    if run_table.has("start") and sound:
-        scene = _at_start(run_table, scene, _start_time(top), file.parent)
     run = read_run(run_table, scene if sound else None, suite is not None)
     solver = read_solver(top.table("solver"), default_solver([scene], many=suite is not None))
     top.close()
@@ -191,7 +201,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         ]
         ratios = given_ratios(damped)
         step = run.output_step if run_table.has("output_step") else None
-        warnings += doubts(scene, step, ratios, bare_accelerations(document))
+        warnings += doubts(scene, step, ratios, bare_accelerations(document), start)
     return Case(
         title=title,
         scene=scene,
@@ -219,16 +229,25 @@ def _excitation(top: Table, directory: Path) -> Excitation | None:
 
 
 def _at_own_period(
-    top: Table, excitation: Excitation, scene: Scene, of_pi: bool
+    top: Table, excitation: Excitation, scene: Scene, start: float, of_pi: bool
 ) -> tuple[Excitation, Scene]:
     """Motion and scene with records scaled at a period of the scene, if the case says so."""
     with top.table("excitation").noting("psa_period"):
-        own = for_scene(excitation, scene)
-        if own is not excitation and of_pi:
+        own = for_scene(excitation, at_rest(scene, start))
+        if own is excitation:
+            return own, scene
+        moved = replace(scene, motion=own.motion)
+        if of_pi:
             raise InputError(
                 "found a period of the scene, which [pi] makes; accepted: a period (s)"
             )
-        return own, scene if own is excitation else replace(scene, motion=own.motion)
+        places = (starts_of_supports(each, start) for each in (scene, moved))
+        if to_be_placed(top.data.get("run")) and next(places) != next(places):
+            raise InputError(
+                "found a period of the scene, whose equilibrium follows from supports that this "
+                "scale has moved before the start; accepted: a period (s)"
+            )
+        return own, moved
     return excitation, scene
 
 
@@ -268,6 +287,7 @@ def _read_scene(
     excitation: Excitation | None,
     problems: list[CaseProblem],
     needed: bool,
+    run: Table,
     directory: Path,
 ) -> tuple[Scene, list[str], dict[str, float], Driven, dict[str, list[str]]]:
     """Scene, warnings, masses that springs carry, supports and forces, sources of numbers.
@@ -284,28 +304,43 @@ def _read_scene(
     driven = read_driven(*given, masses, directory, in_suite=in_suite)
     supports = [support.name for support in driven.supports]
     springs = read_springs(tables["spring"], masses, supports)
-    dashpots = [read_dashpot(table, masses, springs, supports) for table in tables["dashpot"]]
-    groups = tables["rayleigh"], tables["modal_damping"]
-    of_groups, warnings = read_damping(*groups, bodies, springs, supports)
     scene = Scene(
         tuple(bodies),
         springs,
-        (*dashpots, *of_groups),
-        read_contacts(tables["contact"]),
-        NoMotion() if excitation is None else excitation.motion,
-        driven.supports,
-        driven.forces,
+        contacts=read_contacts(tables["contact"]),
+        motion=NoMotion() if excitation is None else excitation.motion,
+        supports=driven.supports,
+        forces=driven.forces,
     )
+    start = _start_time(top)
+    wrong = scene_problems(scene, None)
+    if run.has("start") and not (problems or wrong):
+        scene = _at_start(run, scene, start, directory)
+    resting = at_rest(_without(scene, wrong) if wrong else scene, start)
+    dashpots = [
+        read_dashpot(table, masses, resting.springs, supports) for table in tables["dashpot"]
+    ]
+    groups = tables["rayleigh"], tables["modal_damping"]
+    of_groups = read_damping(*groups, bodies, resting.springs, supports)
+    scene = replace(scene, dashpots=(*dashpots, *of_groups))
     if not bodies and needed:
         top.report("[[body]]", "missing; accepted: at least one body")
     elif bodies:
         # Where bodies are to be placed or go on, they need not be where they can be.
-        start = None if _starts_elsewhere(top.data.get("run")) else _start_time(top)
-        _add_scene_problems(scene, tables, problems, start)
-    warnings += scene_warnings(scene) if bodies else []
+        elsewhere = _starts_elsewhere(top.data.get("run"))
+        _add_scene_problems(scene, tables, problems, None if elsewhere else start)
+    warnings = list(scene_warnings(scene)) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
     carried = {} if problems else masses_carried(tables["spring"], springs, masses, supports)
     return scene, warnings, carried, driven, sources
+
+
+def _without(scene: Scene, wrong: Sequence[Problem]) -> Scene:
+    """Springs alone, the wrong ones without a stiffness: what follows from it is not noted."""
+    bad = {problem.position for problem in wrong if problem.kind == "spring"}
+    unknown = Linear(math.nan)
+    springs = enumerate(scene.springs, 1)
+    return Scene((), tuple(replace(s, law=unknown) if i in bad else s for i, s in springs))
 
 
 def _add_scene_problems(
@@ -348,7 +383,7 @@ def _at_start(run: Table, scene: Scene, start: float, directory: Path) -> Scene:
     """The scene as the run is to start: as given, in equilibrium, or where another run ended."""
     if isinstance(run.data["start"], dict):
         return _after(run.table("start"), scene, start, directory)
-    run.choice("start", ("initial", EQUILIBRIUM))
+    run.choice("start", (INITIAL, EQUILIBRIUM))
     if not to_be_placed(run.data):
         return scene
     from eventpound.scene.statics import in_equilibrium

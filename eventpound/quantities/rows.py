@@ -17,6 +17,7 @@ from eventpound.basics.warned import warn_caller
 from eventpound.errors import AccuracyWarning, InputError
 from eventpound.motion.base import Family, GroundMotion
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.scene.at_rest import stiffest
 from eventpound.scene.periods import local_periods
 from eventpound.solvers.base import Recording, Task
 
@@ -130,7 +131,7 @@ def warn_unsettled(name: str, part: float, aim: float = AGREEMENT) -> None:
 
 def first_step(task: Task) -> tuple[float, bool]:
     """Distance of the rows that are tried first (s), and whether it shows all of a motion."""
-    periods = [p for p in local_periods(task.scene).values() if np.isfinite(p)]
+    periods = [p for p in local_periods(stiffest(task.scene)).values() if np.isfinite(p)]
     scales = task.scene.motion.scales()
     if scales is not None:
         periods.append(scales.period)

@@ -31,10 +31,11 @@ from eventpound.report.view import View
 from eventpound.response import Response
 from eventpound.results import gather
 from eventpound.results.cells import Cells
-from eventpound.results.input_tables import input_tables
+from eventpound.results.input_tables import input_tables, rest_words
 from eventpound.results.inputs import inputs_of
 from eventpound.results.manifest import sha256, told_of, versions
 from eventpound.results.trade import Trade, three_digits, trade_of
+from eventpound.scene.at_rest import told_at_rest
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, Slider
 from eventpound.simulation import simulate
@@ -272,6 +273,9 @@ def _limits(told: Told) -> Iterator[str]:
     yield from LIMITS
     laws = {type(spring.law) for spring in told.scene.springs}
     yield from (text for law, text in _OF_LAWS.items() if law in laws)
+    resting = told_at_rest(told.scene, told.case.run.start_time)
+    if resting["not"] or resting["at_kink"] or resting["at_yield"]:
+        yield f"At rest: {rest_words(resting)}."
     if told.runs is not None:
         failed = told.runs[told.runs[FAILED] != ""]
         done = len(told.runs) - len(failed)

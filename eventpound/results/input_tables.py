@@ -16,6 +16,13 @@ _MOST_MODES = 5
 """Modes of a structure that are shown."""
 _APART = "compression", "friction", "F_ult"
 """Numbers of springs that have a table of their own: they share hardly one with others."""
+_AT_REST = {
+    "counts": "springs that count in modes, T1 and damping: {}",
+    "not": "springs that do not: {}",
+    "at_kink": "at a kink (the smaller stiffness counts, so that no period is too short): {}",
+    "at_yield": "at yield (as they unload, with which a small motion goes on): {}",
+}
+"""What is said of springs at rest, by the keys of the inputs."""
 _Column = tuple[str, str, str]
 """Key, heading and kind of unit of a column."""
 
@@ -39,8 +46,8 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
             "name=spring; between; law; height:length; K0:stiffness; K_s:stiffness; F_y:force; "
             "Q:force; u_y:length; alpha; friction; N:force; T_slip=T slip:s; F_ult:force; R_f; "
             "y_ult=y at F_ult:length; gap:length; compression:stiffness; extension:stiffness; "
-            "offset:length; mass=mass on it:mass; F_y/W; T_initial=T initial:s; "
-            "T_post_yield=T post-yield:s; source",
+            "offset:length; at_rest=k at rest:stiffness; mass=mass on it:mass; F_y/W; "
+            "T_initial=T initial:s; T_post_yield=T post-yield:s; source",
         ),
         (
             "dashpots",
@@ -166,7 +173,9 @@ def _some(names: Sequence[str]) -> str:
 
 
 def input_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """What is no table: the motion, the run, the Π-terms, the solver; each with its word."""
+    """What is no table: springs at rest, motion, run, Π-terms, solver; each with its word."""
+    if said := rest_words(inputs["at_rest"]):
+        yield "at rest", said
     yield from _motion_lines(inputs)
     if inputs["pi"]:
         number = inputs["pi_number"]
@@ -178,6 +187,12 @@ def input_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         f", {key} = {value}" for key, value in solver.items() if key not in ("name", "rtol")
     )
     yield "solver", f"{solver['name']}, rtol {solver['rtol']:g}{settings}"
+
+
+def rest_words(told: Mapping[str, Sequence[str]]) -> str:
+    """What is said of springs at rest (`eventpound.scene.at_rest.told_at_rest`)."""
+    listed = {key: _some(names) for key, names in told.items() if names}
+    return "; ".join(_AT_REST[key].format(names) for key, names in listed.items())
 
 
 def _motion_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -22,15 +22,15 @@ from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
 from eventpound.motion.base import moves
 from eventpound.motion.record import Record
+from eventpound.scene.at_rest import at_rest, stiffness_of, told_at_rest
 from eventpound.scene.contact import Contact, written
 from eventpound.scene.contact_law import Element
-from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.modes import modes_of
 from eventpound.scene.periods import period_of
 from eventpound.scene.pi_terms import number_of_terms, pi_terms
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BilinearElastic, BoucWen, Hysteretic, Series, Spring
+from eventpound.scene.spring import Backfill, BilinearElastic, BoucWen, Series, Slider, Spring
 from eventpound.scene.structures import mass_on, structures_of
 from eventpound.units import STANDARD_GRAVITY
 
@@ -50,12 +50,14 @@ def inputs_of(case: Case) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``title``, ``bodies``, ``springs``, ``dashpots``, ``contacts`` (a row each), ``supports``
+        ``title``, ``bodies``, ``springs``, ``dashpots``, ``contacts`` (a row each), ``at_rest``
+        (names of springs, as `eventpound.scene.at_rest.told_at_rest`), ``supports``
         and ``forces`` where there are some, ``structures``
         with their ``initial`` and ``post_yield`` modes, ``motion``, ``run``, ``solver`` and
         ``pi``. What a part does not have is left out of its row.
     """
     scene = case.scene
+    resting = at_rest(scene, case.run.start_time)
     carried = {spring.name: _mass_on(case, spring) for spring in scene.springs}
     found: dict[str, Any] = {
         "title": case.title,
@@ -63,11 +65,15 @@ def inputs_of(case: Case) -> dict[str, Any]:
             {"name": b.name, "mass": b.mass, "weight": b.mass * STANDARD_GRAVITY}
             for b in scene.bodies
         ],
-        "springs": [_spring(spring, carried[spring.name]) for spring in scene.springs],
-        "dashpots": _dashpots(scene, carried),
+        "springs": [
+            _spring(spring, stiffness_of(still), carried[spring.name])
+            for spring, still in zip(scene.springs, resting.springs, strict=True)
+        ],
+        "at_rest": told_at_rest(scene, case.run.start_time),
+        "dashpots": _dashpots(resting, carried),
         "contacts": [_contact(scene, contact) for contact in scene.contacts],
         **_driven(case),
-        "structures": [_structure(scene, group) for group in structures_of(scene)],
+        "structures": [_structure(resting, group) for group in structures_of(scene)],
         "motion": _motion(case),
         "run": _run(case.run),
         "solver": {"name": case.solver.name, "rtol": case.solver.rtol, **case.solver.settings},
@@ -135,25 +141,23 @@ def _mass_on(case: Case, spring: Spring) -> float | None:
     return given if given is not None and given not in own else mass_on(case.scene, spring)
 
 
-def _spring(spring: Spring, mass: float | None) -> Row:
+def _spring(spring: Spring, at_rest: float, mass: float | None) -> Row:
     law = spring.law
-    k_0, k_s = initial_stiffness(law), post_yield_stiffness(law)
     row: Row = {"name": spring.name, "between": list(spring.between), "law": law.word.value}
     if spring.height is not None:
         row["height"] = spring.height
     if isinstance(law, BilinearElastic | Series):
-        return row | asdict(reduced(law))
-    if isinstance(law, Hysteretic) and law.has_branches:
-        return row | law.numbers
-    assert k_0 is not None
-    row["K0"] = k_0
+        return row | asdict(reduced(law)) | {"at_rest": at_rest}
+    if isinstance(law, Backfill | Slider):
+        return row | law.numbers | ({"at_rest": at_rest} if isinstance(law, Backfill) else {})
+    k_0 = row["K0"] = law.initial_stiffness if isinstance(law, BoucWen) else law.stiffness
     if isinstance(law, BoucWen):
-        yield_force = k_0 * law.yield_displacement
-        row |= {"K_s": k_s, "F_y": yield_force, "Q": law.strength, "u_y": law.yield_displacement}
+        row |= {"K_s": law.stiffness, "F_y": k_0 * law.yield_displacement}
+        row |= {"Q": law.strength, "u_y": law.yield_displacement}
         row["alpha"] = law.stiffness / k_0 if k_0 else 0.0
         row |= law.numbers if law.second else {}
     if mass is not None:
-        row |= {"mass": mass, "T_initial": _finite(period_of(mass, k_0))}
+        row |= {"mass": mass, "T_initial": _finite(period_of(mass, at_rest))}
         if isinstance(law, BoucWen):
             row["F_y/W"] = row["F_y"] / (mass * STANDARD_GRAVITY)
             row["T_post_yield"] = _finite(period_of(mass, law.stiffness))
@@ -167,11 +171,8 @@ def _dashpots(scene: Scene, carried: Mapping[str, float | None]) -> list[Row]:
         beside = [s for s in scene.springs if set(s.between) == set(dashpot.between)]
         masses = {carried[s.name] for s in beside}
         mass = masses.pop() if len(masses) == 1 else None
-        for word, stiffness_of in (
-            ("ratio_initial", initial_stiffness),
-            ("ratio_post_yield", post_yield_stiffness),
-        ):
-            k = sum(stiffness_of(s.law) or 0.0 for s in beside)
+        for word, yielded in (("ratio_initial", False), ("ratio_post_yield", True)):
+            k = sum(stiffness_of(s, yielded) for s in beside)
             if mass is not None and k > 0.0:
                 # The product of the two may be too small for a double.
                 critical = 2.0 * math.sqrt(k) * math.sqrt(mass)
@@ -201,7 +202,7 @@ def _contact(scene: Scene, contact: Contact) -> Row:
 
 
 def _structure(scene: Scene, group: list[str]) -> Row:
-    """Bodies of a structure and its modes, as it starts and with every spring yielded."""
+    """Bodies of a structure and its modes, at rest and with every spring yielded."""
     row: Row = {"bodies": group}
     if len(group) > MOST_BODIES:
         return row

@@ -16,30 +16,10 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable
 
+from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot
-from eventpound.scene.spring import GROUND, BoucWen, Law, Linear, Spring
-
-
-def initial_stiffness(law: Law) -> float | None:
-    """Stiffness of a law at its start (N/m).
-
-    Returns
-    -------
-    float or None
-        k, or k + Q/u_y of a Bouc-Wen law; None for a law with a kink, which
-        has a stiffness on either side of it.
-    """
-    if isinstance(law, Linear):
-        return law.stiffness
-    if isinstance(law, BoucWen):
-        return law.initial_stiffness
-    return None
-
-
-def post_yield_stiffness(law: Law) -> float | None:
-    """Stiffness k of a linear or yielded Bouc-Wen law (N/m); None for a law with a kink."""
-    return law.stiffness if isinstance(law, Linear | BoucWen) else None
+from eventpound.scene.spring import GROUND, Spring
 
 
 def ratio_coefficient(ratio: float, stiffness: float, mass: float) -> float:
@@ -91,8 +71,7 @@ def rayleigh_dashpots(
 ) -> tuple[Dashpot, ...]:
     """Dashpots that damp a group of bodies by C = a M + b K.
 
-    K is made of the initial stiffnesses of the springs of the group; a spring
-    with a kink has none and is left out.
+    K is made of the stiffnesses of the springs of the group at rest.
 
     Parameters
     ----------
@@ -122,12 +101,12 @@ def rayleigh_dashpots(
 
 
 def dashpots_beside(springs: Iterable[Spring], coefficient: float) -> tuple[Dashpot, ...]:
-    """Dashpots that damp springs by b times their initial stiffnesses.
+    """Dashpots that damp springs by b times their stiffnesses at rest.
 
     Parameters
     ----------
     springs : iterable of Spring
-        Those with a kink are left out.
+        Of a scene at rest.
     coefficient : float
         b (s).
 
@@ -136,8 +115,7 @@ def dashpots_beside(springs: Iterable[Spring], coefficient: float) -> tuple[Dash
     tuple of Dashpot
         Without the zero ones.
     """
-    stiffnesses = [(spring.between, initial_stiffness(spring.law)) for spring in springs]
-    dashpots = [Dashpot(ends, coefficient * k) for ends, k in stiffnesses if k is not None]
+    dashpots = [Dashpot(spring.between, coefficient * stiffness_of(spring)) for spring in springs]
     return tuple(dashpot for dashpot in dashpots if dashpot.coefficient != 0.0)
 
 

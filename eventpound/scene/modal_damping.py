@@ -25,8 +25,8 @@ import numpy as np
 from eventpound.basics.given import checked, number
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.at_rest import at_rest, stiffness_of
 from eventpound.scene.body import Body
-from eventpound.scene.damping import initial_stiffness
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.modes import modes_of
@@ -55,8 +55,8 @@ def modal_damping(
     bodies : sequence of Body
         The group: one structure, at most 100 bodies.
     springs : sequence of Spring
-        Springs of the scene; those inside the group, to its base and to the ground count, at their
-        initial stiffness. One with a kink has none and is left out.
+        Springs of the scene; those inside the group, to its base and to the ground count, as at
+        rest without forces.
     ratio : float, or sequence of float
         Of critical damping, 0.05 or ``"5 %"``; of several the first is of the longest period, and
         the last also of all modes that follow.
@@ -81,7 +81,9 @@ def modal_damping(
             f"ratio: found {ratio!r}; accepted: one that is not negative, or a list of at most "
             f"{len(bodies)}, one a mode"
         )
-    return modal_dashpots(bodies, springs, ratios, base)
+    return modal_dashpots(
+        bodies, at_rest(Scene(tuple(bodies), tuple(springs))).springs, ratios, base
+    )
 
 
 def modal_dashpots(
@@ -91,7 +93,7 @@ def modal_dashpots(
     base: str,
     supports: Collection[str] = (),
 ) -> tuple[Dashpot, ...]:
-    """Dashpots of `modal_damping`; `supports`, by their names, count as the ground.
+    """Dashpots of `modal_damping` for springs of a scene at rest; `supports` count as the ground.
 
     Raises
     ------
@@ -102,12 +104,12 @@ def modal_dashpots(
     own = [
         replace(spring, between=ends_on_ground(spring.between, fixed))
         for spring in springs_on(names, springs, fixed)
-        if initial_stiffness(spring.law) is not None
+        if stiffness_of(spring) > 0.0
     ]
     if len(names) > MOST_BODIES or len(joined_groups(names, [s.between for s in own])) != 1:
         raise InputError(
-            f"bodies: found {len(names)}; accepted: up to {MOST_BODIES}, which springs without "
-            "a kink join to one structure"
+            f"bodies: found {len(names)}; accepted: up to {MOST_BODIES}, which springs that "
+            "resist at rest join to one structure"
         )
     C = _matrix(bodies, own, [*ratios, *[ratios[-1]] * (len(names) - len(ratios))])
     found = [((base, name), c) for name, c in zip(names, C.sum(axis=1).tolist(), strict=True)]

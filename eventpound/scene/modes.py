@@ -6,7 +6,7 @@
 
 The shares of all modes of a structure that the ground holds add up to one. C need not be
 proportional: what the modes exchange through it is left out. Source: A. K. Chopra, Dynamics
-of Structures, sections 10.2, 11.4 and 13.2. Springs count as in `eventpound.scene.periods`.
+of Structures, sections 10.2, 11.4 and 13.2. Springs count as in `eventpound.scene.at_rest`.
 
 What stands on isolators is damped by dashpots beside its own springs, C = b K_own, with b from
 the first mode of the isolated structure in which they work: the second. Dashpots to the ground
@@ -28,13 +28,9 @@ import numpy as np
 from eventpound.basics.given import checked, number
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.at_rest import at_rest, stiffness_of
 from eventpound.scene.body import Body
-from eventpound.scene.damping import (
-    dashpots_beside,
-    initial_stiffness,
-    rayleigh_coefficients,
-    rayleigh_dashpots,
-)
+from eventpound.scene.damping import dashpots_beside, rayleigh_coefficients, rayleigh_dashpots
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import RIGID, joined, over_mass
@@ -86,7 +82,7 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
     InputError
         Where a stiffness over a mass is no double.
     """
-    scene = grounded(scene)
+    scene = grounded(at_rest(scene))
     mass = np.array([b.mass for name in bodies for b in scene.bodies if b.name == name])
     ends = {GROUND, *bodies}
     springs = [s for s in scene.springs if ends.issuperset(s.between)]
@@ -132,11 +128,12 @@ def rayleigh(
     bodies : sequence of Body
         The group.
     springs : sequence of Spring
-        Springs of the scene; those inside the group and to the ground count.
+        Springs of the scene; those inside the group and to the ground count, as at rest without
+        forces.
     ratio : float
         Of critical damping, 0.05 or ``"5 %"``.
     modes : tuple of int, optional
-        Numbers of two modes of the group at its initial stiffness, from 1.
+        Numbers of two modes of the group at rest, from 1.
     periods : tuple of float, optional
         Two periods (s) instead.
 
@@ -152,6 +149,7 @@ def rayleigh(
     """
     if (modes is None) == (periods is None):
         raise InputError("rayleigh: accepted: one of modes and periods")
+    springs = at_rest(Scene(tuple(bodies), tuple(springs))).springs
     if periods is not None:
         first, second = (number("periods", period, Dimension.TIME) for period in periods)
     else:
@@ -159,7 +157,7 @@ def rayleigh(
         if not 1 <= min(modes) <= max(modes) <= len(bodies):
             raise InputError(f"modes: found {modes!r}; accepted: numbers from 1 to {len(bodies)}")
         names = [body.name for body in bodies]
-        found = modes_of(Scene(tuple(bodies), tuple(springs)), names).period
+        found = modes_of(Scene(tuple(bodies), springs), names).period
         first, second = (float(found[mode - 1]) for mode in modes)
     if not 0.0 < min(first, second) <= max(first, second) < math.inf:
         raise InputError(f"rayleigh: found periods {first:g} s, {second:g} s; accepted: two finite")
@@ -189,12 +187,12 @@ def stiffness_proportional(
     bodies, springs : sequence
         Those of the scene.
     damped : sequence of str
-        Names of the springs: each has a dashpot b times its initial stiffness.
+        Names of the springs: each has a dashpot b times its stiffness at rest.
     ratio : float
         Of critical damping, 0.02 or ``"2 %"``.
     mode : int, optional
-        Where the ratio holds: a mode of the structure, from 1, with these springs at their
-        initial and all others at their post-yield stiffness. On isolators the second.
+        Where the ratio holds: a mode of the structure, from 1, with these springs as at rest and
+        all others at their post-yield stiffness. On isolators the second.
     period : float, optional
         A period (s) instead: b = ratio period/pi.
 
@@ -206,17 +204,18 @@ def stiffness_proportional(
     Raises
     ------
     InputError
-        Where not just one of mode and period is given, there are no such springs, one has a kink,
-        or they hold too little of the mode's strain energy for it to be theirs.
+        Where not just one of mode and period is given, there are no such springs, one does not
+        resist at rest, or they hold too little of the mode's strain energy for it to be theirs.
     """
+    springs = at_rest(Scene(tuple(bodies), tuple(springs))).springs
     by_name = {spring.name: spring for spring in springs}
     unknown = [name for name in damped if name not in by_name]
     if unknown or not damped:
         found = repr(unknown[0]) if unknown else "none"
         raise InputError(f"damped: found {found}; accepted: some of {', '.join(by_name)}")
-    kinked = [name for name in damped if initial_stiffness(by_name[name].law) is None]
-    if kinked:
-        raise InputError(f"damped: found {kinked[0]!r}; accepted: springs without a kink")
+    idle = [name for name in damped if stiffness_of(by_name[name]) == 0.0]
+    if idle:
+        raise InputError(f"damped: found {idle[0]!r}; accepted: springs that resist at rest")
     if (mode is None) == (period is None):
         raise InputError("stiffness_proportional: accepted: one of mode and period")
     xi = number("ratio", ratio, Dimension.NUMBER)
@@ -241,7 +240,7 @@ def coefficient_at_mode(
     Parameters
     ----------
     bodies, springs, damped
-        As of `stiffness_proportional`.
+        As of `stiffness_proportional`, of a scene at rest.
     ratio : float
         Of critical damping.
     mode : object
@@ -258,10 +257,7 @@ def coefficient_at_mode(
     joined_by = [group for group in structures if ends.intersection(group)]
     if len(joined_by) != 1:
         raise InputError(f"found {mode!r} of {len(joined_by)} structures; accepted: springs of one")
-    standing = tuple(
-        replace(s, law=Linear(initial_stiffness(s.law) or 0.0)) if s in chosen else s
-        for s in springs
-    )
+    standing = tuple(replace(s, law=Linear(stiffness_of(s))) if s in chosen else s for s in springs)
     scene = Scene(tuple(bodies), standing, dashpots_beside(chosen, 1.0))
     modes = modes_of(scene, joined_by[0], yielded=True)
     # phi' K_own phi/(omega^2 phi' M phi), with the ratio phi' K_own phi/(2 omega phi' M phi).

@@ -1,7 +1,7 @@
-"""Periods of a scene without damping and contacts, before its springs yield and after.
+"""Periods of a scene at rest without damping and contacts, before its springs yield and after.
 
-A hysteretic spring counts with its initial or its post-yield stiffness, a slider with that of its
-slip, one with a kink with the smaller of its stiffnesses that are not zero.
+Springs count as `eventpound.scene.at_rest` says; those that have yielded with their post-yield
+stiffness.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
+from eventpound.scene.at_rest import at_rest, stiffness_of
 from eventpound.scene.grounded import ends_on_ground, grounded
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, Linear, Series, Slider, Spring
+from eventpound.scene.spring import GROUND, Spring
 from eventpound.scene.structures import joined_groups
 
 # Squared frequencies this far below the largest are rigid motions: rounding
@@ -49,7 +49,7 @@ def longest_period(scene: Scene, yielded: bool = False) -> float | None:
     """
     if not scene.bodies:
         return None
-    scene = grounded(scene)
+    scene = grounded(at_rest(scene))
     root_mass = np.sqrt([body.mass for body in scene.bodies])
     names = [body.name for body in scene.bodies]
     squares = np.linalg.eigvalsh(over_mass(names, scene.springs, root_mass, yielded))
@@ -60,8 +60,8 @@ def longest_period(scene: Scene, yielded: bool = False) -> float | None:
 def over_mass(
     bodies: Sequence[str], springs: Iterable[Spring], root_mass: Floats, yielded: bool
 ) -> Floats:
-    """Nominal stiffnesses over roots of masses, whose eigenvalues are omega^2, shape (N, N)."""
-    stiffness = joined(bodies, [(s.between, nominal_stiffness(s, yielded)) for s in springs])
+    """Stiffnesses at rest over roots of masses, whose eigenvalues are omega^2, shape (N, N)."""
+    stiffness = joined(bodies, [(s.between, stiffness_of(s, yielded)) for s in springs])
     with np.errstate(all="ignore"):
         matrix = stiffness / np.outer(root_mass, root_mass)
     if not np.isfinite(matrix).all():
@@ -73,8 +73,8 @@ def period_called(scene: Scene, word: str) -> float:
     """Initial period that a case names, ``"T1"`` or ``"T1 of BODY"``.
 
     That of the whole scene is its longest. Of a body it is the longest of all that swings with
-    it: bodies that springs join to it, but for springs between two that the ground holds by
-    others, as segments of a bridge; the far ends of these are kept still.
+    it: bodies that springs join to it which resist at rest, but for springs between two that the
+    ground holds by others, as segments of a bridge; the far ends of these are kept still.
 
     Parameters
     ----------
@@ -93,15 +93,16 @@ def period_called(scene: Scene, word: str) -> float:
     InputError
         Where there is no such body, or no spring resists.
     """
-    scene = grounded(scene)
+    scene = grounded(at_rest(scene))
     names = [body.name for body in scene.bodies]
     group = set(names)
     if word != T_1:
         name = word.removeprefix(f"{T_1} of ")
         if name not in names:
             raise InputError(f"found {word!r}; accepted: {T_1}, or {T_1} of {', '.join(names)}")
-        held = {end for s in scene.springs if GROUND in s.between for end in s.between}
-        joints = [s.between for s in scene.springs if not held.issuperset(s.between)]
+        resisting = [s.between for s in scene.springs if stiffness_of(s) > 0.0]
+        held = {end for between in resisting if GROUND in between for end in between}
+        joints = [between for between in resisting if not held.issuperset(between)]
         group = next(set(each) for each in joined_groups(names, joints) if name in each)
     others = set(names) - group
     springs = [
@@ -146,30 +147,11 @@ def period_of(mass: float, stiffness: float) -> float:
 
 
 def local_periods(scene: Scene) -> dict[str, float]:
-    """Period (s) of each body while all others are held, at initial stiffnesses."""
-    scene = grounded(scene)
+    """Period (s) of each body of a scene at rest while all others are held."""
+    scene = grounded(at_rest(scene))
     held = dict.fromkeys((body.name for body in scene.bodies), 0.0)
     for spring in scene.springs:
         for end in spring.between:
             if end != GROUND:
-                held[end] += nominal_stiffness(spring)
+                held[end] += stiffness_of(spring)
     return {body.name: period_of(body.mass, held[body.name]) for body in scene.bodies}
-
-
-def nominal_stiffness(spring: Spring, yielded: bool = False) -> float:
-    """Initial or post-yield stiffness, or one that stands for a law with a kink (N/m)."""
-    law = spring.law
-    if isinstance(law, Series):
-        stiffnesses = [_part_stiffness(part) for part in law.parts]
-        return 1.0 / sum(1.0 / k for k in stiffnesses) if all(stiffnesses) else 0.0
-    if isinstance(law, BilinearElastic):
-        return _part_stiffness(law)
-    if isinstance(law, Slider):
-        return law.stiffness
-    return (post_yield_stiffness if yielded else initial_stiffness)(law) or 0.0
-
-
-def _part_stiffness(law: Linear | BilinearElastic) -> float:
-    if isinstance(law, Linear):
-        return law.stiffness
-    return min((k for k in (law.compression, law.extension) if k > 0.0), default=0.0)

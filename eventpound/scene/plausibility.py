@@ -13,9 +13,10 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.intensity import peak_displacement, peak_velocity
 from eventpound.motion.plausible import LENGTH, PEAK, PERIOD, PGD, PGV, STEP
 from eventpound.motion.record import Record
+from eventpound.scene.at_rest import at_rest, stiffness_of
 from eventpound.scene.damping import ratio_coefficient
 from eventpound.scene.grounded import grounded
-from eventpound.scene.periods import local_periods, longest_period, nominal_stiffness
+from eventpound.scene.periods import local_periods, longest_period
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Backfill, BoucWen, Slider
 from eventpound.scene.structures import isolated, joined_groups, structures_of
@@ -48,6 +49,7 @@ def doubts(
     output_step: float | None = None,
     ratios: Sequence[tuple[str, float]] = (),
     bare: Sequence[tuple[str, float]] = (),
+    start: float = 0.0,
 ) -> list[str]:
     """Sentences on what is hardly meant, one for each kind of doubt.
 
@@ -61,6 +63,8 @@ def doubts(
         Damping ratios that were given, and what each stands in.
     bare : sequence of tuple of str and float
         Keys and numbers of accelerations of the ground that were given without a unit (m/s^2).
+    start : float
+        When the run starts (s).
 
     Returns
     -------
@@ -68,16 +72,17 @@ def doubts(
         The first of a kind stands for the others, which it counts.
     """
     kinds: dict[str, list[str]] = {}
-    supports, scene = scene.supports, grounded(scene)
+    supports, standing = scene.supports, grounded(at_rest(scene, start))
+    scene = grounded(scene)
     found: Iterable[Doubt] = (
         *_unit_doubts(bare),
         *_motion_doubts("excitation", scene.motion),
         *_support_doubts(supports),
         *_spring_doubts(scene),
         *_load_doubts(scene),
-        *(_ratio_doubts(ratios) or _damping_doubts(scene)),
+        *(_ratio_doubts(ratios) or _damping_doubts(standing)),
         *_isolation_doubts(scene),
-        *_period_doubts(scene, output_step),
+        *_period_doubts(standing, output_step),
         *_gap_doubts(scene),
     )
     for kind, text in found:
@@ -207,7 +212,7 @@ def _damping_doubts(scene: Scene) -> Iterator[Doubt]:
             damped[end] += dashpot.coefficient
     for spring in scene.springs:
         for end in set(spring.between) - {GROUND}:
-            held[end] += nominal_stiffness(spring)
+            held[end] += stiffness_of(spring)
     for body in scene.bodies:
         critical = ratio_coefficient(1.0, held[body.name], body.mass)
         if damped[body.name] > critical > 0.0:

@@ -27,6 +27,7 @@ from eventpound.quantities.ways import Way, quantities_asked, refuse_options
 from eventpound.response import Response
 from eventpound.results.manifest import machine, told_of, versions
 from eventpound.results.tables import table_csv
+from eventpound.scene.at_rest import at_rest
 from eventpound.scene.periods import longest_period
 from eventpound.simulation import check_solver
 from eventpound.study.engines.local import Batch
@@ -169,7 +170,8 @@ def plan_of(
             )
         tabled = all_of(scene, [q for q in LISTED if q.tabled and q.source in _TABLED])
         quantities = [*(named.name for named in tabled), *quantities_asked([(scene, case.run)])]
-    period = (longest_period(scene) or math.nan) if intensities else None
+    resting = at_rest(scene, case.run.start_time) if intensities else scene
+    period = (longest_period(resting) or math.nan) if intensities else None
     suite, base = OfSuite(period, errors), described(base_of(case, (), members, options))
     names = tuple(dict.fromkeys(quantities))
     columns = columns_of(members, suite)

@@ -20,6 +20,7 @@ from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.scene.at_rest import at_rest
 from eventpound.scene.check import check_scene
 from eventpound.scene.parameters import places_of, told_of_variants, with_values
 from eventpound.scene.periods import period_called
@@ -141,20 +142,23 @@ def rows_with(base: Base, values: Mapping[str, Floats], at: range) -> Rows:
     numbers = dict(direct)
     for key, column in found.items():
         numbers[key] = np.broadcast_to(np.asarray(column, float), (len(at),)).copy()
-    return Rows(base, values, at, numbers | _own_periods(scene, numbers, len(at)))
+    return Rows(base, values, at, numbers | _own_periods(base.case, numbers, len(at)))
 
 
-def _own_periods(scene: Scene, numbers: Mapping[str, Floats], count: int) -> dict[str, Floats]:
+def _own_periods(case: Case, numbers: Mapping[str, Floats], count: int) -> dict[str, Floats]:
     """Periods (s) at which a record is scaled, where they are those of each variant itself."""
+    scene, start = case.scene, case.run.start_time
     motion, places = scene.motion, places_of(scene)
     moving = {places[key]: column for key, column in numbers.items() if key in places}
     moving = {p: v for p, v in moving.items() if p.kind in kinds_that_set_periods(scene)}
     if not (isinstance(motion, Record) and moving) or PSA_PERIOD in numbers:
         return {}
     word = motion.psa_at
-    return {
-        PSA_PERIOD: told_of_variants(scene, moving, count, lambda own: period_called(own, word))
-    }
+
+    def period(own: Scene) -> float:
+        return period_called(at_rest(own, start), word)
+
+    return {PSA_PERIOD: told_of_variants(scene, moving, count, period)}
 
 
 def complete(rows: Rows) -> Rows:

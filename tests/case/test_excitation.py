@@ -139,11 +139,12 @@ def test_longest_period_leaves_rigid_motion_out() -> None:
 
 
 def test_longest_period_with_kinks() -> None:
-    # 3 and min(6, 8) in series: 2; a stop with min(2, absent) beside it: 4 in all, m = 1.
+    # 3 and min(6, 8) in series: 2; a taut cable of 2 beside it: 4 in all, m = 1. One is slack.
     series = Series((Linear(3.0), BilinearElastic(8.0, 6.0)))
     springs = (
         Spring("1", ("ground", "a"), series),
-        Spring("2", ("a", "ground"), BilinearElastic(0.0, 2.0, 0.1)),
+        Spring("2", ("a", "ground"), BilinearElastic(0.0, 2.0, -0.1)),
+        Spring("3", ("a", "ground"), BilinearElastic(0.0, 5.0, 0.1)),
     )
     assert longest_period(Scene((Body("a", 1.0),), springs)) == pytest.approx(math.pi, rel=1e-14)
 

@@ -12,6 +12,7 @@ import pytest
 from eventpound.case import Case, read_case
 from eventpound.case.template import template
 from eventpound.errors import InputError
+from eventpound.results.inputs import inputs_of
 from eventpound.scene import (
     Backfill,
     BilinearElastic,
@@ -259,10 +260,14 @@ def test_ratio_of_springs_in_parallel() -> None:
     assert found == Dashpot(("ground", "a"), 6.0)
 
 
-def test_ratio_of_a_kinked_spring_is_undefined() -> None:
-    kinked = spring(law="bilinear-elastic", compression=1.0, extension=2.0, name="stop")
-    dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5, "refers_to": "initial-stiffness"}
-    assert "spring 'stop' has a kink" in problems(spring=[kinked], dashpot=[dashpot])
+def test_ratio_beside_a_kinked_spring_is_of_its_stiffness_at_rest() -> None:
+    kinked = spring(law="bilinear-elastic", compression=0.0, extension=8.0, name="cable")
+    dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5}
+    # 2 xi sqrt(k m), m = 2.
+    (found,) = case_with(spring=[{**kinked, "offset": -0.1}], dashpot=[dashpot]).scene.dashpots
+    assert found.coefficient == pytest.approx(4.0, rel=CLOSE)
+    said = problems(spring=[{**kinked, "offset": 0.1}], dashpot=[dashpot])
+    assert "coefficient; spring 'cable' does not resist at rest, refer to a frequency" in said
 
 
 def test_hertz_is_refused_for_what_a_ratio_refers_to() -> None:
@@ -289,12 +294,16 @@ def test_rayleigh(keys: Table) -> None:
     assert coefficients == pytest.approx([0.32, 0.48, 0.72, 0.3], rel=CLOSE)
 
 
-def test_rayleigh_warns_of_a_kinked_spring() -> None:
-    kinked = spring(law="bilinear-elastic", compression=1.0, extension=2.0, name="stop")
+def test_rayleigh_damps_a_kinked_spring_as_it_is_at_rest() -> None:
+    """At its kink by the smaller of two stiffnesses, which is said; slack not at all."""
     group: Table = {"bodies": ["a"], "mass_coefficient": 0.1, "stiffness_coefficient": 0.1}
-    case = case_with(spring=[kinked], rayleigh=[group])
-    assert len(case.scene.dashpots) == 1
-    assert any("'stop' has a kink" in warning for warning in case.warnings)
+    kinked = spring(law="bilinear-elastic", compression=3.0, extension=2.0, name="stop")
+    for offset, damping in ((0.0, 0.2), (0.1, 0.3), (-0.1, 0.2)):
+        case = case_with(spring=[{**kinked, "offset": offset}], rayleigh=[group])
+        assert [d.coefficient for d in case.scene.dashpots] == pytest.approx([0.2, damping])
+        assert inputs_of(case)["at_rest"]["at_kink"] == ["stop"] * (offset == 0.0)
+    slack = spring(law="bilinear-elastic", compression=0.0, extension=2.0, name="s", offset=0.1)
+    assert len(case_with(spring=[slack], rayleigh=[group]).scene.dashpots) == 1
 
 
 def test_a_body_in_two_rayleigh_groups() -> None:
@@ -337,7 +346,7 @@ def test_a_ratio_of_springs_holds_at_a_mode_with_the_others_yielded() -> None:
     ("keys", "said"),
     [
         ({"springs": ["story"]}, "springs: found 'story'; accepted: some of isolators, storey"),
-        ({"springs": ["stop"]}, "springs: found 'stop'; accepted: springs without a kink"),
+        ({"springs": ["stop"]}, "springs: found 'stop'; accepted: springs that resist at rest"),
         ({"springs": ["storey", "storey"]}, "springs: found ['storey', 'storey']; accepted: every"),
         ({"springs": "storey"}, "springs: found 'storey'; accepted: a list of names"),
         ({"bodies": ["b"]}, "bodies: found ['b']; accepted: one of bodies and springs"),

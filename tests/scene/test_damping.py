@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
-from eventpound.scene import Body, BoucWen, Linear, Series, Spring
+from eventpound.scene import BilinearElastic, Body, BoucWen, Linear, Series, Spring
 from eventpound.scene.damping import (
-    initial_stiffness,
-    post_yield_stiffness,
     ratio_coefficient,
     rayleigh_coefficients,
     rayleigh_dashpots,
@@ -48,6 +44,7 @@ def test_rayleigh_dashpots_make_a_m_plus_b_k() -> None:
         Spring("s2", ("one", "two"), Linear(70.0)),
         Spring("s3", ("two", "outside"), Linear(90.0)),
         Spring("s4", ("two", "ground"), Series((Linear(1.0),))),
+        Spring("slack", ("two", "ground"), BilinearElastic(0.0, 9.0, 0.1)),
     )
     a, b = 0.2, 0.01
     dashpots = rayleigh_dashpots(bodies[:2], springs, a, b)
@@ -59,19 +56,10 @@ def test_rayleigh_dashpots_make_a_m_plus_b_k() -> None:
             if end in index:
                 direction[index[end]] = sign
         damping += dashpot.coefficient * np.outer(direction, direction)
-    stiffness = np.array([[50.0 + 70.0, -70.0], [-70.0, 70.0]])
+    stiffness = np.array([[50.0 + 70.0, -70.0], [-70.0, 70.0 + 1.0]])
     np.testing.assert_allclose(damping, a * np.diag([2.0, 3.0]) + b * stiffness, rtol=8 * EPS)
 
 
 def test_zero_coefficients_add_no_dashpots() -> None:
     springs = (Spring("s", ("ground", "one"), Linear(70.0)),)
     assert rayleigh_dashpots((Body("one", 2.0),), springs, 0.0, 0.0) == ()
-
-
-def test_stiffnesses_of_laws() -> None:
-    bouc_wen = BoucWen(stiffness=10.0, strength=4.0, yield_displacement=0.1)
-    assert initial_stiffness(bouc_wen) == 50.0
-    assert post_yield_stiffness(bouc_wen) == 10.0
-    assert initial_stiffness(Linear(7.0)) == post_yield_stiffness(Linear(7.0)) == 7.0
-    assert initial_stiffness(Series((Linear(7.0),))) is None
-    assert math.isclose(ratio_coefficient(1.0, 4.0, 9.0), 12.0)

@@ -25,10 +25,11 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
+from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.check import scene_problems
 from eventpound.scene.modes import modes_of
 from eventpound.scene.parameters import places_of
-from eventpound.scene.periods import joined, nominal_stiffness
+from eventpound.scene.periods import joined
 from eventpound.scene.worst_variants import worst_variants
 
 EPS = np.finfo(float).eps
@@ -49,7 +50,7 @@ def matrices(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """M, C, K of a scene, K initial."""
     names = [body.name for body in scene.bodies]
     damping = joined(names, [(d.between, d.coefficient) for d in scene.dashpots])
-    stiffness = joined(names, [(s.between, nominal_stiffness(s)) for s in scene.springs])
+    stiffness = joined(names, [(s.between, stiffness_of(s)) for s in scene.springs])
     return np.diag([body.mass for body in scene.bodies]), damping, stiffness
 
 
@@ -108,7 +109,7 @@ def test_floors_on_a_slab_are_damped_relative_to_it() -> None:
     assert ratios_of(Scene(bodies, springs, dashpots))[0] < 1e-3
 
 
-def test_springs_with_a_kink_and_others_are_left_out() -> None:
+def test_springs_slack_at_rest_and_others_are_left_out() -> None:
     bodies, springs = frame(3)
     more = (
         Spring("stop", ("f2", GROUND), BilinearElastic(1e9, 0.0, -0.1)),
@@ -144,7 +145,7 @@ def test_what_cannot_be_damped_by_modes(ratio: float, names: str, said: str) -> 
 def unlike_ratios() -> Scene:
     """An elastic frame whose dashpots are negative in part."""
     bodies, springs = frame(4)
-    springs = tuple(replace(s, law=Linear(nominal_stiffness(s))) for s in springs)
+    springs = tuple(replace(s, law=Linear(stiffness_of(s))) for s in springs)
     dashpots = modal_damping(bodies, springs, [0.05, 0.02, 0.0, 0.01])
     assert min(dashpot.coefficient for dashpot in dashpots) < 0.0
     return Scene(bodies, springs, dashpots)

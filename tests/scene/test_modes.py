@@ -80,7 +80,7 @@ def test_rayleigh_damping_of_modes_is_the_ratio_there() -> None:
     scene, *_ = building()
     names = [body.name for body in scene.bodies]
     table = Table({"bodies": names, "ratio": 0.05, "modes": [1, 3]}, "[[rayleigh]] 1", [])
-    dashpots, _ = read_damping([table], [], scene.bodies, scene.springs)
+    dashpots = read_damping([table], [], scene.bodies, scene.springs)
     found = modes_of(Scene(scene.bodies, scene.springs, dashpots), names)
     assert found.damping[[0, 2]] == pytest.approx(0.05, rel=1e-12)
     assert found.damping[1] < 0.05 < found.damping[3]
@@ -92,7 +92,7 @@ def test_modes_that_there_are_not(modes: object) -> None:
     problems: list = []
     names = [body.name for body in scene.bodies]
     table = Table({"bodies": names, "ratio": 0.05, "modes": modes}, "[[rayleigh]] 1", problems)
-    assert read_damping([table], [], scene.bodies, scene.springs)[0] == ()
+    assert read_damping([table], [], scene.bodies, scene.springs) == ()
     assert [problem.key for problem in problems] == ["modes"]
 
 
@@ -199,7 +199,7 @@ def test_stiffness_proportional_damping_by_a_period() -> None:
         (STOREYS, {"period": -0.2}, "none negative"),
         (["s4"], {"mode": 2}, "found 's4'; accepted: some of isolators, s1, s2, s3, stop"),
         ([], {"mode": 2}, "found none"),
-        (["stop"], {"mode": 2}, "springs without a kink"),
+        (["stop"], {"mode": 2}, "springs that resist at rest"),
         (["s1", "apart"], {"mode": 2}, "2 structures; accepted: springs of one"),
     ],
 )
