@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import asdict, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import airy
 
 from eventpound import simulate
+from eventpound.case import read_case
 from eventpound.errors import InputError
 from eventpound.motion import MavroeidisPapageorgiou, NoMotion
 from eventpound.response import Response
@@ -213,6 +215,27 @@ def test_an_elastic_way_out_and_back_loses_nothing() -> None:
     # Without degradation of stiffness z holds z^2/2.
     law = replace(law, stiffness_degradation=0.0, initial_z=0.6)
     assert law.second_at == pytest.approx(3.0 + 0.18)
+    law = replace(law, stiffness_degradation=0.7)
+    a = 0.5 * 0.7 * 0.6**2
+    assert law.second_at == pytest.approx(3.0 * math.exp(a) + math.expm1(a) / 0.7, rel=1e-14)
+
+
+def test_epsilon_of_a_case_starts_at_its_loss_and_what_its_z_holds() -> None:
+    spring = {"between": ["ground", "b"], "name": "s", "law": "degrading-bouc-wen"}
+    spring |= {"stiffness": 0.0, "strength": 1e3, "yield_displacement": 0.01, "exponent": 2}
+    for loss in (0.0, 2.0):
+        given = spring | {"initial_z": 0.5, "strength_degradation": 0.3, "initial_loss": loss}
+        case = read_case(
+            {
+                "excitation": {"kind": "none"},
+                "body": [{"name": "b", "mass": 1000.0}],
+                "spring": [given],
+                "run": {"duration": 1e-6},
+            },
+            Path("case.toml"),
+        )
+        final = simulate(case, error_estimate=False).final["s"]
+        assert final["epsilon"] == pytest.approx(loss + 0.125, abs=1e-9)
 
 
 def worn(scene: Scene, seed: int) -> Scene:
