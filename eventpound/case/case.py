@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from eventpound.case.figure import Figure
+from eventpound.case.record_scaling import LARGEST_SCALE
 from eventpound.case.suite import Suite
 from eventpound.motion.readers.base import RecordData
 from eventpound.scene.pi_structure import PiStructure
@@ -28,7 +29,7 @@ class Stated:
     without_contact : bool
         Whether to run the scene without contact, too, for `amplification` and its peaks.
     avoiding_gap : bool
-        Whether to find the smallest gap that would have avoided each contact.
+        Whether to find the gaps that would have avoided contact.
     units : tuple of str
         In which design numbers are told (`eventpound.units.TOLD`); of others the usual.
     events : tuple of str
@@ -54,8 +55,8 @@ class Stated:
         if self.threshold_speed != DEFAULTS.threshold_speed:
             yield "threshold_speed", "contacts.<contact>.impacts_faster"
         if self.avoiding_gap:
-            yield "avoiding_gap", "contacts.<contact>.avoiding_gap"
-            yield "avoiding_gap", "contacts.<contact>.avoiding_gap_alone"
+            for word in ("separation_needed", "avoiding_gap", "avoiding_gap_alone"):
+                yield "avoiding_gap", f"contacts.<contact>.{word}"
 
 
 DEFAULTS = Stated()
@@ -174,6 +175,8 @@ class Case:
     carried : mapping of str to float
         Masses (kg) that the springs' periods are those of, by the names of the springs
         that have one.
+    largest_scale : float
+        Factor on a record beyond which is warned.
     """
 
     title: str
@@ -189,6 +192,7 @@ class Case:
     figure: Figure | None = None
     pi: PiTable | None = None
     carried: Mapping[str, float] = field(default_factory=dict)
+    largest_scale: float = LARGEST_SCALE
 
     def apart(self, scene: Scene) -> Case:
         """The same of another scene, of which nothing is asked beyond what it gives."""

@@ -11,6 +11,7 @@ from typing import Any
 from eventpound.case.frequency import required_frequency
 from eventpound.case.record_file import find_record
 from eventpound.case.record_options import RecordOptions, read_record_options
+from eventpound.case.record_scaling import LARGEST_SCALE
 from eventpound.case.suite import Suite, read_suite, understood_suite
 from eventpound.case.table import Table, read_numbers
 from eventpound.motion import (
@@ -46,12 +47,15 @@ class Excitation:
         What was read from a file.
     suite : Suite, optional
         The records of a suite; the motion is then none.
+    largest_scale : float
+        Factor on a record beyond which is warned.
     """
 
     motion: GroundMotion
     table: Mapping[str, object]
     record: RecordData | None = None
     suite: Suite | None = None
+    largest_scale: float = LARGEST_SCALE
 
 
 def read_excitation(table: Table, directory: Path) -> Excitation | None:
@@ -149,7 +153,8 @@ def _read_record(table: Table, directory: Path) -> Excitation | None:
             return None
         # What matches nothing is wrong with the case, and found before anything runs.
         suite.members(directory)
-        return Excitation(NoMotion(), understood_suite(suite), suite=suite)
+        said, largest = understood_suite(suite), suite.options.size.largest
+        return Excitation(NoMotion(), said, None, suite, largest)
     if isinstance(table.data.get("file"), list):
         return _read_sequence(table, directory, options)
     file = table.text("file", "the file of a record")
@@ -169,7 +174,8 @@ def _read_sequence(
         return None
     data = in_sequence([options.read(find_record(file, directory)) for file in files], rest)
     said = {"file": list(files), "rest": rest, **options.said(), **options.understood()}
-    return Excitation(options.motion(data), {"kind": "record", **said}, data)
+    largest = options.size.largest
+    return Excitation(options.motion(data), {"kind": "record", **said}, data, None, largest)
 
 
 def record_excitation(file: str, path: Path, options: RecordOptions) -> Excitation:
@@ -190,4 +196,5 @@ def record_excitation(file: str, path: Path, options: RecordOptions) -> Excitati
         Where it cannot be read or used.
     """
     data = options.read(path)
-    return Excitation(options.motion(data), options.of_file(file, data), data)
+    said, largest = options.of_file(file, data), options.size.largest
+    return Excitation(options.motion(data), said, data, None, largest)

@@ -10,6 +10,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from eventpound.basics.given import checked
 from eventpound.basics.input_files import read_bytes
@@ -30,6 +31,7 @@ from eventpound.case.options import (
 )
 from eventpound.case.pi import OF_SCENE, read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
+from eventpound.case.record_scaling import large_scales
 from eventpound.case.spring_stiffness import masses_carried
 from eventpound.case.springs import read_springs
 from eventpound.case.suite import Suite, with_suite
@@ -38,6 +40,7 @@ from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import SOURCED, understood_case
 from eventpound.errors import InputError
 from eventpound.motion.free import NoMotion
+from eventpound.motion.record import Record
 from eventpound.scene.at_rest import at_rest
 from eventpound.scene.check import Problem, scene_problems, scene_warnings
 from eventpound.scene.continuation import continued
@@ -84,7 +87,21 @@ def load_case(path: str | Path, suite: str | None = None) -> Case:
     document, file, source_hash = read_document(path)
     if suite is not None:
         document = _with_suite(document, file, suite)
-    return read_case(document, file, source_hash)
+    case = read_case(document, file, source_hash)
+    text = large_scales(_factors(case.scene, document), case.largest_scale)
+    said = (f"{file}: [excitation]: {text}",) if text else ()
+    return replace(case, warnings=(*said, *case.warnings))
+
+
+def _factors(scene: Scene, document: Mapping[str, Any]) -> list[tuple[str, float]]:
+    """Factors on the records of the ground and of supports, by the names of their files."""
+    tables = [document["excitation"], *(s.get("excitation") for s in document.get("support", ()))]
+    motions = [scene.motion, *(support.motion for support in scene.supports)]
+    return [
+        (file if isinstance(file := table["file"], str) else ", ".join(file), motion.factor)
+        for table, motion in zip(tables, motions, strict=True)
+        if isinstance(motion, Record) and table
+    ]
 
 
 def read_document(path: str | Path) -> tuple[dict[str, object], Path, str]:
@@ -218,6 +235,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         figure=figure,
         pi=pi,
         carried=carried,
+        largest_scale=excitation.largest_scale,
     )
 
 

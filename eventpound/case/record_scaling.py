@@ -8,12 +8,13 @@ psa_damping = "5 %"
 target = "code.csv"                                      # least squares to a spectrum
 target_periods = ["0.2 s", "2 s"]
 target_damping = "5 %"
+largest_scale = 4                                        # larger factors are warned of
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -31,6 +32,10 @@ from eventpound.scene.periods import T_1, period_called
 from eventpound.scene.scene import Scene
 from eventpound.units import STANDARD_GRAVITY, Dimension, quantity
 
+LARGEST_SCALE = 4.0
+"""Factor on a record beyond which is warned, where the case does not say another."""
+_MOST_NAMED = 4
+"""Records that a warning names, where each has several factors."""
 _WAYS = ("scale", "pga", "psa", "target")
 _TARGET = (
     'a CSV file with columns period (s) and PSA_g (g), or a list of pairs, [[0.1, "0.5 g"], ...]'
@@ -60,6 +65,8 @@ class RecordScaling:
         What the case calls the period, where it is one of the scene's (`for_scene`).
     target : Target or None
         Spectrum that they are brought close to.
+    largest : float
+        Factor beyond which is warned.
     """
 
     scale: float | None = None
@@ -69,6 +76,7 @@ class RecordScaling:
     psa_damping: float | None = None
     target: Target | None = None
     psa_at: str = ""
+    largest: float = LARGEST_SCALE
 
     def for_scene(self, scene: Scene) -> RecordScaling:
         """The same with the period of a scene, where the case leaves it to that.
@@ -114,7 +122,12 @@ class RecordScaling:
         return ""
 
     def understood(self) -> Mapping[str, object]:
-        """Its keys in SI, with the defaults filled in; a target with its points."""
+        """Its keys in SI, with the defaults filled in, but for that of the largest factor."""
+        limit = {} if self.largest == LARGEST_SCALE else {"largest_scale": self.largest}
+        return {**self._understood(), **limit}
+
+    def _understood(self) -> dict[str, object]:
+        """What scales, a target with its points."""
         if self.target is not None:
             return {
                 "target": [list(point) for point in zip(*self.target.points, strict=True)],
@@ -170,9 +183,38 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
         table.report_missing("psa_period", 'the period of psa (s), or "T1" for that of the scene')
         return None
     target = _read_target(table, directory)
-    numbers = [value for value in (scale, pga, psa, period, damping) if value is not None]
+    given_limit = table.optional_quantity("largest_scale", Dimension.NUMBER, "a positive number")
+    limit = LARGEST_SCALE if given_limit is None else given_limit
+    numbers = [value for value in (scale, pga, psa, period, damping, limit) if value is not None]
     wrong = any(math.isnan(n) or n < 0.0 for n in numbers) or (table.has("target") and not target)
-    return None if wrong else RecordScaling(scale, pga, psa, period, damping, target, at)
+    return None if wrong else RecordScaling(scale, pga, psa, period, damping, target, at, limit)
+
+
+def large_scales(factors: Sequence[tuple[str, float]], limit: float) -> str:
+    """A sentence on records that are scaled by more than a limit; empty where none is.
+
+    Parameters
+    ----------
+    factors : sequence of tuple of str and float
+        Name and factor of the record of each run.
+    limit : float
+        The limit.
+    """
+    over = sorted(((abs(f), name) for name, f in factors if abs(f) > limit), reverse=True)
+    if not over:
+        return ""
+    largest: dict[str, float] = {}
+    for factor, name in over:
+        largest.setdefault(name, factor)
+    each = [f"{name} times {factor:.3g}" for name, factor in largest.items()]
+    # Of an intensity each record has many factors: its largest says enough.
+    several = len({name for name, _ in factors}) < len(factors)
+    most = _MOST_NAMED if several else len(each)
+    more = f" and {len(each) - most} more" if len(each) > most else ""
+    count = f"{len(over)} of {len(factors)}"
+    who = f"{count} runs scale their record" if several else f"{count} records are scaled"
+    named = ", ".join(each[:most]) + more
+    return f"{who} by more than {limit:g} (largest_scale in [excitation]): {named}"
 
 
 def _own_period(table: Table) -> str:

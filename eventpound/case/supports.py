@@ -122,6 +122,9 @@ def _own_motion(table: Table, directory: Path, in_suite: bool) -> Excitation | N
         if own.has(key) and not in_suite:
             own.reject(key, "file: records of a support go with those of a suite in [excitation]")
             return None
+    if own.has("largest_scale"):
+        own.reject("largest_scale", "in [excitation] of the case, for all records")
+        return None
     excitation = read_excitation(own, directory)
     if excitation is not None and isinstance(excitation.table.get("psa_period"), str):
         own.reject("psa_period", "a period (s)")

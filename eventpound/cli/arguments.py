@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import textwrap
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
@@ -16,6 +16,7 @@ from eventpound.errors import InputError, told_of
 if TYPE_CHECKING:
     from eventpound.case import Case
     from eventpound.report.style import Paper
+    from eventpound.study.plan import Base
     from eventpound.study.reading import StudyCase
 
 T = TypeVar("T")
@@ -216,6 +217,14 @@ def show_warnings(warnings: Iterable[str]) -> None:
     """Say on stderr what is computed as it is asked for, but hardly meant so."""
     for warning in warnings:
         complain(f"warning: {warning}")
+
+
+def warn_of_scales(given: Case | Sequence[Base]) -> None:
+    """Warn of records of a suite, or of the scenes of a study, that are scaled by much."""
+    from eventpound.study.large_scales import large_scales_of
+
+    if text := large_scales_of(given):
+        complain(f"warning: {text}")
 
 
 def check_solver_of(case: Case, in_file: bool = True) -> None:

@@ -43,6 +43,8 @@ def _check(options: Options) -> int:
         return _check_study(arguments.load_study(options.case))
     case = arguments.load(options.case)
     arguments.check_solver_of(case)
+    if case.suite is not None:
+        arguments.warn_of_scales(case)
     from eventpound.results.inputs import inputs_of
 
     inputs = inputs_of(case)
@@ -74,6 +76,7 @@ def _check_study(case: StudyCase) -> int:
     from eventpound.scene.pi_terms import number_of_terms
 
     study = case.study
+    arguments.warn_of_scales(study.bases)
     print(f"study     {study.title}")
     print(f"runs      {study.size}, stored in chunks of {study.chunk_size}")
     print(f"axes      {', '.join(study.columns)}")

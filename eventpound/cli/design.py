@@ -108,6 +108,7 @@ def _of_suite(case: Case, out: Path) -> DesignRuns:
     with going_on(), Counter("records") as progress:
         made = made_of_suite(case, out, progress)
     assert made.runs is not None
+    arguments.warn_of_scales(case)
     for record, why in zip(made.runs["record"], made.runs["failed"], strict=True):
         if why:
             complain(f"{record} failed, and is left out: {why}")
@@ -133,6 +134,7 @@ def _of_study(plan: Plan, out: Path) -> pd.DataFrame:
     with going_on(), StudyProgress(plan.size) as progress:
         made = made_of_study(plan, out, progress)
     assert made.runs is not None
+    arguments.warn_of_scales(plan.bases)
     if failed := int((~made.runs["success"]).sum()):
         complain(f"{failed} of {len(made.runs)} runs failed, and are left out")
     return made.table

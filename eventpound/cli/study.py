@@ -149,6 +149,7 @@ def _make_runs(options: Options, out: Path) -> None:
         moved = run_study(case.study, out, engine, progress)
     if moved is not None:
         print(f"moved     what was in {out} before is in {moved}")
+    arguments.warn_of_scales(case.study.bases)
     print(f"runs      {case.study.size}, {_failures(out)} failed")
     print(f"results   {out}")
     if (case.figures or case.intensities) and not options.no_figures:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Options
+from eventpound.cli.arguments import Options, warn_of_scales
 from eventpound.cli.progress import Counter
 from eventpound.cli.talk import complain, going_on, located
 
@@ -49,6 +49,7 @@ def run_suite(case: Case, options: Options, out: Path) -> int:
             print(f"figure    {path}")
     _say_what_is_unlikely(table)
     _say_what_failed(table)
+    warn_of_scales(case)
     return 0
 
 

@@ -20,6 +20,7 @@ from eventpound.report.many import fractiles, struck
 from eventpound.report.spectrum_figure import suite_spectra_figure
 from eventpound.report.suite_plot import suite_figure
 from eventpound.results.cells import Cells
+from eventpound.study.large_scales import large_scales_of
 from eventpound.units import STANDARD_GRAVITY
 
 _MOST_BODIES, _MOST_SPECTRA = 6, 100
@@ -72,6 +73,8 @@ def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> html.Part:
         lines["failed"] = f"{failed}; why is in the table of records"
     if case.suite is not None and case.suite.options.scaling:
         lines["scaling"] = case.suite.options.scaling
+    if large := large_scales_of(case):
+        lines["warning"] = large
     if done.empty:
         return html.list_of(lines)
     for name, size, unit in (("PGA", STANDARD_GRAVITY, "g"), ("L_e", 0.01, "cm")):

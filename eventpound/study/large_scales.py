@@ -1,0 +1,62 @@
+"""Which runs of a study, or of a suite, scale their record by more than the limit of the case."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from eventpound.case.case import Case
+from eventpound.case.record_scaling import large_scales
+from eventpound.errors import InputError
+from eventpound.motion.record import Record
+from eventpound.scene.parameters import motion_with, places_of
+from eventpound.study.plan import Base
+from eventpound.study.variants import axis_values, rows_with
+
+
+def large_scales_of(given: Case | Sequence[Base]) -> str:
+    """A sentence on them; empty where there are none. Records are read, nothing is run.
+
+    Parameters
+    ----------
+    given : Case or sequence of Base
+        Of a suite, or the scenes of a study.
+    """
+    if isinstance(given, Case):
+        members = () if given.suite is None else given.suite.members(given.directory)
+        given = (Base(given, {}, (), False, tuple(members)),)
+    limit = max(base.case.largest_scale for base in given)
+    return large_scales([pair for base in given for pair in _factors(base)], limit)
+
+
+def _factors(base: Base) -> Iterator[tuple[str, float]]:
+    """Factor on the record of each run, by its name; none on one that cannot be read."""
+    for member in base.records:
+        try:
+            yield from ((member.name, f) for f in _over_axes(base.under(member)))
+            for name, own in member.supports:
+                yield f"{own.name} at {name}", own.motion().factor
+        except InputError:
+            # Its run says so.
+            continue
+    if not base.records:
+        motion: Any = base.case.understood.get("excitation", {})
+        yield from ((str(motion.get("file")), f) for f in _over_axes(base))
+
+
+def _over_axes(base: Base) -> Iterator[float]:
+    """Factors on the record of a scene over its axes; none where its motion is no record."""
+    scene, size = base.case.scene, base.size_of_record
+    if not isinstance(scene.motion, Record):
+        return
+    places = places_of(scene)
+    numbers = rows_with(base, axis_values(base, 0, size), range(size)).numbers
+    moving = {places[k]: v for k, v in numbers.items() if places[k].kind == "excitation"}
+    columns = np.array([*moving.values()]).reshape(len(moving), size)
+    each, count = np.unique(columns, axis=1, return_counts=True)
+    for values, runs in zip(each.T.tolist(), count.tolist(), strict=True):
+        changed = motion_with(scene.motion, dict(zip(moving, values, strict=True)))
+        assert isinstance(changed, Record)
+        yield from [changed.factor] * runs
