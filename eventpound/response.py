@@ -53,6 +53,8 @@ class Response:
         Errors of peaks and final values, where they were estimated (page "results" of the docs).
     stated : Stated
         Numbers that some quantities are about.
+    in_equilibrium : bool
+        Whether the scene was put where its forces hold it, as ``start`` of ``[run]`` says.
     """
 
     task: Task
@@ -60,6 +62,7 @@ class Response:
     recording: Recording
     error_estimate: Mapping[str, Any] | None = None
     stated: Stated = DEFAULTS
+    in_equilibrium: bool = False
 
     @property
     def scene(self) -> Scene:
@@ -171,7 +174,8 @@ class Response:
             row: dict[str, Any] = {"shock": len(rows) + 1, "start": task.start, "end": task.end}
             try:
                 scene = self.scene if state is None else continued(self.scene, state, task.start)
-                row |= {"failed": "", **self._of_task(replace(task, scene=scene)).numbers()}
+                own = replace(self, in_equilibrium=self.in_equilibrium and state is None)
+                row |= {"failed": "", **own._of_task(replace(task, scene=scene)).numbers()}
             except EventpoundError as error:
                 row["failed"] = str(error)
             rows.append(row)
@@ -196,7 +200,12 @@ class Response:
         return self._avoided[widened]
 
     def _of_scene(self, scene: Scene) -> Response:
-        """The same run of another scene."""
+        """The same run of the scene with other contacts."""
+        if self.in_equilibrium:
+            # Brings SciPy, which other runs do without.
+            from eventpound.scene.statics import placed_again
+
+            scene = placed_again(scene, self.task.start)
         return replace(self._of_task(replace(self.task, scene=scene)), stated=DEFAULTS)
 
     def _of_task(self, task: Task) -> Response:

@@ -87,7 +87,7 @@ def made_ready(
     asked([(scene, run.stated)])
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
-    return ReadyScene(solver_named(options.name), task, run.stated)
+    return ReadyScene(solver_named(options.name), task, run.stated, run.in_equilibrium)
 
 
 class ReadyScene:
@@ -101,12 +101,17 @@ class ReadyScene:
         The run of the scene as it is, checked.
     stated : Stated
         Of the responses.
+    in_equilibrium : bool
+        Whether the scene was put where its forces hold it.
     """
 
-    def __init__(self, solver: Solver, task: Task, stated: Stated) -> None:
+    def __init__(
+        self, solver: Solver, task: Task, stated: Stated, in_equilibrium: bool = False
+    ) -> None:
         make: Callable[[Task], ReadyTask | None] | None = getattr(solver, "ready", None)
         self._ready = None if make is None else make(task)
-        self.solver, self.task, self.stated = solver, task, stated
+        self.solver, self.task = solver, task
+        self._said: dict[str, Any] = {"stated": stated, "in_equilibrium": in_equilibrium}
 
     def run(self, values: Mapping[Place, float], task: Task) -> Response:
         """Run it.
@@ -126,11 +131,11 @@ class ReadyScene:
         name, whole = self.solver.name, partial(_with_values, task, values)
         if self._ready is None:
             task = whole()
-            return Response(task, name, solved(self.solver, task), stated=self.stated)
+            return Response(task, name, solved(self.solver, task), **self._said)
         # Both are made when they are asked for.
         asked: Any = whole if values else task
         recording: Any = self._ready.run(values, task)
-        return Response(asked, name, recording, stated=self.stated)
+        return Response(asked, name, recording, **self._said)
 
 
 def _with_values(task: Task, values: Mapping[Place, float]) -> Task:

@@ -143,10 +143,14 @@ LISTED: tuple[Quantity, ...] = (
              column("largest_gap")),
     Quantity(_CONTACT + "seat_used", "seat width used", D.LENGTH,
              "Largest opening beyond the gap at rest: what a seat loses.", v.seat_used),
-    Quantity(_CONTACT + "avoiding_gap", "separation needed, no other impacts", D.LENGTH,
+    Quantity(_CONTACT + "separation_needed", "separation needed", D.LENGTH,
+             "Gap with which, in all contacts of its joint, nothing touches anywhere; unequal gaps "
+             "grow alike.",
+             v.separation_needed, TakenFrom.APART, tabled=False),
+    Quantity(_CONTACT + "avoiding_gap", "gap needed here, all joints open", D.LENGTH,
              "Smallest gap that would have avoided contact, where no other contact closes either.",
              v.avoiding_gap, TakenFrom.APART, tabled=False),
-    Quantity(_CONTACT + "avoiding_gap_alone", "separation needed", D.LENGTH,
+    Quantity(_CONTACT + "avoiding_gap_alone", "gap if only this contact is opened", D.LENGTH,
              "Smallest gap that would have avoided this contact and others between the same ends, "
              "where all else stays and strikes.", v.avoiding_gap_alone, TakenFrom.APART_ALONE,
              tabled=False),

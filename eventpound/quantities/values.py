@@ -12,12 +12,16 @@ from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import SIX, Value, name_of
 from eventpound.quantities.runs import Runs
 from eventpound.scene.elastic_laws import elastic_force, reduced
+from eventpound.scene.joints import joints_of
 from eventpound.scene.parameters import places_of, told_of_variants
 from eventpound.scene.scene import Scene
 from eventpound.scene.separation import correlation, cqc
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes, Recording
+
+ROUNDED_UP = 1e-6
+"""Part by which a separation is told too wide, so that rounding closes nothing in a run with it."""
 
 
 def law_is(kind: type) -> Callable[[Scene, int], bool]:
@@ -204,15 +208,33 @@ def residual_elongation(many: Runs, i: int) -> Floats:
 
 def seat_used(many: Runs, i: int) -> Floats:
     """Largest opening of contact i beyond its gap at rest (m)."""
+    return np.maximum(many.largest_gap[:, i] - _gap(many, i), 0.0)
+
+
+def _used(many: Runs) -> Floats:
+    """Smallest gaps of all contacts that would have avoided every contact (m), shape (n, K)."""
+    every = tuple(range(len(many.scene.contacts)))
+    nothing = np.full((many.t.size, len(every)), np.nan)
+    return nothing if many.apart is None else many.apart(every)
+
+
+def separation_needed(many: Runs, i: int) -> Floats:
+    """Gap of contact i with which its joint is wide enough, were the others, too (m)."""
+    used, own = _used(many), _gap(many, i)
+    (joint,) = (each for each in joints_of(many.scene) if i in each)
+    widest = np.max([used[:, k] + (own - _gap(many, k)) for k in joint], axis=0)
+    return np.asarray(widest + ROUNDED_UP * used[:, joint].max(axis=1))
+
+
+def _gap(many: Runs, i: int) -> Floats | float:
+    """Gap of contact i at rest (m)."""
     contact = many.scene.contacts[i]
-    gap = many.parameters.get(f"contact.{contact.name}.gap", contact.gap)
-    return np.maximum(many.largest_gap[:, i] - gap, 0.0)
+    return many.parameters.get(f"contact.{contact.name}.gap", contact.gap)
 
 
 def avoiding_gap(many: Runs, i: int) -> Floats:
     """Smallest gap that would have avoided contact i, were the others avoided, too (m)."""
-    every = tuple(range(len(many.scene.contacts)))
-    return many.t * np.nan if many.apart is None else many.apart(every)[:, i]
+    return _used(many)[:, i]
 
 
 def avoiding_gap_alone(many: Runs, i: int) -> Floats:

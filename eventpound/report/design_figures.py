@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from eventpound.quantities.lookup import Named
 from eventpound.quantities.owners import owners
 from eventpound.report import style
+from eventpound.report.design_tables import NEEDED, joint_names
 from eventpound.report.markers import draw_circles
 from eventpound.report.view import View
 from eventpound.results.trade import Trade
@@ -24,7 +25,7 @@ from eventpound.units import Dimension
 
 _WIDE, _HIGH = 7.4, 2.3
 """Inches."""
-_MOST_LINES, _MOST_LEVELS = 6, 2
+_MOST_LINES, MOST_LEVELS = 6, 2
 """Contacts or springs in one panel; those whose fractiles are drawn."""
 _NAMES: Any = {"fontsize": 6.5, "ncols": 2, "columnspacing": 1.0, "handletextpad": 0.2}
 
@@ -61,10 +62,11 @@ def demand_figure(
         drawn = _largest(shown, demands)
         for named, color in zip(drawn, style.colors(len(drawn)), strict=True):
             values = shown[named.name].abs().to_numpy(float) / size
-            label = style.literal(owners(scene, quantity.owner)[named.i])
+            joint = joint_names(scene).get(named.i) if quantity.path == NEEDED else None
+            label = style.literal(joint or owners(scene, quantity.owner)[named.i])
             axes.plot(numbers, values, "o", markersize=3.0, color=color, label=label)
             # Lines of more are told apart by nobody.
-            few = FRACTILES if len(demands) <= _MOST_LEVELS else ()
+            few = FRACTILES if len(demands) <= MOST_LEVELS else ()
             for fractile, line in zip(few, (":", "--"), strict=False):
                 level = np.nanpercentile(values, fractile) if np.isfinite(values).any() else np.nan
                 axes.axhline(level, color=color, linestyle=line, linewidth=0.8)

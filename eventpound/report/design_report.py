@@ -15,10 +15,11 @@ from eventpound.case.case import Case
 from eventpound.case.member import member_case, member_of
 from eventpound.motion.record import Record
 from eventpound.quantities.lookup import Named
-from eventpound.report.design_figures import demand_figure, governing_figure
+from eventpound.report.design_figures import MOST_LEVELS, demand_figure, governing_figure
 from eventpound.report.design_tables import (
     NEEDED,
     contact_words,
+    joint_names,
     lacking_contacts,
     record_cells,
     record_names,
@@ -40,6 +41,7 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, Slider
 from eventpound.simulation import simulate
 from eventpound.study.design import FRACTILES, demands_of
+from eventpound.study.large_scales import large_scales_of
 from eventpound.study.records import FAILED
 from eventpound.units import TOLD, Dimension
 
@@ -66,9 +68,9 @@ _LEFT_OUT = ("alpha", "mass on it", "F_y/W", "Q (", "height", "offset", "post-yi
 LIMITS = (
     "Bodies move along one line. Impacts follow Newton's law of restitution, or the law of a "
     "contact that has one; local damage, torsion and vertical motion are not computed.",
-    "Separation needed: the least gap at which nothing touches there, other joints as they "
-    "are. By sum, SRSS and CQC: of the peaks without contact (EN 1998-1, 4.4.2.7; ASCE 7-16, "
-    "12.12.3).",
+    "Separation needed: the least gap of a joint, all of its contacts together, with which "
+    "nothing touches anywhere, all joints that wide. By sum, SRSS and CQC: of the peaks without "
+    "contact (EN 1998-1, 4.4.2.7; ASCE 7-16, 12.12.3).",
     "Seat width used is the motion in the earthquake only; the least bearing length, creep, "
     "shrinkage, temperature and the motion of the ground between supports are to be added.",
     "Residuals are those at the end of each run, with what still swings then.",
@@ -194,20 +196,23 @@ def _second(told: Told) -> Iterator[Block]:
     """Under what, when, and how sure."""
     scene, peaks = told.scene, told.response.peaks["abs_max"]
     worst = scene.contacts[lacking_contacts(scene, told.design)[0]] if scene.contacts else None
-    under = f" under record {told.names[told.record]}, which governs" if told.record else ""
+    under = ""
+    if told.runs is not None:
+        (factor,) = told.runs.loc[told.runs["record"] == told.record, "scale"]
+        under = f" under record {told.names[told.record]}, which governs, times {factor:.3g}"
     view = View(gather(told.response, told.case), told.response.scene)
     yield Head(f"Motion{under}")
     motion = governing_figure(view, worst, str(peaks.idxmax()), told.trade)
     yield Picture(motion, _MOTION)
     if told.runs is not None:
         yield Head("Demand over the records")
-        panels = demand_figure(scene, told.runs, _panels(told), told.trade)
-        yield Picture(panels, _DEMAND)
-        low, high = FRACTILES
-        said = f"Numbers of records as below. Dotted lines: {low:g} %, dashed: {high:g} % of them."
-        yield Words((said,))
+        panels, (low, high) = _panels(told), FRACTILES
+        yield Picture(demand_figure(scene, told.runs, panels, told.trade), _DEMAND)
+        lines = f" Dotted lines: {low:g} %, dashed: {high:g} % of them."
+        drawn = any(len(panel) <= MOST_LEVELS for panel in panels)
+        yield Words((f"Numbers of records as below.{lines * drawn}",))
         yield Head("Records")
-        yield Columns(tuple((table,) for table in record_cells(told.runs, told.trade)))
+        yield Columns(tuple((table,) for table in record_cells(scene, told.runs, told.trade)))
     yield Head("Limits and warnings")
     yield Words(tuple(f"• {text}" for text in _limits(told)))
     yield Head("Origin")
@@ -265,6 +270,8 @@ def _panels(told: Told) -> list[list[Named]]:
     """Demands that are drawn, those of one kind together."""
     found = demands_of(told.scene, told.case.run.stated)
     groups = ([n for n in found if n.quantity.path == path] for path in _PANELS)
+    needed = joint_names(told.scene)
+    groups = ([n for n in group if n.quantity.path != NEEDED or n.i in needed] for group in groups)
     return [group for group in groups if group][:_MOST_PANELS]
 
 
@@ -282,6 +289,8 @@ def _limits(told: Told) -> Iterator[str]:
         if done < _FEW:
             last = f"{FRACTILES[1]:g} % fractile"
             yield f"{done} records are few: the {last} depends on the largest one or two."
+        if large := large_scales_of(told.case):
+            yield f"{large}."
         for row in failed.head(_MOST_WARNINGS).to_dict("records"):
             yield f"Left out, because it failed: {row['record']}: {row[FAILED]}."
     for warning in told.case.warnings[:_MOST_WARNINGS]:

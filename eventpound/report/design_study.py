@@ -15,9 +15,10 @@ from eventpound.report.symbols import axis_label, display_unit, value_label
 from eventpound.results.cells import Cells, headed
 from eventpound.results.trade import Trade
 from eventpound.study.design import FRACTILES
+from eventpound.study.large_scales import large_scales_of
 from eventpound.study.plan import RECORD, Plan
 
-_SHOWN = ("avoiding_gap_alone", "seat_used", "max_impulse", "ductility", "drift_ratio")
+_SHOWN = ("separation_needed", "seat_used", "max_impulse", "ductility", "drift_ratio")
 """Demands, by the last words of their quantities."""
 _MOST_ROWS, _MOST_CURVES, _MOST_PANELS = 40, 6, 3
 _WIDE, _HIGH, _TALL = 7.4, 2.6, 66.0
@@ -46,7 +47,7 @@ def _blocks(study: Plan, design: pd.DataFrame, trade: Trade) -> Iterator[Block]:
     column = f"{high:g} %"
     under = f"the {column} fractile over {records} records" if records > 1 else "one motion"
     said = f"Each number is the largest of all contacts, springs or bodies, under {under}."
-    yield Words((said,))
+    yield Words((said, *filter(None, [large_scales_of(study.bases)])))
     suffix = design["quantity"].map(lambda name: str(name).rpartition(".")[2])
     found = {word: design[suffix == word] for word in _SHOWN if (suffix == word).any()}
     if not found:

@@ -11,6 +11,8 @@ from eventpound.quantities.lookup import Named, find
 from eventpound.results.cells import Cells, headed
 from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact, weights_of
+from eventpound.scene.joints import joints_of
+from eventpound.scene.periods import longest_period
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Hysteretic, Slider
 from eventpound.study.design import FRACTILES
@@ -27,14 +29,15 @@ _NUMBERS = ("value", *(f"{p:g} %" for p in FRACTILES), "largest")
 """Columns of numbers, of a run or of many."""
 _OTHERS = {"spring": "Springs", "body": "Bodies", "": "Whole"}
 _CONTACT, _SPRING = "contacts.<contact>.", "springs.<spring>."
-NEEDED = _CONTACT + "avoiding_gap_alone"
-"""The separation that a contact needs."""
-_NO_OTHERS = _CONTACT + "avoiding_gap"
+NEEDED = _CONTACT + "separation_needed"
+"""The gap with which nothing touches, of a joint."""
+_OF_ONE = tuple(_CONTACT + word for word in ("avoiding_gap", "avoiding_gap_alone"))
+"""Gaps of one contact, which may be the same."""
 _PEAK, _RESIDUAL = _SPRING + "abs_max_elongation", _SPRING + "residual_elongation"
 _OWN: dict[str, type] = {_PEAK: Slider, _RESIDUAL: Hysteretic}
 """Laws of which a demand is told: others have ductility, drift, or none that stays."""
 _OF_CONTACTS = (
-    *(NEEDED, _NO_OTHERS),
+    *_OF_ONE,
     *(_CONTACT + word for word in ("absolute_sum", "srss", "cqc", "seat_used")),
     *(_CONTACT + word for word in ("impacts_faster", "fastest_closing", "max_impulse")),
     *(_CONTACT + word for word in ("estimated_force", "max_force")),
@@ -47,17 +50,14 @@ _OF_OTHERS = (
     *("acceleration.<body>.abs_max", "peaks.<body>.abs_max", "base_shear.abs_max"),
 )
 """Demands that stand in a report."""
-_MOST_OF_CONTACTS = 3
-"""Contacts in a report."""
+_MOST_JOINTS, _MOST_OF_CONTACTS = 6, 3
+"""Joints in a report, and contacts with the rest of their numbers."""
 _MOST_RECORDS, _IN_ONE_COLUMN = 44, 12
 _LONGEST = 44
 """Letters of the name of a record."""
 _SAME = 5e-3
 """Part by which two separations may differ and be told as one."""
-_SIZES = (
-    *(("scale", "scale", ""), ("PGA", "PGA", "m/s^2")),
-    *(("T_m", "T_m", "s"), ("Sa_T1", "Sa(T1)", "m/s^2")),
-)
+_SIZES = (("scale", "scale", ""), ("PGA", "PGA", "m/s^2"), ("T_m", "T_m", "s"))
 """Numbers of a record: columns of a suite, what they are called and units (SI)."""
 
 
@@ -74,9 +74,13 @@ def design_cells(scene: Scene, table: pd.DataFrame, trade: Trade) -> Iterator[tu
         Units.
     """
     kinds = table["quantity"].map(lambda name: _found(scene, name).quantity.owner)
+    if scene.contacts:
+        joints = type(table)(_of_joints(scene, _by_name(table)))
+        yield "Joints, opened until nothing touches anywhere", _cells(joints, trade, whose=True)
     for contact in scene.contacts:
         rows = table[(kinds == "contact") & (table["of"] == contact.name)]
-        yield f"Contact {contact_words(contact, rows, trade)}", _cells(rows, trade, whose=False)
+        shown = rows[rows["quantity"] != _of(NEEDED, contact)]
+        yield f"Contact {contact_words(contact, rows, trade)}", _cells(shown, trade, whose=False)
     for kind, heading in _OTHERS.items():
         rows = table[kinds == kind]
         if len(rows):
@@ -143,19 +147,51 @@ def report_cells(
     most : int
         Springs or bodies of one demand, those with the largest.
     """
-    rows = {str(row["quantity"]): row for row in table.to_dict("records")}
+    rows = _by_name(table)
     parts = (_at_contacts(scene, table, rows), _of_others(scene, rows))
     return [_reported(list(part), names, trade, most) for part in parts if part]
+
+
+def _by_name(table: pd.DataFrame) -> dict[str, _Row]:
+    """Rows of a table by their quantities."""
+    return {str(row["quantity"]): row for row in table.to_dict("records")}
+
+
+def joint_names(scene: Scene) -> dict[int, str]:
+    """What each joint is called, by its first contact; one of several gaps has several names."""
+    found = {}
+    for joint in joints_of(scene):
+        for gap in dict.fromkeys(scene.contacts[i].gap for i in joint):
+            first, *others = (i for i in joint if scene.contacts[i].gap == gap)
+            last = f" … {scene.contacts[others[-1]].name}" if others else ""
+            found[first] = scene.contacts[first].name + last
+    return found
+
+
+def _of_joints(scene: Scene, rows: Mapping[str, _Row]) -> list[_Row]:
+    """What each joint needs, a row for each gap that it has today."""
+    names = joint_names(scene).items()
+    return [{**rows[_of(NEEDED, scene.contacts[i])], "of": name} for i, name in names]
+
+
+def _of(path: str, contact: Contact) -> str:
+    """The name of a quantity of a contact."""
+    return path.replace("<contact>", contact.name)
 
 
 def _at_contacts(
     scene: Scene, table: pd.DataFrame, rows: Mapping[str, _Row]
 ) -> list[tuple[_Row, ...]]:
-    """Rows of each contact, of that first which lacks most of its gap."""
-    found = []
-    for i in lacking_contacts(scene, table):
-        paths = [path.replace("<contact>", scene.contacts[i].name) for path in _OF_CONTACTS]
-        found.append(tuple(rows[name] for name in paths if name in rows and not _told(name, rows)))
+    """What joints need, then rows of each contact, of that first which lacks most of its gap."""
+    if not scene.contacts:
+        return []
+    order = [scene.contacts[i] for i in lacking_contacts(scene, table)]
+    needed = [_of(NEEDED, contact) for contact in order]
+    joints = sorted(_of_joints(scene, rows), key=lambda row: needed.index(row["quantity"]))
+    found = [tuple(joints[:_MOST_JOINTS])]
+    for contact, joint in zip(order, needed, strict=True):
+        own = (name for path in _OF_CONTACTS if (name := _of(path, contact)) in rows)
+        found.append(tuple(rows[name] for name in own if not _is_told(name, rows, rows[joint])))
     return found
 
 
@@ -176,13 +212,11 @@ def _size(row: _Row) -> float:
     return float(np.nan_to_num(row.get(_NUMBERS[-1], row.get(_NUMBERS[0])), nan=-np.inf))
 
 
-def _told(name: str, rows: Mapping[str, _Row]) -> bool:
-    """Whether a separation without other impacts is the same as with them."""
-    if name not in rows or f"{name}_alone" not in rows:
-        return False
-    own, other = rows[name], rows[f"{name}_alone"]
-    keys = [key for key in _NUMBERS if key in own]
-    return bool(np.allclose([own[k] for k in keys], [other[k] for k in keys], rtol=_SAME))
+def _is_told(name: str, rows: Mapping[str, _Row], joint: _Row) -> bool:
+    """Whether a gap of one contact is that of its joint."""
+    keys = [key for key in _NUMBERS if key in joint]
+    close = np.allclose([rows[name][k] for k in keys], [joint[k] for k in keys], rtol=_SAME)
+    return name.endswith(tuple(path.rpartition(".")[2] for path in _OF_ONE)) and bool(close)
 
 
 def _reported(
@@ -190,7 +224,7 @@ def _reported(
 ) -> Cells:
     """A table of some groups of rows; those that there is no room for are counted."""
     of_contacts = str(groups[0][0]["quantity"]).startswith("contacts.")
-    shown = groups[:_MOST_OF_CONTACTS] if of_contacts else [g[:most] for g in groups]
+    shown = groups[: 1 + _MOST_OF_CONTACTS] if of_contacts else [g[:most] for g in groups]
     kept = [row for group in shown for row in group]
     numbers = [key for key in _NUMBERS if key in kept[0]]
     under = ["under"] if "under" in kept[0] else []
@@ -216,14 +250,15 @@ def scaling_words(case: Case, trade: Trade) -> str:
 
 
 def lacking_contacts(scene: Scene, table: pd.DataFrame) -> list[int]:
-    """Numbers of the contacts, those first whose gap is most below what they need."""
+    """Numbers of the contacts, those first whose joint lacks most; of one joint, who needs most."""
     largest = table.set_index("quantity")[_NUMBERS[-1] if _NUMBERS[-1] in table else _NUMBERS[0]]
 
-    def lack(i: int) -> float:
+    def lack(i: int) -> list[float]:
         contact = scene.contacts[i]
-        return float(largest[NEEDED.replace("<contact>", contact.name)]) - contact.gap
+        sizes = (float(largest[_of(path, contact)]) for path in (NEEDED, _OF_ONE[0]))
+        return [-np.nan_to_num(size - contact.gap, nan=-np.inf) for size in sizes]
 
-    return sorted(range(len(scene.contacts)), key=lambda i: -np.nan_to_num(lack(i), nan=-np.inf))
+    return sorted(range(len(scene.contacts)), key=lack)
 
 
 def record_names(runs: pd.DataFrame) -> dict[str, str]:
@@ -237,9 +272,11 @@ def record_names(runs: pd.DataFrame) -> dict[str, str]:
     return names
 
 
-def record_cells(runs: pd.DataFrame, trade: Trade) -> list[Cells]:
+def record_cells(scene: Scene, runs: pd.DataFrame, trade: Trade) -> list[Cells]:
     """Name and size of each record, as one table, or two where they are many."""
-    there = [size for size in _SIZES if size[0] in runs]
+    at = f"Sa({longest_period(scene) or np.nan:.3g} s)"
+    sizes = (*_SIZES, ("Sa_T1", at, Dimension.ACCELERATION.unit))
+    there = [size for size in sizes if size[0] in runs]
     heads = ("record", *(headed(called, trade.unit(unit)[0]) for _, called, unit in there))
     names, rows = record_names(runs), []
     for row in runs.to_dict("records"):

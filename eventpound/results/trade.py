@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from eventpound.case.case import Stated
@@ -15,6 +16,8 @@ HEAVY = 1e4
 _DIGITS = 3
 _NOTHING = 1e-6
 """What rounding leaves of nothing, in a unit of the trade that nobody chose."""
+_BUILT = (".separation_needed", ".avoiding_gap", ".avoiding_gap_alone")
+"""Ends of names of gaps that are to be built: told too wide, if anything."""
 Unit = tuple[str, float]
 """Its name and its size (SI)."""
 
@@ -62,7 +65,8 @@ class Trade:
         size = self.unit(unit, name)[1]
         if _is_count(name, value / size):
             return f"{value / size:.{_DIGITS}g}"
-        return three_digits(value / size, self.nothing(unit, name))
+        up = name.endswith(_BUILT)
+        return three_digits(value / size, self.nothing(unit, name), math.ceil if up else round)
 
     def nothing(self, unit: str, name: str = "") -> float:
         """What rounding leaves of nothing, in the unit that is told; the same whatever that is."""
@@ -84,17 +88,19 @@ def trade_of(scene: Scene, stated: Stated) -> Trade:
     return Trade(heaviest >= HEAVY, stated.units)
 
 
-def three_digits(value: float, nothing: float = _NOTHING) -> str:
+def three_digits(
+    value: float, nothing: float = _NOTHING, whole: Callable[[float], int] = round
+) -> str:
     """A number with three digits and no exponent; a dash where there is none.
 
-    What is smaller than `nothing` is zero.
+    What is smaller than `nothing` is zero. `whole` makes a whole number of all digits.
     """
     if not math.isfinite(value):
         return "–"
     if abs(value) < nothing:
         return "0"
     places = _DIGITS - 1 - math.floor(math.log10(abs(value)))
+    rounded = whole(value * 10.0**places) / 10.0**places
     # What rounds up to the next power of ten has one place less.
-    rounded = round(value, places)
     places -= math.floor(math.log10(abs(rounded))) > math.floor(math.log10(abs(value)))
     return f"{rounded:.{max(places, 0)}f}"

@@ -25,7 +25,7 @@ from eventpound.quantities.lookup import Named, all_of, unstated
 from eventpound.quantities.owners import owners
 from eventpound.response import Response
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Backfill
+from eventpound.scene.spring import Backfill, Hysteretic
 from eventpound.simulation import simulate
 from eventpound.study.engines.local import engine_of
 from eventpound.study.plan import RECORD, Plan
@@ -48,8 +48,9 @@ _FASTER = _CONTACT + "impacts_faster"
 _ELONGATIONS = _SPRING + "abs_max_elongation", _SPRING + "residual_elongation"
 _ENERGY = _SPRING + "dissipated_energy"
 DEMANDS = (
-    *(_CONTACT + word for word in ("avoiding_gap_alone", "avoiding_gap", "absolute_sum", "srss")),
-    *(_CONTACT + word for word in ("cqc", "largest_gap", "seat_used", "impacts")),
+    *(_CONTACT + word for word in ("separation_needed", "avoiding_gap", "avoiding_gap_alone")),
+    *(_CONTACT + word for word in ("absolute_sum", "srss", "cqc")),
+    *(_CONTACT + word for word in ("largest_gap", "seat_used", "impacts")),
     *(_FASTER, _CONTACT + "fastest_closing", _CONTACT + "max_impulse"),
     *(_CONTACT + "estimated_force", _FORCE, _CONTACT + "largest_overlap"),
     *(_SPRING + "ductility", *_ELONGATIONS, _SPRING + "slip_path"),
@@ -89,8 +90,13 @@ def _says_something(scene: Scene, named: Named) -> bool:
     if path == _ENERGY:
         # Of others it takes further runs.
         return named.quantity.source is TakenFrom.LAWS
-    # Soil is away from its wall at the end: of it depth and residual gap are told.
-    return path not in _ELONGATIONS or not isinstance(scene.springs[named.i].law, Backfill)
+    if path not in _ELONGATIONS:
+        return True
+    law = scene.springs[named.i].law
+    # Soil is away from its wall at the end: of it depth and residual gap are told. What an elastic
+    # spring has left is what still swings.
+    left = path == _ELONGATIONS[1] and not isinstance(law, Hysteretic)
+    return not left and not isinstance(law, Backfill)
 
 
 def asking(case: Case) -> Case:

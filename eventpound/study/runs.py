@@ -157,6 +157,10 @@ def results_of(
         other: Scene, kept: Wanted, struck: Collection[str] = ()
     ) -> tuple[BatchResponse, Ints]:
         """Runs of another scene; those that differ in contacts that it has not are one run."""
+        if rows.case.run.in_equilibrium:
+            from eventpound.scene.statics import placed_again
+
+            other = placed_again(other, rows.case.run.start_time)
         fewer, which = _without_contacts(rows, other, struck)
         return Sweep(fewer, kept).run(workers), which
 
