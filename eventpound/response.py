@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eventpound.basics.given import checked, number
+from eventpound.basics.given import checked, number, positive
 from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import EventpoundError, InputError
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
@@ -383,7 +383,11 @@ class Response:
 
     @property
     def history(self) -> pd.DataFrame:
-        """State at the output times and events, columns as in ``history.csv``."""
+        """State at the output times and events, columns as in ``history.csv``.
+
+        Accelerations leave impacts out, in which they are not finite: for what an accelerometer
+        logs, `at` takes its sampling interval.
+        """
         return self.rows()
 
     @checked
@@ -408,7 +412,10 @@ class Response:
 
     @checked
     def at(
-        self, t: float | str | Floats | Sequence[float | str], side: str = "after"
+        self,
+        t: float | str | Floats | Sequence[float | str],
+        side: str = "after",
+        logger: float | str | None = None,
     ) -> pd.DataFrame:
         """State at any times, columns as in ``history.csv``.
 
@@ -421,11 +428,15 @@ class Response:
             Times (s) within the run, in any order.
         side : str
             ``"after"`` or ``"before"``: which row of an event, or of a jump of the ground.
+        logger : float, optional
+            Sampling interval of an accelerometer (s), ``"5 ms"``.
 
         Returns
         -------
         DataFrame
-            A row for each time, in their order.
+            A row for each time, in their order. Accelerations ``a.<body>`` leave impacts out. With
+            `logger` there are columns ``logged.<body>``: mean absolute accelerations, impacts
+            included, over the interval that ends at each time, or since the start (m/s^2).
 
         Raises
         ------
@@ -435,9 +446,20 @@ class Response:
             Where the run fails.
         """
         times = np.array([number("t", x, Dimension.TIME) for x in np.atleast_1d(t).tolist()])
-        recording, places = rows_at(self.task, self._rerun, times, side)
-        table = replace(self, recording=recording).rows().iloc[places].reset_index(drop=True)
-        return table.assign(t=times)
+        interval = positive("logger", logger, Dimension.TIME)
+        earlier = np.empty(0) if interval is None else np.maximum(times - interval, self.task.start)
+        both = np.concatenate([times, earlier])
+        recording, places = rows_at(self.task, self._rerun, both, side)
+        rows = replace(self, recording=recording).rows().iloc[places].reset_index(drop=True)
+        table = rows[: times.size].assign(t=times)
+        for body in self.scene.bodies if earlier.size else ():
+            ground = self.scene.motion.velocity(both)
+            gained = (rows[f"v.{body.name}"] + ground).to_numpy().reshape(2, -1)
+            taken, smooth = times - earlier, table[f"a.{body.name}"].to_numpy(copy=True)
+            logged = np.divide(gained[0] - gained[1], taken, out=smooth, where=taken > 0.0)
+            table[f"logged.{body.name}"] = logged
+            table.attrs["units"][f"logged.{body.name}"] = HISTORY_UNITS["a"]
+        return table
 
     def history_columns(self) -> dict[str, Floats]:
         """Columns of `history`, by their names."""
