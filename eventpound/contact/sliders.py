@@ -39,7 +39,6 @@ from eventpound.contact.rest import (
 )
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import Clusters, form_clusters, is_support
-from eventpound.mechanics.contact_problem import delassus_matrix
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
@@ -47,7 +46,7 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers, put_numbers
 from eventpound.numerics.box import least_in_box, unless_rounding
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
-from eventpound.tolerances import LCP_ROUNDING, TAKEN_OVER
+from eventpound.tolerances import TAKEN_OVER
 
 
 @deferred_kernel
@@ -147,41 +146,27 @@ def _forces(members: Ints, touching: Touching, sliders: Ints, at: Instant) -> tu
     They are the least of Gauss's function. Where ground and supports hold several, who carries is
     told by the way in which these are about to part.
     """
-    own, mass = at.gap.size - sliders.size, touching.mass
-    left, right = touching.left[members], touching.right[members]
-    a, noise, given = _accelerations(touching)
+    own = at.gap.size - sliders.size
+    acceleration, noise = _accelerations(touching)
     low, high = np.zeros(members.size), np.full(members.size, np.inf)
     start = np.zeros(members.size)
     for i in range(members.size):
-        if members[i] < own:
-            continue
-        link = sliders[members[i] - own]
-        high[i] = at.law.memory[link, STRENGTH]
-        low[i] = -high[i]
-        # What slips along its branch has been pulled by that force.
-        start[i] = low[i] * at.branch[link]
-        for c, sign in ((left[i], -1.0), (right[i], 1.0)):
-            if c >= 0:
-                a[c] -= sign * start[i] / mass[c]
-                noise[c] += LCP_ROUNDING * abs(start[i]) / mass[c]
-    q = np.zeros((members.size, 1 + given.shape[0]))
-    for i in range(members.size):
-        relative, level = difference(a, left[i], right[i]), 0.0
-        for c in (left[i], right[i]):
-            level += noise[c] if c >= 0 else 0.0
-        q[i, 0] = unless_rounding(relative, level)
-        # Those of supports may be less than the rounding of a sum, and still tell who gives way.
-        for k in range(given.shape[0]):
-            q[i, 1 + k] = difference(given[k], left[i], right[i])
-    G = delassus_matrix(touching.left, touching.right, 1.0 / mass, members)
-    return least_in_box(G, q, low, high, start)
+        if members[i] >= own:
+            link = sliders[members[i] - own]
+            high[i] = at.law.memory[link, STRENGTH]
+            low[i] = -high[i]
+            # What slips along its branch is pulled by that force.
+            start[i] = low[i] * at.branch[link]
+    ends = touching.left[members], touching.right[members]
+    return least_in_box(ends, touching.mass, acceleration, noise, (low, high), start)
 
 
 @kernel
-def _accelerations(touching: Touching) -> tuple[Floats, Floats, Floats]:
-    """Accelerations of the bodies (N,) without contacts (m/s²), and their rounding.
+def _accelerations(touching: Touching) -> tuple[Floats, Floats]:
+    """Accelerations of the bodies without contacts (m/s²), (i, N), and their rounding, (N,).
 
-    And the Taylor coefficients of those of supports (i, N), without rounding, where not all vanish.
+    Behind the first row stand the Taylor coefficients of those of supports, where not all vanish:
+    they may be less than the rounding of a sum, and still tell who gives way.
     """
     mass, none = touching.mass, np.zeros(touching.undecided.size, np.bool_)
     clusters = form_clusters(touching.left, touching.right, touching.gap, none, none, mass)
@@ -192,15 +177,17 @@ def _accelerations(touching: Touching) -> tuple[Floats, Floats, Floats]:
     found = accelerations(y, system, ORDER if supports > 0 else 1, touching)
     rough = round_as_the_scene(system, touching.forcing)
     noise = noise_of(found, np.zeros(mass.size), rough, y, system, touching)
-    given, count = np.zeros((found.shape[0], mass.size)), 0
+    rows, count = np.zeros((1 + found.shape[0], mass.size)), 1
+    rows[0] = found[0]
     for k in range(found.shape[0]):
         moves = False
         for b in range(supports):
-            given[count, b] = unless_rounding(found[k, b], noise[k, b])
-            moves |= given[count, b] != 0.0
-            found[k, b] = given[count, b]
+            rows[count, b] = unless_rounding(found[k, b], noise[k, b])
+            moves |= rows[count, b] != 0.0
+        if k == 0:
+            rows[0, :supports] = rows[count, :supports]
         count += moves
-    return found[0], noise[0], given[:count]
+    return rows[:count], noise[0]
 
 
 @kernel

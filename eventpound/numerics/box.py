@@ -1,11 +1,24 @@
-"""The least of a convex quadratic function over a box, and of linear ones where it leaves a choice.
+"""Forces in bounds between bodies, with Gauss's function least, also where they are not unique.
 
-    min ½ xᵀ G x + q(ε)ᵀ x,   low <= x <= high,   q(ε) = q_0 + ε q_1 + ε² q_2 + ...
+With W the incidence of k joints on the bodies, from their left to their right ones, and M the
+masses, infinite those of ground and supports, whose accelerations a(ε) are given,
 
-for the smallest ε > 0, G symmetric positive semidefinite. Where G is singular, q_0 alone may leave
-several x, or none that a small change of q would not carry off; q_1 and those that follow say which
-one. The limit of x is found by principal pivoting (`eventpound.numerics.lcp`) on numbers that are
-polynomials in ε, told apart by their first coefficient that is not rounding.
+    min ½ xᵀ G x + q(ε)ᵀ x,   low <= x <= high,   G = Wᵀ M⁻¹ W,   q(ε) = Wᵀ a(ε) - G start
+
+for the smallest ε > 0, a(ε) = a_0 + ε a_1 + ε² a_2 + ... Where joints close a cycle, G is singular,
+and a_0 alone may leave several x, or none that a small change would not carry off; a_1 and those
+that follow say which one.
+
+The limit of x is found by principal pivoting (E. L. Keller, Mathematical Programming 4, 1973) on
+numbers that are polynomials in ε, told apart by their first coefficient that is not rounding. What
+has to hold at the end: forces at a bound have a rate w = G x + q that does not point into the box,
+all others one of zero, each to the rounding of what w is summed from.
+
+Joints whose w vanish, the passive ones, never close a cycle: they make clusters that move as one.
+So w is the difference of two of their accelerations, and changes with its own force by the sum of
+their inverse masses, or by nothing: G is neither inverted nor tested for its rank, whatever the
+ratio of the masses. Each pivot moves one force by a way that is no rounding, and Gauss's function
+falls; since forces are the best of their passive set then, no set comes twice.
 """
 
 from __future__ import annotations
@@ -14,234 +27,341 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
-from eventpound.tolerances import LCP_ROUNDING, SINGULAR
+from eventpound.tolerances import LCP_ROUNDING
+
+_PATIENCE = 8
+"""Pivots for each joint, after which rounding is taken to be twice as large."""
+
+
+class _Joints(NamedTuple):
+    """A problem of k joints between n - 1 bodies and the ground, which is the last.
+
+    left, right, low, high, start: shape (k,). mass (n,), acceleration (n, m) and the noise of its
+    first column (n,).
+    """
+
+    left: Ints
+    right: Ints
+    low: Floats
+    high: Floats
+    start: Floats
+    mass: Floats
+    acceleration: Floats
+    noise: Floats
 
 
 class _Pivoting(NamedTuple):
-    """A problem of k unknowns on its way.
+    """Where it has come to.
 
-    x, w (k, m): unknowns and their ``G x + q``. passive (k,): unknowns whose w vanish. inverse
-    (k, k): of their part of G, zero elsewhere. right, size (k,): right-hand sides and the sizes of
-    their terms. along (k,): how unknowns move with the one that enters. What may stop that, its own
-    w, other unknowns at their bounds, itself at its own: slack (k + 2, m) before it, speed (k + 2,)
-    at which that is taken, 0 where there is none, and bound (k + 2,).
+    x, w, doubt (k, m): forces, their rates, rounding of the forces. passive (k,). along (k,): how
+    forces move with the one that enters. Of each body (n,): root, the heaviest of its cluster;
+    above, the joint on the way there, and next, the body behind that; order, all from roots on;
+    weight, with all that hang on it. load, rate (n, 2): forces on these and accelerations of
+    clusters beside that of the root alone, each with its noise. What may stop the one that enters,
+    its own w, other forces at their bounds, itself at its own: slack, level (k + 2, m) before it
+    and noise of that, speed (k + 2,) at which it is taken, 0 where there is none, and bound.
     """
 
     x: Floats
     w: Floats
+    doubt: Floats
     passive: Bools
-    inverse: Floats
-    right: Floats
-    size: Floats
     along: Floats
+    root: Ints
+    above: Ints
+    next: Ints
+    order: Ints
+    weight: Floats
+    load: Floats
+    rate: Floats
     slack: Floats
+    level: Floats
     speed: Floats
     bound: Floats
 
 
 @kernel
 def least_in_box(
-    G: Floats, q: Floats, low: Floats, high: Floats, start: Floats
+    ends: tuple[Ints, Ints],
+    mass: Floats,
+    acceleration: Floats,
+    noise: Floats,
+    box: tuple[Floats, Floats],
+    start: Floats,
 ) -> tuple[Floats, bool]:
     """The limit of x for ε to zero, shape (k,), and whether there is a least value.
 
+    There is one wherever the bounds along a cycle are finite.
+
     Parameters
     ----------
-    G : ndarray, shape (k, k)
-        Symmetric positive semidefinite, positive diagonal.
-    q : ndarray, shape (k, m)
-        Column i is q_i.
-    low, high : ndarray, shape (k,)
-        The box; a bound may be infinite.
+    ends : tuple of ndarray, shape (k,)
+        Left and right bodies of the joints; -1 is the ground.
+    mass : ndarray, shape (n,)
+        Of the bodies, infinite where they move as they are told to (kg).
+    acceleration : ndarray, shape (m, n)
+        Row i is a_i, with the forces `start` (m/s²).
+    noise : ndarray, shape (n,)
+        What those of a_0 may be wrong by (m/s²).
+    box : tuple of ndarray, shape (k,)
+        Lower and upper bounds (N); they may be infinite.
     start : ndarray, shape (k,)
-        A corner of it, on which unknowns stay that nothing moves.
+        A corner of the box, on which forces stay that nothing moves.
     """
-    k, m = q.shape
+    k, m, n = start.size, acceleration.shape[0], mass.size + 1
+    masses, given, level = np.full(n, np.inf), np.zeros((n, m)), np.zeros(n)
+    masses[:-1], given[:-1], level[:-1] = mass, acceleration.T, noise
+    left, right = np.where(ends[0] < 0, n - 1, ends[0]), np.where(ends[1] < 0, n - 1, ends[1])
+    joints = _Joints(left, right, box[0], box[1], start, masses, given, level)
+    x = np.zeros((k, m))
+    x[:, 0] = start
     work = _Pivoting(
+        x,
         np.zeros((k, m)),
         np.zeros((k, m)),
         np.zeros(k, np.bool_),
-        np.zeros((k, k)),
         np.zeros(k),
-        np.zeros(k),
-        np.zeros(k),
+        np.zeros(n, np.int64),
+        np.zeros(n, np.int64),
+        np.zeros(n, np.int64),
+        np.zeros(n, np.int64),
+        np.zeros(n),
+        np.zeros((n, 2)),
+        np.zeros((n, 2)),
+        np.zeros((k + 2, m)),
         np.zeros((k + 2, m)),
         np.zeros(k + 2),
         np.zeros(k + 2),
     )
-    return work.right, _pivot(G, q, low, high, start, work)
+    found = _pivot(joints, work)
+    return np.minimum(np.maximum(x[:, 0], box[0]), box[1]), found
 
 
 @scalar_kernel
-def _pivot(G: Floats, q: Floats, low: Floats, high: Floats, start: Floats, work: _Pivoting) -> bool:
-    """`least_in_box`, its limit in `right` at last."""
-    x, k = work.x, low.size
-    for i in range(k):
-        x[i, 0] = start[i]
-    for _ in range(50 * k + 50):
-        _set_rates(G, q, work)
-        j = _first_wrong(low, work)
+def _pivot(joints: _Joints, work: _Pivoting) -> bool:
+    """`least_in_box`, its limit in the first column of x at last."""
+    pivots, rounding = 0, LCP_ROUNDING
+    while True:
+        _settle(joints, rounding, work)
+        j = _first_wrong(joints, work)
         if j < 0:
-            for i in range(k):
-                work.right[i] = min(max(x[i, 0], low[i]), high[i])
             return True
-        if not _enter(G, j, low, high, work):
+        if not _enter(joints, j, rounding, work):
             return False
-        _set_passive(G, q, work)
-    return False
+        pivots += 1
+        if pivots % (_PATIENCE * (work.passive.size + 1)) == 0:
+            rounding *= 2.0
 
 
 @scalar_kernel
-def _set_rates(G: Floats, q: Floats, work: _Pivoting) -> None:
-    """Set w to ``G x + q``."""
-    for i in range(q.shape[0]):
-        for c in range(q.shape[1]):
-            value, size = q[i, c], abs(q[i, c])
-            for j in range(q.shape[0]):
-                value += G[i, j] * work.x[j, c]
-                size += abs(G[i, j] * work.x[j, c])
-            work.w[i, c] = unless_rounding(value, LCP_ROUNDING * size)
+def _settle(joints: _Joints, rounding: float, work: _Pivoting) -> None:
+    """Give passive joints the forces with which their w vanish; set the w of all."""
+    _plant(joints, work)
+    for c in range(work.x.shape[1]):
+        _set_loads(joints, c, rounding, work)
+        _share(joints.mass, work)
+        for b in range(work.root.size):
+            if work.above[b] >= 0:
+                _set_force(joints, b, c, rounding, work)
+        for i in range(work.passive.size):
+            one, other = work.root[joints.left[i]], work.root[joints.right[i]]
+            apart = joints.acceleration[other, c] - joints.acceleration[one, c]
+            rate = apart + (work.rate[other, 0] - work.rate[one, 0])
+            noise = work.rate[one, 1] + work.rate[other, 1] + rounding * abs(apart)
+            work.w[i, c] = unless_rounding(rate, noise) if one != other else 0.0
 
 
 @scalar_kernel
-def _first_wrong(low: Floats, work: _Pivoting) -> int:
-    """The first unknown on a bound whose w tells it to leave that, or -1."""
-    for i in range(low.size):
-        way = -1.0 if work.x[i, 0] <= low[i] else 1.0
-        if not work.passive[i] and _sign(work.w[i]) * way > 0.0:
+def _plant(joints: _Joints, work: _Pivoting) -> None:
+    """Find the clusters that passive joints make, each from its heaviest body on.
+
+    What the joints of a light body carry is not left of a difference of heavy ones then.
+    """
+    root, order = work.root, work.order
+    for b in range(root.size):
+        root[b] = -1
+    count, grown = 0, 0
+    while count < order.size:
+        if grown == count:
+            heaviest = -1
+            for b in range(root.size):
+                if root[b] < 0 and (heaviest < 0 or joints.mass[b] > joints.mass[heaviest]):
+                    heaviest = b
+            order[count], root[heaviest], work.above[heaviest] = heaviest, heaviest, -1
+            count += 1
+        here = order[grown]
+        grown += 1
+        for i in range(work.passive.size):
+            if work.passive[i] and (joints.left[i] == here or joints.right[i] == here):
+                there = joints.left[i] + joints.right[i] - here
+                if root[there] < 0:
+                    order[count], root[there] = there, root[here]
+                    work.above[there], work.next[there] = i, here
+                    count += 1
+
+
+@scalar_kernel
+def _set_loads(joints: _Joints, c: int, rounding: float, work: _Pivoting) -> None:
+    """Set what acts on bodies beside what moves their roots, without passive joints."""
+    load, rate, mass = work.load, work.rate, joints.mass
+    for b in range(mass.size):
+        apart = joints.acceleration[b, c] - joints.acceleration[work.root[b], c]
+        noise = joints.noise[b] if c == 0 else 0.0
+        # What moves as it is told to does so under any load.
+        rate[b, 0], rate[b, 1], load[b, 0], load[b, 1] = 0.0, noise, 0.0, 0.0
+        if np.isfinite(mass[b]):
+            load[b, 0], load[b, 1] = mass[b] * apart, mass[b] * (noise + rounding * abs(apart))
+    for i in range(work.passive.size):
+        start = joints.start[i] if c == 0 else 0.0
+        force = 0.0 if work.passive[i] else work.x[i, c] - start
+        _load(joints, i, force, rounding * (abs(start) + abs(force)), work)
+
+
+@scalar_kernel
+def _load(joints: _Joints, i: int, force: float, noise: float, work: _Pivoting) -> None:
+    """Add the force of a joint to the loads."""
+    for b, sign in ((joints.left[i], -1.0), (joints.right[i], 1.0)):
+        work.load[b, 0] += sign * force
+        work.load[b, 1] += noise
+
+
+@scalar_kernel
+def _share(mass: Floats, work: _Pivoting) -> None:
+    """Add up weights and loads towards the roots, and set the rates of those that can move."""
+    load, rate, weight = work.load, work.rate, work.weight
+    for b in range(mass.size):
+        weight[b] = mass[b]
+    for place in range(mass.size - 1, -1, -1):
+        b = work.order[place]
+        if work.above[b] >= 0:
+            weight[work.next[b]] += weight[b]
+            load[work.next[b], 0] += load[b, 0]
+            load[work.next[b], 1] += load[b, 1]
+        elif np.isfinite(weight[b]):
+            rate[b, 0], rate[b, 1] = load[b, 0] / weight[b], load[b, 1] / weight[b]
+
+
+@scalar_kernel
+def _carried(b: int, joints: _Joints, work: _Pivoting) -> float:
+    """Force of the joint above a body."""
+    force = work.weight[b] * work.rate[work.root[b], 0] - work.load[b, 0]
+    return force if joints.right[work.above[b]] == b else -force
+
+
+@scalar_kernel
+def _set_force(joints: _Joints, b: int, c: int, rounding: float, work: _Pivoting) -> None:
+    """Give the joint above a body what it carries, its bound where it is there to rounding."""
+    i, force = work.above[b], _carried(b, joints, work)
+    noise = work.weight[b] * work.rate[work.root[b], 1] + work.load[b, 1] + rounding * abs(force)
+    if c > 0:
+        work.x[i, c], work.doubt[i, c] = unless_rounding(force, noise), noise
+        return
+    noise += rounding * abs(joints.start[i])
+    force += joints.start[i]
+    for bound in (joints.low[i], joints.high[i]):
+        force = bound if abs(force - bound) <= noise else force
+    work.x[i, 0], work.doubt[i, 0] = force, noise
+
+
+@scalar_kernel
+def _first_wrong(joints: _Joints, work: _Pivoting) -> int:
+    """The first force on a bound whose w tells it to leave that, or -1."""
+    for i in range(work.passive.size):
+        way = -1.0 if work.x[i, 0] <= joints.low[i] else 1.0
+        free = not work.passive[i] and joints.low[i] < joints.high[i]
+        if free and _sign(work.w[i]) * way > 0.0:
             return i
     return -1
 
 
 @scalar_kernel
-def _set_passive(G: Floats, q: Floats, work: _Pivoting) -> None:
-    """Give passive unknowns the values with which their w vanish."""
-    x, passive, right, size, inverse = work.x, work.passive, work.right, work.size, work.inverse
-    _invert_passive(G, work)
-    for c in range(q.shape[1]):
-        for i in range(passive.size):
-            right[i], size[i] = q[i, c], abs(q[i, c])
-            for j in range(passive.size):
-                if not passive[j]:
-                    right[i] += G[i, j] * x[j, c]
-                    size[i] += abs(G[i, j] * x[j, c])
-        for i in range(passive.size):
-            if passive[i]:
-                value, terms = 0.0, 0.0
-                for j in range(passive.size):
-                    value -= inverse[i, j] * right[j]
-                    terms += abs(inverse[i, j]) * size[j]
-                x[i, c] = unless_rounding(value, LCP_ROUNDING * terms)
-
-
-@scalar_kernel
-def _invert_passive(G: Floats, work: _Pivoting) -> None:
-    """Set the inverse of the passive part of G, by Gauss and Jordan, in place."""
-    A, passive = work.inverse, work.passive
-    for i in range(passive.size):
-        for j in range(passive.size):
-            A[i, j] = G[i, j] if passive[i] and passive[j] else 0.0
-    for p in range(passive.size):
-        if not passive[p]:
-            continue
-        pivot = A[p, p]
-        A[p, p] = 1.0
-        for j in range(passive.size):
-            A[p, j] /= pivot
-        for i in range(passive.size):
-            factor = A[i, p]
-            if i != p and factor != 0.0:
-                A[i, p] = 0.0
-                for j in range(passive.size):
-                    A[i, j] -= factor * A[p, j]
-
-
-@scalar_kernel
-def _enter(G: Floats, j: int, low: Floats, high: Floats, work: _Pivoting) -> bool:
+def _enter(joints: _Joints, j: int, rounding: float, work: _Pivoting) -> bool:
     """Move x_j off its bound until its w vanishes, or it comes to its other bound.
 
-    Passive unknowns keep their w of zero on the way, and leave where they come to a bound. False
+    Passive joints keep their w of zero on the way, and leave where they come to a bound. False
     where nothing stops x_j.
     """
-    x, w_j, along, k = work.x, work.w[j], work.along, low.size
+    x, w_j, along = work.x, work.w[j], work.along
     way = -_sign(w_j)
     while True:
-        _set_along(G, j, way, work)
-        curvature = 0.0
-        for i in range(k):
-            curvature += G[j, i] * along[i] * way
-        _set_stops(curvature if curvature > SINGULAR * G[j, j] else 0.0, j, way, (low, high), work)
+        curvature = _set_along(joints, j, way, work)
+        _set_stops(joints, j, way, curvature, rounding, work)
         first = _first(work)
         if first < 0:
             return False
         for c in range(w_j.size):
             step = work.slack[first, c] / work.speed[first]
             w_j[c] += curvature * way * step
-            for i in range(k):
+            for i in range(along.size):
                 x[i, c] += along[i] * step
         if first == 0:
             work.passive[j] = True
             return True
-        blocking = j if first == k + 1 else first - 1
+        blocking = j if first == along.size + 1 else first - 1
         for c in range(w_j.size):
             x[blocking, c] = work.bound[first] if c == 0 else 0.0
         if blocking == j:
             return True
         work.passive[blocking] = False
-        _invert_passive(G, work)
+        _plant(joints, work)
 
 
 @scalar_kernel
-def _set_along(G: Floats, j: int, way: float, work: _Pivoting) -> None:
-    """Set how unknowns move with x_j, which moves by `way`: passive ones keep their w of zero."""
-    along, largest = work.along, abs(way)
+def _set_along(joints: _Joints, j: int, way: float, work: _Pivoting) -> float:
+    """Set how forces move with x_j, which moves by `way`; by how much its w grows with it."""
+    along = work.along
+    for b in range(work.root.size):
+        for s in range(2):
+            work.load[b, s] = work.rate[b, s] = 0.0
+    _load(joints, j, way, 0.0, work)
+    _share(joints.mass, work)
     for i in range(along.size):
         along[i] = 0.0
-        for k in range(along.size):
-            along[i] -= way * work.inverse[i, k] * G[k, j]
-        largest = max(largest, abs(along[i]))
+    for b in range(work.root.size):
+        if work.above[b] >= 0:
+            along[work.above[b]] = _carried(b, joints, work)
     along[j] = way
-    for i in range(along.size):
-        along[i] = unless_rounding(along[i], LCP_ROUNDING * largest)
+    one, other = work.root[joints.left[j]], work.root[joints.right[j]]
+    return (work.rate[other, 0] - work.rate[one, 0]) * way if one != other else 0.0
 
 
 @scalar_kernel
 def _set_stops(
-    curvature: float, j: int, way: float, box: tuple[Floats, Floats], work: _Pivoting
+    joints: _Joints, j: int, way: float, curvature: float, rounding: float, work: _Pivoting
 ) -> None:
     """Set what may stop x_j, whose w changes by `curvature` on its way."""
     x, along, k = work.x, work.along, work.along.size
     work.speed[0], work.speed[j + 1] = curvature, 0.0
     for c in range(x.shape[1]):
         work.slack[0, c] = -work.w[j, c] * way
+        work.level[0, c] = rounding * abs(work.w[j, c])
     for i in range(k):
         stop = k + 1 if i == j else i + 1
-        bound = box[0][i] if along[i] < 0.0 else box[1][i]
+        bound = joints.low[i] if along[i] < 0.0 else joints.high[i]
         work.speed[stop] = abs(along[i]) if np.isfinite(bound) else 0.0
         work.bound[stop] = bound
         for c in range(x.shape[1]):
             slack = (bound if c == 0 else 0.0) - x[i, c]
             work.slack[stop, c] = -slack if along[i] < 0.0 else slack
+            work.level[stop, c] = work.doubt[i, c] if work.passive[i] else 0.0
 
 
 @scalar_kernel
 def _first(work: _Pivoting) -> int:
     """The first stop, by the coefficients of their steps one after the other; or -1.
 
-    The rounding of slacks is that of the unknowns. Stops that come later lose their speed.
+    Stops that come later lose their speed.
     """
-    x, slack, speed = work.x, work.slack, work.speed
-    for c in range(x.shape[1]):
-        rounding, least, noise = 0.0, np.inf, 0.0
-        for i in range(x.shape[0]):
-            rounding = max(rounding, LCP_ROUNDING * abs(x[i, c]))
+    slack, level, speed = work.slack, work.level, work.speed
+    for c in range(slack.shape[1]):
+        least, noise = np.inf, 0.0
         for i in range(speed.size):
             if speed[i] > 0.0 and slack[i, c] / speed[i] < least:
-                least, noise = slack[i, c] / speed[i], rounding / speed[i]
+                least, noise = slack[i, c] / speed[i], level[i, c] / speed[i]
         for i in range(speed.size):
-            if speed[i] > 0.0 and slack[i, c] / speed[i] > least + noise + rounding / speed[i]:
+            if speed[i] > 0.0 and slack[i, c] / speed[i] > least + noise + level[i, c] / speed[i]:
                 speed[i] = 0.0
     for i in range(speed.size):
         if speed[i] > 0.0:
