@@ -149,15 +149,20 @@ def slip_path(many: Runs, i: int) -> Floats:
 
 def motion_of_spring(scene: Scene, run: Recording, i: int) -> Floats:
     """Elongation of spring i (m) and its rate (m/s) at every row of the history, shape (2, n)."""
-    h = run.history
-    motion = {GROUND: np.zeros((2, h.t.size))}
-    for k, body in enumerate(scene.bodies):
-        motion[body.name] = np.array((h.u[:, k], h.v[:, k]))
-    if run.supports is not None:
-        for k, support in enumerate(scene.supports):
-            motion[support.name] = np.array((run.supports.s[:, k], run.supports.sv[:, k]))
     first, second = scene.springs[i].between
-    return motion[second] - motion[first]
+    return _motion_of(second, scene, run) - _motion_of(first, scene, run)
+
+
+def _motion_of(end: str, scene: Scene, run: Recording) -> Floats:
+    """Displacement (m) and velocity (m/s) of an end of a spring at every row, shape (2, n)."""
+    h, moved = run.history, run.supports
+    for k, body in enumerate(scene.bodies):
+        if body.name == end:
+            return np.array((h.u[:, k], h.v[:, k]))
+    for k, support in enumerate(scene.supports):
+        if moved is not None and support.name == end:
+            return np.array((moved.s[:, k], moved.sv[:, k]))
+    return np.zeros((2, h.t.size))
 
 
 def friction_work(many: Runs, i: int) -> Floats:
