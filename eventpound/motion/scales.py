@@ -5,9 +5,8 @@
 with C_i the moduli of the discrete Fourier transform of the acceleration at
 the frequencies f_i (Hz). Three conventions of the transform are in use:
 
-    padded    of the record as it is, padded with zeros to the power of two that
-              is not shorter than the record and gives a frequency step of at
-              most 0.05 Hz (the default)
+    padded    of the record as it is, with as many zeros as a frequency step of
+              0.05 Hz takes: none behind a record of 20 s (the default)
     literal   of the record as it is
     slammer   with its mean removed and a cosine taper over 5 % at either end,
               padded to the next power of two, 0.25 Hz < f_i < 20 Hz: gives the
@@ -113,7 +112,7 @@ def _taper(size: int) -> Floats:
 
 
 def transform_length(size: int, time_step: float) -> int:
-    """Smallest power of two that holds the record and resolves 0.05 Hz.
+    """Fewest samples that hold the record and resolve 0.05 Hz.
 
     Parameters
     ----------
@@ -127,7 +126,8 @@ def transform_length(size: int, time_step: float) -> int:
     int
         Length of the padded record.
     """
-    length = 1
-    while length < size or 1.0 / (length * time_step) > LARGEST_FREQUENCY_STEP:
-        length *= 2
+    length = max(size, int(1.0 / (LARGEST_FREQUENCY_STEP * time_step)))
+    # Where the quotient is a whole number its rounding must not cost a sample.
+    while 1.0 / (length * time_step) > LARGEST_FREQUENCY_STEP:
+        length += 1
     return length

@@ -18,7 +18,7 @@ from eventpound.motion.scales import CONVENTIONS, mean_period, transform_length
 def test_mean_period_by_a_transform_written_out() -> None:
     a = np.random.default_rng(1).normal(size=300)
     dt = 0.05
-    length = 512  # 1 / (512 * 0.05 s) = 0.039 Hz; 256 would be shorter than the record
+    length = 400  # 1 / (400 * 0.05 s) = 0.05 Hz
     frequency = np.arange(1, length // 2 + 1) / (length * dt)
     n = np.arange(300)
     power = np.array([abs(np.sum(a * np.exp(-2j * math.pi * f * dt * n))) ** 2 for f in frequency])
@@ -37,10 +37,16 @@ def test_whole_number_of_cycles_in_the_transform_has_its_own_period() -> None:
 
 @pytest.mark.parametrize(
     ("size", "dt", "length"),
-    [(5000, 0.01, 8192), (4096, 0.01, 4096), (100, 0.02, 1024), (4097, 0.005, 8192)],
+    [(5000, 0.01, 5000), (2000, 0.01, 2000), (100, 0.02, 1000), (100, 0.0033, 6061)],
 )
 def test_padding_resolves_a_twentieth_of_a_hertz(size: int, dt: float, length: int) -> None:
     assert transform_length(size, dt) == length
+
+
+def test_a_record_of_twenty_seconds_is_given_no_zeros() -> None:
+    # A transform of 4096 samples has other frequencies between 0.25 and 20 Hz, and 12 % less.
+    a = np.random.default_rng(20).normal(size=2000)
+    assert mean_period(a, 0.01) == mean_period(a, 0.01, "literal")
 
 
 def test_a_record_without_motion_in_the_band_has_no_mean_period() -> None:
