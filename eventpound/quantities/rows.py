@@ -125,7 +125,8 @@ def warn_unsettled(name: str, part: float, aim: float = AGREEMENT) -> None:
     )
     if part == np.inf:
         text = f"not checked: closer rows would be more than {MOST_ROWS}; a shorter duration helps"
-    if part > aim:
+    # What the words cannot tell from the aim is no more than it.
+    if float(f"{part:.2e}") > aim:
         warn_caller(f"{name}: {text}", AccuracyWarning)
 
 
