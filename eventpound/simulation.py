@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -225,11 +226,18 @@ def options_of(
     return run, solver
 
 
-def check_solver(options: SolverOptions, scene: Scene | None = None, events: bool = False) -> None:
+_AT_LEAST = 1.0
+"""Length of a run whose motion sets it (s): none is shorter."""
+
+
+def check_solver(
+    options: SolverOptions, scene: Scene | None = None, run: RunOptions | None = None
+) -> None:
     """Refuse a solver, a setting or a tolerance that there is not, or cannot serve a scene.
 
     A solver that can tell wrong values of its settings before it runs has a function
-    ``check_settings(settings)``, which raises an InputError.
+    ``check_settings(settings)``, one that can tell what else of a scene or of its run it cannot
+    take ``check_task(task)``. Both raise an InputError.
 
     Parameters
     ----------
@@ -237,8 +245,8 @@ def check_solver(options: SolverOptions, scene: Scene | None = None, events: boo
         What a case, the command line or a call asks for.
     scene : Scene, optional
         What it is to carry.
-    events : bool
-        Whether it is to tell the events of its springs, too.
+    run : RunOptions, optional
+        How: for how long, and whether it is to tell the events of its springs, too.
 
     Raises
     ------
@@ -250,7 +258,11 @@ def check_solver(options: SolverOptions, scene: Scene | None = None, events: boo
         solver = solver_named(options.name)
         problems += _setting_problems(solver, options.settings)
         if scene is not None:
-            problems += _scene_problems(solver, scene, events)
+            problems += _scene_problems(solver, scene, bool(run and run.stated.events))
+            start = run.start_time if run else 0.0
+            length = run.duration if run and run.duration < math.inf else _AT_LEAST
+            task = Task(scene, start, start + length, options.rtol, settings=options.settings)
+            problems = problems or _own_problems(solver, "check_task", task)
     except InputError as error:
         problems += [f"[solver]: {problem}" for problem in error.problems]
     if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
@@ -270,13 +282,16 @@ def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[st
         for key in settings
         if key not in known
     ]
-    own: Callable[[Mapping[str, object]], None] | None = getattr(solver, "check_settings", None)
-    if own is not None and not problems:
-        try:
-            own(settings)
-        except InputError as error:
-            problems += error.problems
-    return problems
+    return problems or _own_problems(solver, "check_settings", settings)
+
+
+def _own_problems(solver: Solver, check: str, of: object) -> list[str]:
+    """What a solver refuses by a function of its own, where it has that."""
+    try:
+        getattr(solver, check, lambda of: None)(of)
+    except InputError as error:
+        return list(error.problems)
+    return []
 
 
 def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
@@ -313,7 +328,7 @@ def task_with(
     scene: Scene, run: RunOptions, options: SolverOptions, progress: Progress | None
 ) -> Task:
     """The task of a scene with these options, which are checked."""
-    check_solver(options, scene, bool(run.stated.events))
+    check_solver(options, scene, run)
     return Task(
         scene,
         run.start_time,

@@ -240,20 +240,23 @@ def check_solver_of(case: Case, in_file: bool = True) -> None:
     Raises
     ------
     InputError
-        Where there is no such solver, setting or tolerance.
+        Where there is no such solver, setting or tolerance, or the solver cannot take the scene.
     """
-    from eventpound.case.options import OWN_SOLVERS
+    from eventpound.case.options import REFERENCE
 
-    scene = case.scene
-    plain = case.solver.name in OWN_SOLVERS and not case.solver.settings
-    for_all = not (scene.supports or scene.forces) and all(c.plain for c in scene.contacts)
-    if in_file and plain and for_all:
-        # The tolerance was checked when it was read; the solvers take long to import.
+    plain = case.solver.name == REFERENCE and not case.solver.settings
+    if in_file and plain and case.suite is None:
+        # It takes every scene, and its tolerance was checked; others take long to import.
         return
-    from eventpound.simulation import check_solver
-
     with told_of(_file_of(case) if in_file else ""):
-        check_solver(case.solver, scene)
+        if case.suite is None:
+            from eventpound.simulation import check_solver
+
+            check_solver(case.solver, case.scene, case.run)
+        else:
+            from eventpound.study.suite import plan_of
+
+            plan_of(case, None, None, None, intensities=False)
 
 
 def _file_of(case: Case) -> str:

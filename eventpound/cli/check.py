@@ -45,6 +45,7 @@ def _check(options: Options) -> int:
     arguments.check_solver_of(case)
     if case.suite is not None:
         arguments.warn_of_scales(case)
+    from eventpound.results.input_tables import input_lines
     from eventpound.results.inputs import inputs_of
 
     inputs = inputs_of(case)
@@ -54,30 +55,34 @@ def _check(options: Options) -> int:
         sys.stdout.write(to_json(inputs).decode())
         return 0
     print(f"case      {inputs['title']}")
-    for line in _lines(inputs):
-        print(line)
+    print("\n".join(_tables(inputs)), end="\n\n")
+    for word, text in input_lines(inputs):
+        print(f"{word:<9} {text}")
     return 0
 
 
-def _lines(inputs: Mapping[str, Any]) -> Iterator[str]:
-    """What was understood, to be read."""
+def _tables(inputs: Mapping[str, Any]) -> Iterator[str]:
+    """Bodies, what joins them, and modes, to be read."""
     from eventpound.results.cells import lines_of
-    from eventpound.results.input_tables import input_lines, input_tables
+    from eventpound.results.input_tables import input_tables
 
     for table in input_tables(inputs):
         yield ""
         yield from lines_of(table)
-    yield ""
-    yield from (f"{word:<9} {text}" for word, text in input_lines(inputs))
 
 
 def _check_study(case: StudyCase) -> int:
-    """Say what was understood of a case with a [study]."""
+    """Say what was understood of a case with a [study], its scene by that of the first run."""
+    from eventpound.results.inputs import inputs_of
     from eventpound.scene.pi_terms import number_of_terms
 
-    study = case.study
+    study, first = case.study, case.study.bases[0]
     arguments.warn_of_scales(study.bases)
     print(f"study     {study.title}")
+    print("\n".join(_tables(inputs_of(first.case))), end="\n\n")
+    values = {**first.labels, **{axis.key: f"{axis.values[0]:.6g}" for axis in first.axes}}
+    at = ", ".join(f"{key} = {value}" for key, value in values.items())
+    print(f"shown     what the first run has{at and ': '}{at}")
     print(f"runs      {study.size}, stored in chunks of {study.chunk_size}")
     print(f"axes      {', '.join(study.columns)}")
     print(f"keeps     {', '.join(study.quantities)}")

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from eventpound.basics.given import number
 from eventpound.cli.arguments import PAPER, Command, Options
@@ -20,6 +22,10 @@ FRAGILITY = "--fragility --out --measure --demand --limit --counts --where" + PA
 """Options that go together."""
 _RECORDS = ("excitation.file", "record")
 """Columns that may name the record of a row."""
+_FRAGILITY = "fragility"
+"""Of the files."""
+_SHOWN = 8
+"""Values that a message lists."""
 
 
 def add(study: Command) -> None:
@@ -34,7 +40,12 @@ def add(study: Command) -> None:
     study.option("--demand COLUMN", "what has a limit")
     study.option("--limit VALUE", 'as "5 cm"; may be repeated', action="append", default=[])
     study.option("--counts", "count the runs, do not follow each record")
-    study.option("--where COLUMN=VALUE", "these rows only", action="append", default=[])
+    study.option(
+        "--where COLUMN=VALUE",
+        'these rows only, as contact.joint.gap="5 cm"',
+        action="append",
+        default=[],
+    )
     study.paper()
 
 
@@ -45,15 +56,18 @@ def fit_fragility(options: Options, out: Path) -> dict[str, bytes]:
     from eventpound.report.symbols import dimension_of
     from eventpound.results.tables import table_csv
     from eventpound.study.fragility import fragility_table
+    from eventpound.study.stated import PSA, psa_at
 
     paper = options.paper()
-    table = _where(_read(out), options.where, out)
+    table, excitation = _read(out)
+    table = _where(table, options.where, out)
     of_demand = dimension_of(options.demand)
     limits = [number("--limit", text, of_demand) for text in options.limit]
     records = None if options.counts else _records(table, options.measure)
     with told_of(f"{out}: "):
         curves = fragility_table(table, options.measure, options.demand, limits, records)
-    figure = fragility_figure(curves, table, options.measure, options.demand)
+    at = psa_at(excitation) if options.measure == PSA else ""
+    figure = fragility_figure(curves, table, options.measure, options.demand, at)
     units = [f" {dimension_of(key).unit}".rstrip() for key in (options.measure, options.demand)]
     for _, row in curves.iterrows():
         found = row["note"] or (
@@ -65,17 +79,34 @@ def fit_fragility(options: Options, out: Path) -> dict[str, bytes]:
         print(f"limit {row['limit']:.5g}{units[1]}: {counts}; {found}")
     if left := int(curves["left_out"].max()):
         print(f"{left} rows without a demand, as of runs that failed, are left out")
-    return {"fragility.csv": table_csv(curves)} | on_paper({"fragility.png": figure}, paper)
+    of = {"measure": options.measure, "demand": options.demand, "rows": "; ".join(options.where)}
+    made = table_csv(curves.assign(**of))
+    _set_aside(out, made)
+    return {f"{_FRAGILITY}.csv": made} | on_paper({f"{_FRAGILITY}.png": figure}, paper)
 
 
-def _read(out: Path) -> pd.DataFrame:
-    """The table of a study, else of a suite."""
-    from eventpound.study.table import SUITE_TABLE, TABLE, read_suite, read_table
+def _set_aside(out: Path, made: bytes) -> None:
+    """Keep curves that are there and differ, under a name with a number."""
+    there = out / f"{_FRAGILITY}.csv"
+    if not there.is_file() or there.read_bytes() == made:
+        return
+    name = next(n for i in count(1) if not (out / f"{(n := f'{_FRAGILITY}-{i}')}.csv").exists())
+    for path in sorted(out.glob(f"{_FRAGILITY}.*")):
+        path.rename(out / f"{name}{path.suffix}")
+    print(f"moved     the curves that were in {there} are in {name}.csv")
+
+
+def _read(out: Path) -> tuple[pd.DataFrame, Mapping[str, Any]]:
+    """The table of a study, else of a suite, and the ``[excitation]`` it was made with."""
+    from eventpound.study.table import SUITE_TABLE, TABLE, read_manifest, read_suite, read_table
 
     if (out / TABLE).is_file():
-        return read_table(out)
+        scenes: Any = (read_manifest(out) or {}).get("scenes") or [{}]
+        each = [scene.get("case", {}).get("excitation", {}) for scene in scenes]
+        return read_table(out), each[0] if each.count(each[0]) == len(each) else {}
     if (out / SUITE_TABLE).is_file():
-        return read_suite(out)[0]
+        table, manifest = read_suite(out)
+        return table, manifest["case"].get("excitation", {})
     raise InputError(
         f"{out}: neither {TABLE} nor {SUITE_TABLE}; `eventpound study` or `eventpound run` of a "
         "suite writes it"
@@ -90,14 +121,26 @@ def _records(table: pd.DataFrame, measure: str) -> str | None:
 
 def _where(table: pd.DataFrame, wanted: list[str], out: Path) -> pd.DataFrame:
     """Rows with these values, numbers or words."""
+    from pandas.api.types import is_bool_dtype, is_numeric_dtype
+
+    from eventpound.report.symbols import dimension_of
+
     for text in wanted:
         name, equals, value = text.partition("=")
         if not equals or name not in table.columns:
-            raise InputError(f"--where: found {text!r}; accepted: COLUMN=VALUE, of {out}")
-        try:
-            table = table[abs(table[name] - float(value)) <= 1e-9 * abs(float(value))]
-        except (TypeError, ValueError):
-            table = table[table[name].astype(str) == value]
+            known = ", ".join(table.columns)
+            raise InputError(f"--where: found {text!r}; accepted: COLUMN=VALUE, of {out}: {known}")
+        column = table[name]
+        if is_numeric_dtype(column) and not is_bool_dtype(column):
+            size = number(f"--where: {name}", value, dimension_of(name))
+            there = abs(column - size) <= 1e-9 * abs(size)
+        else:
+            there = column.astype(str) == value
+        if not there.any():
+            values = [f"{v:.6g}" if isinstance(v, float) else str(v) for v in column.unique()]
+            some = ", ".join(values[:_SHOWN] + ["..."] * (len(values) > _SHOWN))
+            raise InputError(f"--where: no row has {text!r}; accepted: {name} of {some}")
+        table = table[there]
     return table
 
 

@@ -18,7 +18,7 @@ _BINS = 8
 
 @style.styled()
 def fragility_figure(
-    curves: pd.DataFrame, table: pd.DataFrame, measure: str, demand: str, title: str = ""
+    curves: pd.DataFrame, table: pd.DataFrame, measure: str, demand: str, at: str = ""
 ) -> Figure:
     """Draw curves of fragility over an intensity, with the parts of the runs that exceed.
 
@@ -30,13 +30,13 @@ def fragility_figure(
         What they were fitted to.
     measure, demand : str
         Its columns.
-    title : str
-        Above it.
+    at : str
+        At what the intensity is measured, a period and a damping.
     """
     there = table[[measure, demand]].dropna()
     x = np.linspace(0.0, 1.15 * float(there[measure].max()), 400)[1:]
     unit = display_unit(measure, x[-1])
-    figure = style.new_figure(7.5, 4.2, style.literal(title))
+    figure = style.new_figure(7.5, 4.2, "")
     axes = figure.subplots()
     for (_, row), color in zip(curves.iterrows(), style.colors(len(curves)), strict=True):
         label = value_label(demand, float(row["limit"])).replace(" = ", " > ", 1)
@@ -50,7 +50,7 @@ def fragility_figure(
         theta = rf"$\theta$ = {fit.theta / unit.size:.4g} {unit.name}"
         label += f"\n{theta}, $\\beta$ = {fit.beta:.3g}"
         axes.plot(x / unit.size, fit.probability(x), color=color, linewidth=1.5, label=label)
-    axes.set(xlabel=axis_label(measure, unit), ylabel="probability of exceedance")
+    axes.set(xlabel=axis_label(measure, unit, at), ylabel="probability of exceedance")
     axes.set(xlim=(0.0, x[-1] / unit.size), ylim=(-0.02, 1.02))
     style.legend_beside(axes, axes.get_legend_handles_labels()[0])
     style.show_as_written(figure)

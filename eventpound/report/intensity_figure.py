@@ -12,7 +12,7 @@ from eventpound.report.style import PALETTE, new_figure, show_as_written, styled
 from eventpound.report.symbols import axis_label, display_unit, symbol
 from eventpound.study.intensity import IntensityPlan
 from eventpound.study.plan import Plan
-from eventpound.study.stated import stated
+from eventpound.study.stated import measured_at, stated
 
 
 @styled()
@@ -52,7 +52,8 @@ def intensity_figure(
             "label": f"{fractile} fractile",
         }
         axes.plot(x, y, **look)
-    axes.set(xlabel=axis_label(plan.demand, demand), ylabel=axis_label(plan.measure, measure))
+    at = measured_at(study).get(plan.measure, "")
+    axes.set(xlabel=axis_label(plan.demand, demand), ylabel=axis_label(plan.measure, measure, at))
     if not (table[plan.demand] < 0.0).any():
         axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)

@@ -35,7 +35,7 @@ from eventpound.study.figure import FigurePlan
 from eventpound.study.plan import Plan
 from eventpound.study.reading import StudyCase
 from eventpound.study.spectra import dimensional_name
-from eventpound.study.stated import stated
+from eventpound.study.stated import measured_at, stated
 
 MATTERS = 0.05
 """Share of the peak by which contact has to change it to be said to matter."""
@@ -192,8 +192,9 @@ def _panels(study: Plan, plan: FigurePlan, table: pd.DataFrame) -> Iterator[_Pan
                 x = given or _last_axis(study, of_panel)
                 x = x if x in table.columns else dimensional_name(x)
                 units = _unit(table, x, plan.x_labels), _unit(table, y, plan.y_labels)
+                at = measured_at(study).get(x, "")
                 labels = (
-                    plan.x_labels[k] if plan.x_labels else axis_label(x, units[0]),
+                    plan.x_labels[k] if plan.x_labels else axis_label(x, units[0], at),
                     plan.y_labels[k] if plan.y_labels else axis_label(y, units[1]),
                 )
                 sizes = {x: units[0].size, y: units[1].size}

@@ -132,7 +132,7 @@ def display_unit(key: str, largest: float) -> Unit:
     return Unit(dimension.unit.replace("^2", "²"), 1.0)
 
 
-def axis_label(key: str, of: Unit | None = None) -> str:
+def axis_label(key: str, of: Unit | None = None, at: str = "") -> str:
     """Name of a column at an axis: its symbol, what it is and its unit.
 
     Parameters
@@ -141,6 +141,8 @@ def axis_label(key: str, of: Unit | None = None) -> str:
         Column of the table of a study.
     of : Unit, optional
         Its unit, where it is not that of SI.
+    at : str
+        At what it is measured, as the period of a spectral acceleration.
     """
     found = _term(key)
     if found is not None:
@@ -152,6 +154,7 @@ def axis_label(key: str, of: Unit | None = None) -> str:
         return key
     name, unit = called
     unit = unit if of is None else of.name
+    name += f" at {at}" if at else ""
     return f"{name} ({unit})" if unit else name
 
 

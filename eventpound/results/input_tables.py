@@ -10,8 +10,8 @@ from eventpound.results.trade import HEAVY, Trade, Unit
 from eventpound.scene.point import Point
 from eventpound.units import Dimension
 
-_MOST_ROWS = 40
-"""Rows of a table that are shown."""
+_MOST_ROWS, _MOST_DASHPOTS = 40, 12
+"""Rows of a table that are shown; modal damping alone makes a dashpot for every two bodies."""
 _MOST_MODES = 5
 """Modes of a structure that are shown."""
 _APART = "compression", "friction", "F_ult"
@@ -88,7 +88,8 @@ def input_tables(inputs: Mapping[str, Any], chosen: tuple[str, ...] = ()) -> Ite
         tables: dict[str, list[Mapping[str, Any]]] = {own: [] for own in ("", *_APART)}
         for row in given:
             tables[next((own for own in _APART if own in row), "")].append(row)
-        yield from (_cells(rows, columns, units) for rows in tables.values() if rows)
+        most = _MOST_DASHPOTS if kind == "dashpots" else _MOST_ROWS
+        yield from (_cells(rows, columns, units, most) for rows in tables.values() if rows)
     for structure in inputs["structures"]:
         if "initial" in structure:
             yield _modes(structure)
@@ -121,7 +122,10 @@ def _units(trade: Trade) -> dict[str, Unit]:
 
 
 def _cells(
-    rows: Sequence[Mapping[str, Any]], columns: Sequence[_Column], units: Mapping[str, Unit]
+    rows: Sequence[Mapping[str, Any]],
+    columns: Sequence[_Column],
+    units: Mapping[str, Unit],
+    most: int = _MOST_ROWS,
 ) -> Cells:
     """A table without the columns that no row has."""
     there = [column for column in columns if any(row.get(column[0]) is not None for row in rows)]
@@ -130,12 +134,12 @@ def _cells(
     heads = [headed(head, name) for (_, head, _), name in zip(there, names, strict=True)]
     cells = tuple(
         tuple(_cell(row.get(key), sizes.get(unit, ("", 1.0))[1]) for key, _, unit in there)
-        for row in rows[:_MOST_ROWS]
+        for row in rows[:most]
     )
     words = tuple(
         all(isinstance(row.get(key), str | list | None) for row in rows) for key, _, _ in there
     )
-    return Cells(tuple(heads), cells, words, max(0, len(rows) - _MOST_ROWS))
+    return Cells(tuple(heads), cells, words, max(0, len(rows) - most))
 
 
 def _cell(value: object, size: float) -> str:

@@ -221,10 +221,10 @@ def fragility_table(
         if not pd.api.types.is_numeric_dtype(table[name]):
             raise InputError(f"column {name!r} holds no numbers")
     there = table[columns].dropna()
-    if there.empty or not (there[measure] > 0.0).all():
-        raise InputError(
-            f"column {measure!r}: an intensity has to be positive, in one row at least"
-        )
+    if there.empty:
+        raise InputError(f"no row has a {measure} and a {demand}")
+    if not (there[measure] > 0.0).all():
+        raise InputError(f"column {measure!r}: an intensity has to be positive")
     if not varies(there[measure].to_numpy(float)):
         raise InputError(f"column {measure!r} is the same in all rows: nothing grows with it")
     if records and there.duplicated([records, measure]).any():

@@ -26,6 +26,7 @@ from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.study.figure import one_or_several
 from eventpound.study.plan import Plan
+from eventpound.study.variants import axis_cells
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,12 +55,32 @@ class IntensityPlan:
     fractiles: tuple[float, ...]
 
     def problems(self, study: Plan) -> Iterator[str]:
-        """Columns that the table does not have."""
-        known = (*study.columns, *study.quantities)
-        for key in ("measure", "demand", "records"):
-            name = getattr(self, key)
-            if name not in known:
-                yield f"[intensity]: {key}: found {name!r}; accepted: {', '.join(known)}"
+        """Columns that the table does not have, and axes that leave no one fractile."""
+        accepted = {"measure": study.columns, "records": study.columns, "demand": study.quantities}
+        found = [key for key, known in accepted.items() if getattr(self, key) not in known]
+        for key in found:
+            known = ", ".join(accepted[key])
+            yield f"[intensity]: {key}: found {getattr(self, key)!r}; accepted: {known}"
+        if not found:
+            import pandas as pd
+
+            cells = [pd.DataFrame(axis_cells(base, range(base.size))) for base in study.bases]
+            yield from self.ambiguities(pd.concat(cells))
+
+    def ambiguities(self, table: pd.DataFrame) -> Iterator[str]:
+        """Why some rows of a table have no one fractile: a record has several at one intensity."""
+        if table[[self.measure, self.records]].dropna().duplicated().any():
+            yield (
+                f"[intensity]: several rows have one {self.records} and one {self.measure}, of "
+                "which there is no one fractile; accepted: a study in which no other axis varies"
+            )
+
+    def doubts(self) -> Iterator[str]:
+        """Fractiles that are hardly meant."""
+        for value in self.fractiles:
+            if 0.0 < value < 1.0:
+                meant = f"{100.0 * value:g} for {100.0 * value:g} %"
+                yield f"[intensity]: fractiles: {value:g} is {value:g} %; write {meant}"
 
 
 def read_intensities(top: Table) -> tuple[IntensityPlan, ...]:
@@ -105,12 +126,8 @@ def fractile_curves(table: pd.DataFrame, plan: IntensityPlan) -> pd.DataFrame:
     """
     import pandas as pd
 
-    known = table[[plan.measure, plan.records]].dropna()
-    if known.duplicated().any():
-        raise InputError(
-            f"[intensity]: several rows have one {plan.records} and one {plan.measure}, of which "
-            "there is no one fractile; accepted: a study in which no other axis varies"
-        )
+    if several := list(plan.ambiguities(table)):
+        raise InputError(several)
     rows = []
     for intensity, group in table.groupby(plan.measure, sort=True):
         demands = group[plan.demand].dropna().to_numpy(float)

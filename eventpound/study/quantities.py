@@ -49,7 +49,8 @@ def planned(
     study = Plan(bases[0].case.title, bases, tuple(columns), (), by.name, by.rtol)
     try:
         for base in bases:
-            check_solver(replace(base.case.solver, name=by.name, rtol=by.rtol), base.case.scene)
+            case = base.case
+            check_solver(replace(case.solver, name=by.name, rtol=by.rtol), case.scene, case.run)
             refuse_options(base.case, Way.STUDY, [axis.key for axis in base.axes])
         first = [base.at_first() for base in bases]
         asked = quantities_asked((base.case.scene, base.case.run) for base in first)

@@ -117,6 +117,8 @@ def load_study(path: str | Path) -> StudyCase:
     found += [problem for plan in plans for problem in plan.problems(study)]
     _raise(list(dict.fromkeys(found)), file)
     warnings = dict.fromkeys(w for base in bases for w in base.case.warnings)
+    doubts = (f"{file}: {doubt}" for plan in intensities for doubt in plan.doubts())
+    warnings |= dict.fromkeys(doubts)
     given = {key for tables in (rest, *(p.tables for p in parts)) for key in _table(tables, "run")}
     if left := [option for option in without_effect(Way.STUDY) if option in given]:
         warnings[f"{file}: {without_part(left, Way.STUDY)}"] = None

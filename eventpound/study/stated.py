@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from eventpound.motion.record import Record
 from eventpound.motion.scaling import DAMPING
 from eventpound.study.axes import PI
 from eventpound.study.plan import PART, Base, Plan
+from eventpound.study.variants import PSA_PERIOD
+
+PSA = "excitation.psa"
 
 
 def stated(study: Plan, symbol: Callable[[str], str]) -> list[str]:
@@ -37,14 +41,34 @@ def stated(study: Plan, symbol: Callable[[str], str]) -> list[str]:
     return [*lines, *(f"{', '.join(names)}: {', '.join(rest)}" for rest, names in own.items())]
 
 
+def measured_at(study: Plan) -> dict[str, str]:
+    """Period and damping of the PSA of a study, by its column; nothing where they vary."""
+    varied = {axis.key for base in study.bases for axis in base.axes}
+    found = {psa_at(_excitation(base)) for base in study.bases}
+    return {PSA: found.pop()} if len(found) == 1 and PSA_PERIOD not in varied else {}
+
+
+def psa_at(excitation: Mapping[str, Any]) -> str:
+    """Period and damping of the PSA that ``[excitation]`` scales to; empty where it does not."""
+    period, damping = excitation.get("psa_period"), excitation.get("psa_damping")
+    if period is None:
+        return ""
+    at = f"{period:.4g} s" if isinstance(period, float) else str(period)
+    return f"{at}, {100.0 * (DAMPING if damping is None else damping):g} %"
+
+
+def _excitation(base: Base) -> Mapping[str, Any]:
+    found: Any = base.case.understood.get("excitation", {})
+    return dict(found)
+
+
 def _of_base(base: Base, symbol: Callable[[str], str]) -> list[str]:
     """Fixed Π-terms of one scene and the end of its runs."""
     varied = {axis.key for axis in base.axes} | set(base.labels)
     texts = []
     motion = base.case.scene.motion
-    if "excitation.psa" in varied and isinstance(motion, Record) and motion.psa_period:
-        damping = DAMPING if motion.psa_damping is None else motion.psa_damping
-        texts.append(f"PSA at T = {motion.psa_period:g} s, {100.0 * damping:g} % damping")
+    if PSA in varied and PSA_PERIOD not in varied and (at := psa_at(_excitation(base))):
+        texts.append(f"PSA at {at} damping")
     pi = base.case.pi
     if pi is not None:
         texts += [

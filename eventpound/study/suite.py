@@ -161,7 +161,7 @@ def plan_of(
     scene, quantities = case.scene, []
     if scene.bodies:
         # Options that no run can have are an error of the whole, not of every record.
-        check_solver(options, scene)
+        check_solver(options, scene, case.run)
         refuse_options(case, Way.SUITE)
         if errors and options.name not in KEEPING:
             raise InputError(

@@ -26,7 +26,7 @@ from eventpound.study.plan import RECORD, Chunk, Plan
 from eventpound.study.records import FAILED, about, peak_errors, reason
 from eventpound.study.runs import Refused, Results, parts_of
 from eventpound.study.sweep import Wanted
-from eventpound.study.variants import axis_values
+from eventpound.study.variants import axis_cells
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -110,20 +110,11 @@ def _cells_of(
 ) -> dict[str, Sequence[object]]:
     """Cells of some rows by their columns, of those that they have."""
     if isinstance(part, Refused):
-        base, at = part.base, part.at
-        values: Mapping[str, Floats] = axis_values(base, at.start, at.stop)
-        good, said = [False] * len(at), [str(part.error)] * len(at)
+        cells = axis_cells(part.base, part.at)
+        good, said = [False] * len(part.at), [str(part.error)] * len(part.at)
     else:
-        base, at, values = part.rows.base, part.rows.at, part.rows.values
-    cells: dict[str, Sequence[object]] = {
-        name: [word] * len(at) for name, word in base.labels.items()
-    }
-    if base.records:
-        cells[RECORD] = [base.records[row // base.size_of_record].name for row in at]
-    cells |= {name: column.tolist() for name, column in values.items()}
-    if not isinstance(part, Refused):
         # An estimate that fails marks its run as failed.
-        cells |= _numbers_of(study, part)
+        cells = axis_cells(part.rows.base, part.rows.at) | _numbers_of(study, part)
         good, said = part.many.success.tolist(), part.many.message
     said = ["" if ok else text for ok, text in zip(good, said, strict=True)]
     if study.suite is None:

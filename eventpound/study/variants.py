@@ -28,7 +28,7 @@ from eventpound.scene.pi_columns import ScaleColumns, numbers_with_terms, scale_
 from eventpound.scene.pi_terms import of_all
 from eventpound.scene.scene import Scene
 from eventpound.study.axes import PI, values_of_rows
-from eventpound.study.plan import Base
+from eventpound.study.plan import RECORD, Base
 
 PSA_PERIOD = "excitation.psa_period"
 """Key of the period at which a record is scaled."""
@@ -111,6 +111,17 @@ def rows_of(base: Base, low: int, high: int) -> Rows:
 def axis_values(base: Base, low: int, high: int) -> dict[str, Floats]:
     """Values of the axes in the rows `low` to `high` of a scene."""
     return values_of_rows(base.axes, np.arange(low, high) % base.size_of_record)
+
+
+def axis_cells(base: Base, at: range) -> dict[str, Sequence[object]]:
+    """The first columns of the table in some rows of a scene: words, record, axes."""
+    cells: dict[str, Sequence[object]] = {
+        name: [word] * len(at) for name, word in base.labels.items()
+    }
+    if base.records:
+        cells[RECORD] = [base.records[row // base.size_of_record].name for row in at]
+    values = axis_values(base, at.start, at.stop)
+    return cells | {name: column.tolist() for name, column in values.items()}
 
 
 def _joined(base: Base, values: Mapping[str, Floats], parts: Sequence[Rows]) -> Rows:

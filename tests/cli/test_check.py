@@ -11,7 +11,9 @@ import pytest
 
 from eventpound.case.options import OWN_SOLVERS
 from eventpound.cli import main
-from eventpound.solvers import available
+from eventpound.errors import ComputationError
+from eventpound.solvers import available, solver_named
+from eventpound.solvers.base import Task
 
 CASES = Path(__file__).parents[2] / "cases"
 CASE = """
@@ -129,6 +131,105 @@ def test_check_and_run_refuse_the_same(
     assert [path.name for path in case.iterdir()] == ["case.toml"]
 
 
+_SLIDER = """
+[[spring]]
+between = ["ground", "slab"]
+name = "bearing"
+law = "slider"
+friction = 0.06
+normal_force = "4000 kN"
+"""
+_DEGRADING = """
+[[spring]]
+between = ["slab", "floor"]
+name = "pier"
+law = "degrading-bouc-wen"
+stiffness = "1e4 kN/m"
+strength = "900 kN"
+yield_displacement = "1 cm"
+strength_degradation = 0.01
+"""
+_BACKFILL = """
+[[spring]]
+between = ["ground", "slab"]
+name = "soil"
+law = "backfill"
+wall_height = "2 m"
+wall_width = "10 m"
+"""
+_STOP = """
+[[contact]]
+between = ["barrier", "slab"]
+name = "stop"
+gap = "3 cm"
+restitution = 0.5
+"""
+_KELVIN = _STOP + 'law = "kelvin-voigt"\nstiffness = 1e9\n'
+_POINT = """
+[[body]]
+name = "column"
+mass = "100 t"
+[[contact]]
+between = [{ slab = 0.5, floor = 0.5 }, "column"]
+name = "point"
+gap = "3 cm"
+restitution = 0.5
+"""
+_SUPPORT = '[[support]]\nname = "pier2"\ndelay = 0.1\n'
+_FORCE = '[[force]]\nbody = "slab"\nvalue = "1 kN"\n'
+_SHORT = "time_step = 1e-13\n"
+_ADDED = {
+    "slider": _SLIDER,
+    "degrading": _DEGRADING,
+    "backfill": _BACKFILL,
+    "stop": _STOP,
+    "kelvin-voigt": _KELVIN,
+    "hertz": _STOP.replace("restitution = 0.5", 'law = "hertz"\nstiffness = 1e9'),
+    "point": _POINT,
+    "support": _SUPPORT,
+    "force": _FORCE,
+    "slip": _SLIDER + '[run]\nevents = ["slip"]\n',
+    "estimate": "[run]\nerror_estimate = true\n",
+}
+
+
+@pytest.mark.parametrize("added", [*_ADDED, "step"])
+@pytest.mark.parametrize("solver", OWN_SOLVERS)
+def test_check_refuses_what_run_refuses_of_every_solver(
+    solver: str,
+    added: str,
+    case: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def solve(self: object, task: Task) -> None:
+        raise ComputationError("began to run", task.start)
+
+    monkeypatch.setattr(type(solver_named(solver)), "solve", solve)
+    monkeypatch.setattr(type(solver_named(solver)), "ready", lambda *of: None, raising=False)
+    text = CASE.replace("[solver]", _ADDED.get(added, "") + "[solver]")
+    text = text.replace('"cvode"', f'"{solver}"') + (_SHORT if added == "step" else "")
+    (case / "case.toml").write_text(text)
+    checked = main(["check", str(case)])
+    of_check = capsys.readouterr().err
+    if checked == 0:
+        assert main(["run", str(case)]) == 1
+        assert "began to run" in capsys.readouterr().err
+    else:
+        assert checked == 2
+        assert said(["run", str(case)], 2, capsys) == ("", of_check)
+    unknown = {"slider", "degrading", "backfill", "slip", "support", "force", "point"}
+    laws = {"kelvin-voigt", "hertz", "point"}
+    not_taken = {
+        "cvode": {"step"},
+        "ida": laws | {"step"},
+        "fast": laws | {"step"},
+        "moreau": unknown | laws | {"step"},
+        "penalty": unknown | {"step"},
+    }
+    assert (checked == 2) == (added in not_taken[solver])
+
+
 def test_a_warning_is_given_once_a_command(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ratio = '[[dashpot]]\nbetween = ["ground", "slab"]\nratio = 5\nrefers_to = "2.5 s"\n[solver]'
     (case / "case.toml").write_text(CASE.replace("[solver]", ratio))
@@ -182,3 +283,34 @@ def test_the_number_of_pi_terms_is_that_of_the_paper(capsys: pytest.CaptureFixtu
         assert f"Pi-terms  dimensionless numbers, {count} with the peak's" in out
     out, _ = said(["check", str(CASES / "pair")], 0, capsys)
     assert "Pi-terms  dimensionless numbers, 10 with the peak's: omega_s = " in out
+
+
+def test_a_study_shows_the_scene_of_its_first_run(
+    case: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    alone, _ = said(["check", str(case)], 0, capsys)
+    axis = '[[study.axis]]\nkey = "spring.isolators.strength"\nvalues = ["900 kN", "2e3 kN"]\n'
+    (case / "case.toml").write_text(CASE + axis)
+    out, err = said(["check", str(case)], 0, capsys)
+    assert err == ""
+    of_scene = [line for line in alone.splitlines() if "T initial" in line or line[:2] == "1 "]
+    assert len(of_scene) == 3
+    assert set(of_scene) < set(out.splitlines())
+    assert "shown     what the first run has: spring.isolators.strength = 900000" in out
+
+
+def test_of_many_dashpots_a_few_are_listed(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    bodies = "".join(f'[[body]]\nname = "b{i}"\nmass = 1e5\n' for i in range(6))
+    springs = "".join(
+        f'[[spring]]\nbetween = ["{f"b{i - 1}" if i else "ground"}", "b{i}"]\nlaw = "linear"\n'
+        "stiffness = 1e8\n"
+        for i in range(6)
+    )
+    names = ", ".join(f'"b{i}"' for i in range(6))
+    damped = f"[[modal_damping]]\nbodies = [{names}]\nratio = 0.05\n"
+    (case / "case.toml").write_text(
+        CASE.replace("[solver]", bodies + springs + damped + "[solver]")
+    )
+    out, _ = said(["check", str(case)], 0, capsys)
+    # One to the ground for each body, one between every two.
+    assert "and 9 more" in out

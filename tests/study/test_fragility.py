@@ -184,6 +184,22 @@ def test_command_on_a_study_by_psa(tmp_path: Path, capsys: pytest.CaptureFixture
     assert main([*words[:-1], "1 s"]) == 2
     assert main([*words, "--where", "x=1"]) == 2
     assert "COLUMN=VALUE" in capsys.readouterr().err
+    # What differs is kept, with what it is of; the same again is written over.
+    first = pd.read_csv(tmp_path / "results" / "fragility-1.csv")
+    assert first["limit"].tolist() == [0.01]
+    assert [*found["rows"], *found["demand"]] == ["success=True"] * 2 + ["peaks.deck.abs_max"] * 2
+    for _ in range(2):
+        assert main([*words, "--limit", "2 cm", "--where", "excitation.psa=0.2 g"]) == 2
+        assert "the same in all rows" in capsys.readouterr().err
+    where = ["--where", "excitation.psa=1.96133", "--where"]
+    assert main([*words, *where, "excitation.file=records/9.txt"]) == 2
+    said = capsys.readouterr().err
+    assert "--where: no row has 'excitation.file=records/9.txt'; accepted: exc" in said
+    assert main([*words, "--where", "excitation.psa=20 s"]) == 2
+    assert "--where: excitation.psa: found '20 s': 's' is no unit" in capsys.readouterr().err
+    assert main([*words, "--where", "excitation.psa=0.3 g"]) == 2
+    assert "accepted: excitation.psa of 0.980665, 1.96133, 3.92266" in capsys.readouterr().err
+    assert not (tmp_path / "results" / "fragility-2.csv").exists()
 
 
 def test_an_intensity_that_is_the_same_for_all_is_none() -> None:

@@ -101,9 +101,41 @@ def test_the_table_has_a_row_for_each_record_and_intensity(records, make_study):
         ('"records/*.txt"', '"nothing/*.txt"', "files: found 'nothing/*.txt'"),
         ('demand = "peaks.deck.abs_max"', 'demand = "drift"', "[intensity]: demand: found 'drift'"),
         ("name = \"ida\"", "fractiles = [150]", "fractiles: found [150]"),
+        ('measure = "excitation.pga"', 'measure = "impacts"', "measure: found 'impacts'"),
     ],
 )  # fmt: skip
 def test_problems_are_named(records, make_study, old, new, words):
     with pytest.raises(InputError) as caught:
         make_study(CASE.format(gap=1.0).replace(old, new))
     assert words in str(caught.value)
+
+
+_GAP = """
+[[study.axis]]
+key = "contact.joint.gap"
+values = ["1 cm", "2 cm"]
+[intensity]"""
+
+
+@pytest.mark.parametrize("command", ["check", "study", "design"])
+def test_an_axis_beside_is_refused_before_any_run(records, tmp_path, capsys, command):
+    """Under two gaps a record has two demands at one intensity, which is known without a run."""
+    directory = records.parent
+    text = CASE.format(gap=1.0).replace("[intensity]", _GAP)
+    (directory / "case.toml").write_text(text)
+    assert main([command, str(directory)]) == 2
+    assert "several rows have one excitation.file and one excitation.pga" in capsys.readouterr().err
+    assert not (directory / "results").exists()
+    # An axis that goes along with the intensity leaves one demand.
+    together = text.replace('["1 cm", "2 cm"]', '[0.01, 0.02, 0.03]\nzip = "a"')
+    together = together.replace('"0.4 g"]', '"0.4 g"]\nzip = "a"')
+    (directory / "case.toml").write_text(together)
+    if command == "check":
+        assert main([command, str(directory)]) == 0
+
+
+def test_a_part_of_one_is_doubted_as_a_per_cent(records, capsys):
+    text = CASE.format(gap=1.0) + "fractiles = [0.16, 0.5]\n"
+    (records.parent / "case.toml").write_text(text)
+    assert main(["check", str(records.parent)]) == 0
+    assert "[intensity]: fractiles: 0.16 is 0.16 %; write 16 for 16 %" in capsys.readouterr().err

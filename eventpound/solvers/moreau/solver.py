@@ -7,7 +7,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from eventpound.mechanics.model import assemble
 from eventpound.solvers.base import Recording, Task
+from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.moreau.step import Active, advance
 from eventpound.solvers.settings import Settings, number
 from eventpound.solvers.timestepping.run import carry_to_end, prepared
@@ -31,6 +33,11 @@ class Moreau:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
         _theta(settings)
         checked_choices(settings)
+
+    def check_task(self, task: Task) -> None:
+        """Refuse more steps than there may be."""
+        model = assemble(task.scene)
+        time_step(task, model, scene_scales(task.scene, model, task.end - task.start), math.inf)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""

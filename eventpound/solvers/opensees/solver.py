@@ -59,6 +59,10 @@ class OpenSees:
         _time_step(settings)
         contact_choice(settings)
 
+    def check_task(self, task: Task) -> None:
+        """Refuse what it has no material for."""
+        elements_of(task.scene, assemble(task.scene), contact_choice(task.settings), 1.0)
+
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
         began = time.perf_counter()

@@ -7,8 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from eventpound.mechanics.contact_laws import contact_forces
+from eventpound.mechanics.model import assemble
 from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Recording, Task
+from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.penalty.elements import (
     STIFFER,
     contact_steps,
@@ -40,6 +42,13 @@ class Penalty:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
         contact_steps(settings)
         checked_choices(settings)
+
+    def check_task(self, task: Task) -> None:
+        """Refuse more steps than there may be."""
+        model = assemble(task.scene)
+        scales = scene_scales(task.scene, model, task.end - task.start)
+        elements = elements_of(task.scene, contact_stiffness(task, model, scales))
+        time_step(task, model, scales, shortest_period(model, scales, elements))
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
