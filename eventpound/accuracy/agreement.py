@@ -10,7 +10,7 @@ import numpy as np
 from eventpound.accuracy.bound import Agreement
 from eventpound.accuracy.digits import positions
 from eventpound.accuracy.quantities import OF_IMPACTS, quantities_of, values_of
-from eventpound.accuracy.routes import REFERENCE, Route, RouteRun
+from eventpound.accuracy.routes import Route, RouteRun
 from eventpound.accuracy.sequences import KINDS, parted, touches, weights_for
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
@@ -19,14 +19,11 @@ from eventpound.score.levels import UNIT_OF_TIME
 from eventpound.score.pairing import Pair
 from eventpound.solvers.base import Recording, Task
 
-AS_GOOD = 1e-14
-"""Part of the largest displacement below which rounding moves a motion, not the tolerance."""
-
 
 class RoutesCompared(NamedTuple):
     """Runs of one task by several routes.
 
-    runs: of the routes that finished. reference: the one whose tight values are stated.
+    runs: of the routes that finished. reference: the one whose tight run is stated.
     truth: that run, as the others are held against it. agreement: values of its quantities.
     differences: of every tight run from it.
     """
@@ -54,23 +51,16 @@ class RoutesCompared(NamedTuple):
 
     @property
     def stated(self) -> Recording:
-        """The run the values are of."""
+        """The run that is stated."""
         return self.runs[self.reference].tight
 
 
 def compare_routes(
     task: Task, runs: list[RouteRun], moments: Sequence[float] = ()
 ) -> RoutesCompared:
-    """Values of all routes, those stated of the route that its tolerance moves least.
-
-    That of the reference solver is, where only rounding moves either.
-    """
+    """Values of all routes; stated is the route that its tolerance moves least."""
     moved = [_restlessness(task, run) for run in runs]
     reference = min(range(len(runs)), key=moved.__getitem__)
-    largest = float(np.abs(runs[reference].tight.history.u).max(initial=0.0))
-    for r, run in enumerate(runs):
-        if run.route.label == REFERENCE and moved[r] <= AS_GOOD * largest:
-            reference = r
     stated = runs[reference].tight
     truth = Truth(
         quantities_of(task, stated, moments, events=True),

@@ -33,6 +33,7 @@ does what is taken from cascades at their ends (`eventpound.accuracy.left_out`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -112,6 +113,12 @@ class Agreement:
         ours = self.formulation[self.reference]
         return np.array([formulation != ours for formulation in self.formulation])
 
+    @property
+    def confirmed(self) -> Floats:
+        """Distance of the nearest independent route, inf where there is none; shape (n,)."""
+        apart = _masked(self.deviations, ~self.independent, np.inf)
+        return np.asarray(apart.min(axis=0, initial=np.inf))
+
     def convergence(self, slope: Floats) -> Floats:
         """e_r, shape (routes, n), for the changes A of shape (n,)."""
         own = np.abs(self.tight - self.loose)
@@ -134,15 +141,17 @@ class ErrorBounds:
     ----------
     bound : ndarray
         NaN where there is none.
-    confirmed : ndarray
-        Distance of the nearest independent route, inf where there is none.
     limit : list of Limit
         The largest part of each bound.
     """
 
     bound: Floats
-    confirmed: Floats
     limit: list[Limit]
+
+
+def decade(bound: float) -> int:
+    """Power of ten at or below a bound: where the uncertain digit stands."""
+    return math.floor(math.log10(bound))
 
 
 def rounding_of_run(conditions: Conditioning, scale: Floats, displaced: float) -> Floats:
@@ -186,7 +195,7 @@ def bounds_of(
     e = agreement.convergence(slope)
     ours = e[agreement.reference]
     rounding = rounding_of_run(conditions, scale, displaced)
-    confirmed = _masked(apart, alone, np.inf).min(axis=0, initial=np.inf)
+    confirmed = agreement.confirmed
     if agreement.touched:
         ours = np.fmin(ours, _masked(apart, alone, 0.0).max(axis=0))
     # Where the reference has no loose value its error is left to the nearest other route.
@@ -215,7 +224,7 @@ def bounds_of(
     ):
         bound[refused] = np.nan
         limit = [reason if no else k for no, k in zip(refused, limit, strict=True)]
-    return ErrorBounds(bound, confirmed, limit)
+    return ErrorBounds(bound, limit)
 
 
 def _masked(values: Floats, without: np.ndarray, instead: float) -> Floats:

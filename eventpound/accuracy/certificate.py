@@ -24,7 +24,7 @@ class CertifiedQuantity:
     quantity : str
         As in ``summary.json`` and, of events, by the row in ``events.csv``.
     value : float
-        What the reference route found, in `unit`.
+        What `route` found, in `unit`.
     bound : float or None
         The true value is within this distance; None where it is refused.
     unit : str
@@ -41,6 +41,8 @@ class CertifiedQuantity:
         What the digits are counted from, in `unit`.
     confirmed : float or None
         Distance of the nearest independent route, in `unit`.
+    route : str
+        Label of the route that the value is of: the reference solver's where it is as good.
     by_reference : float or None
         What CVODE, the reference solver, found, where `value` is another's and it lies within
         the bound.
@@ -56,6 +58,7 @@ class CertifiedQuantity:
     amplification: float | None
     scale: float
     confirmed: float | None
+    route: str
     by_reference: float | None = None
 
     @property
@@ -130,12 +133,13 @@ class Certificate:
         Whether the routes agree on the sequence of events and every peak and
         final value is certified.
     reference : str
-        The route and tolerance the values are of.
+        The route and tolerance that is stated: of events, and of the values that are not the
+        reference solver's.
     quantities : tuple of CertifiedQuantity
         Peaks, final values, events.
     events : tuple of mapping
         Row, time (s), kind, group, contact and rate of the gap before (m/s) of the
-        events of the reference.
+        events of that route.
     near_misses, grazes : tuple
         Where a small error makes or unmakes an event.
     parting : PartedRoute or None

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import os
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
+from eventpound.accuracy.bound import decade
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity, RouteReport
 from eventpound.results import write_together
 from eventpound.results.jsontext import to_json
@@ -59,7 +61,10 @@ def _head(c: Certificate) -> Iterator[str]:
     yield f"certificate {'given' if c.certified else 'REFUSED'}"
     if c.reference:
         count = len(c.quantities) - len(c.refused)
-        yield f"values      of {c.reference}; {count} of {len(c.quantities)} certified"
+        routes = Counter(q.route for q in c.quantities)
+        of = ", ".join(f"{number} of {label}" for label, number in routes.most_common())
+        yield f"values      {of}; {count} of {len(c.quantities)} certified"
+        yield f"events      of {c.reference}"
     for route in c.solver_routes:
         tight, loose = route.tolerances
         ended = f"failed: {route.message}" if route.message else route.formulation + _shares(route)
@@ -84,7 +89,7 @@ def _table(c: Certificate) -> Iterator[str]:
         return
     yield (
         f"{'quantity':<32} {'value':>24} {'bound':>9} {'unit':<4} {'digits':>6} "
-        f"{'amplified':>9} {'by cvode':>24} limited by"
+        f"{'amplified':>9} {'of':<11} {'by cvode':>24} limited by"
     )
     listed = [q for q in c.quantities if not q.quantity.startswith("events.")]
     times = [q for q in c.quantities if q.quantity.startswith("events.") and q.unit == "s"]
@@ -104,7 +109,8 @@ def _row(q: CertifiedQuantity) -> str:
     by_reference = "" if q.by_reference is None else significant(q.by_reference, q.bound)
     return (
         f"{q.quantity:<32} {significant(q.value, q.bound):>24} {bound:>9} {q.unit:<4} "
-        f"{q.digits:>6.1f} {amplified:>9} {by_reference:>24} {q.limited_by}"
+        f"{q.digits:>6.1f} {amplified:>9} {q.route.partition(',')[0]:<11} {by_reference:>24} "
+        f"{q.limited_by}"
     )
 
 
@@ -112,8 +118,7 @@ def significant(value: float, bound: float | None) -> str:
     """A value with the decimals that its bound leaves, one uncertain digit included."""
     if bound is None or bound <= 0.0:
         return f"{value:.6g}"
-    decimals = max(0, math.ceil(-math.log10(bound)))
-    return f"{value:.{min(decimals, 20)}f}"
+    return f"{value:.{min(max(0, -decade(bound)), 20)}f}"
 
 
 def _doubts(c: Certificate) -> Iterator[str]:

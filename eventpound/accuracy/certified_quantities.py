@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from eventpound.accuracy.agreement import RoutesCompared
 from eventpound.accuracy.attainment import ambiguities
-from eventpound.accuracy.bound import ErrorBounds, Limit, bounds_of
+from eventpound.accuracy.bound import ErrorBounds, Limit, bounds_of, decade
 from eventpound.accuracy.certificate import FEWEST_DIGITS, CertifiedQuantity
 from eventpound.accuracy.conditioning import Conditioning
 from eventpound.accuracy.left_out import displaced, time_to_limits
@@ -20,7 +22,7 @@ from eventpound.tolerances import ATTAINED_ANEW
 def certified_quantities(
     task: Task, found: RoutesCompared, conditions: Conditioning
 ) -> tuple[CertifiedQuantity, ...]:
-    """Bound every quantity.
+    """Bound every quantity, and print the reference solver's value where it is as good.
 
     Parameters
     ----------
@@ -37,17 +39,24 @@ def certified_quantities(
     _widen_times(task, found, bounds)
     _widen_limits(found, bounds)
     _refuse_after_parting(found, bounds)
+    stated, labels = found.agreement, [run.route.label for run in found.runs]
+    place = labels.index(REFERENCE) if REFERENCE in labels else found.reference
+    reference = replace(stated, reference=place)
     certified = []
     for i, quantity in enumerate(found.truth.quantities):
         bound, slope = float(bounds.bound[i]), float(conditions.largest_slope[i])
-        confirmed = float(bounds.confirmed[i])
+        apart = abs(float(reference.values[i] - stated.values[i]))
+        good = is_as_good(apart, bound, 10.0**-FEWEST_DIGITS * quantity.scale)
+        printed = reference if good else stated
+        bound += apart if good else 0.0
+        confirmed = float(printed.confirmed[i])
         width = bound if np.isfinite(bound) else confirmed
         digits = digits_of(width / quantity.scale)
         holds = bool(np.isfinite(bound)) and digits >= FEWEST_DIGITS
         certified.append(
             CertifiedQuantity(
                 quantity.name,
-                float(found.agreement.values[i]),
+                float(printed.values[i]),
                 bound if holds else None,
                 quantity.unit,
                 digits,
@@ -56,19 +65,22 @@ def certified_quantities(
                 slope / quantity.scale if np.isfinite(slope) else None,
                 quantity.scale,
                 confirmed if np.isfinite(confirmed) else None,
-                _by_reference(found, i, bound) if holds else None,
+                labels[printed.reference],
+                float(reference.values[i]) if holds and not good and apart <= bound else None,
             )
         )
     return tuple(certified)
 
 
-def _by_reference(found: RoutesCompared, i: int, bound: float) -> float | None:
-    """Quantity i by the reference solver, where it is within the bound of another's value."""
-    for run, values in zip(found.runs, found.agreement.tight, strict=True):
-        stated = found.agreement.values[i]
-        if run.route.label == REFERENCE and run is not found.runs[found.reference]:
-            return float(values[i]) if abs(values[i] - stated) <= bound else None
-    return None
+def is_as_good(apart: float, bound: float, most: float) -> bool:
+    """Whether a value is printed in the place of one that has a bound, so far from it.
+
+    It errs by at most `bound` + `apart`. It has to be within the bound, leave as many decimals and
+    not be refused, as it is beyond `most`.
+    """
+    if apart == 0.0:
+        return True
+    return apart <= bound and bound + apart <= most and decade(bound + apart) == decade(bound)
 
 
 def _widen_limits(found: RoutesCompared, bounds: ErrorBounds) -> None:

@@ -26,7 +26,7 @@ def test_bound_holds_the_error_of_a_route_that_converges():
     bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), displaced=100 * EPS)
     error = np.abs(agreement.values - TRUE)
     assert np.all(error < bounds.bound)
-    assert bounds.confirmed == pytest.approx(np.full(3, 2.9e-11), rel=1e-3)
+    assert agreement.confirmed == pytest.approx(np.full(3, 2.9e-11), rel=1e-3)
     assert bounds.bound == pytest.approx(np.full(3, SAFETY * 9e-12), rel=0.05)
     assert bounds.limit == [Limit.TOLERANCE] * 3
 
