@@ -72,6 +72,7 @@ def main(arguments: list[str] | None = None) -> None:
     if options.record is not None:
         data = read_record(options.record, units=options.units, time_step=options.time_step)
         record = Record(data.acceleration, data.time_step)
+    print(f"under {options.record or 'El Centro 1940'}\n")
     columns = list(product(DAMPINGS, (False, True)))
     words = [f"{damping}, {'reversed' if reverse else 'as given'}" for damping, reverse in columns]
     print(f"| abutments | {' | '.join(words)} |\n|{' --- |' * (1 + len(words))}")

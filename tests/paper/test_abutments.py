@@ -22,7 +22,7 @@ def test_only_a_stiff_push_keeps_the_joint_closed(
     both = {name: abutments.READINGS[name] for name in (series, direct)}
     monkeypatch.setattr(abutments, "READINGS", both)
     abutments.main([str(LEFKADA), "--units", "m/s2", "--time-step", "0.01"])
-    rows = [line.split(" | ") for line in capsys.readouterr().out.splitlines()[2:]]
+    rows = [line.split(" | ") for line in capsys.readouterr().out.splitlines()[4:]]
     counted = {row[0].removeprefix("| "): [cell.split(" / ") for cell in row[1:]] for row in rows}
     assert [cell[0] for cell in counted[series]] == ["49", "177", "35", "79"]
     assert [cell[1][0] for cell in counted[series]] == ["0", "1", "0", "0"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -32,3 +34,20 @@ def test_a_row_holds_the_records_below_its_bound() -> None:
     assert [row[5:7] for row in below] == [["1.00", "-1.00"]] * 2
     assert {row[4] for row in below} == {str(int((length < 0.0254).sum()))}
     assert all(float(row[5]) < 0.0 for row in rows if row[3] == "all")
+
+
+def test_nothing_is_said_of_real_records_where_there_are_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(persistency, "INDEX", tmp_path / "index.csv")
+    with pytest.raises(SystemExit, match=r"index\.csv: no real records there; give a LIST"):
+        persistency.main()
+    assert capsys.readouterr().out == ""
+
+
+def test_the_motions_are_named_before_the_table(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(persistency, "tables", lambda files: {})
+    persistency.main("mine.csv")
+    assert capsys.readouterr().out.startswith("records of mine.csv\n\n| damping |")
