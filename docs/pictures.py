@@ -12,6 +12,7 @@ import hashlib
 import sys
 import tempfile
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 
 from PIL import Image
@@ -21,10 +22,15 @@ from eventpound.cli import main
 ROOT = Path(__file__).parents[1]
 GALLERY = ROOT / "docs" / "gallery"
 MADE = GALLERY / "made.csv"
-WIDTH, COLOURS = 900, 128
+WIDTH, COLOURS = 900, 256
 """Pixels, and shades: enough for a figure of lines, at a quarter of the size."""
 FIRST = ("displacements.png", "study.png")
 """The picture that says most, where there are several."""
+AS_PRINTED = {
+    "figure-04": ("figure-04-0.2.png",),
+    "figure-05": ("figure-05-model.png", "figure-05-0.2.png"),
+}
+"""Those that the paper prints, from top to bottom, where a case draws more."""
 
 
 def hash_of(name: str) -> str:
@@ -45,13 +51,33 @@ def made() -> dict[str, str]:
         return {row["case"]: row["sha256"] for row in csv.DictReader(file)}
 
 
-def shrink(source: Path, target: Path) -> None:
-    """A picture at the size and in the shades of those kept here."""
+def shrink(sources: Sequence[Path], target: Path) -> None:
+    """Pictures, one below the other, at the size and in the shades of those kept here."""
+    images = [_as_wide(source, WIDTH // 2) for source in sources[:-1]]
+    images.append(_as_wide(sources[-1], WIDTH))
+    joined = Image.new("RGB", (WIDTH, sum(image.height for image in images)), "white")
+    top = 0
+    for image in images:
+        joined.paste(image, ((WIDTH - image.width) // 2, top))
+        top += image.height
+    # Thin lines keep their hue by the largest coverage, wide tints theirs by means.
+    palette = joined.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=3)
+    palette.save(target, optimize=True)
+
+
+def _as_wide(source: Path, width: int) -> Image.Image:
     with Image.open(source) as image:
-        height = round(image.height * WIDTH / image.width)
-        small = image.convert("RGB").resize((WIDTH, height), Image.Resampling.LANCZOS)
-        palette = small.quantize(COLOURS, Image.Quantize.MAXCOVERAGE)  # thin lines keep their hue
-        palette.save(target, optimize=True)
+        size = width, round(image.height * width / image.width)
+        return image.convert("RGB").resize(size, Image.Resampling.LANCZOS)
+
+
+def chosen(name: str, pictures: Sequence[Path]) -> list[Path]:
+    """Which of the pictures that a case draws are kept."""
+    if name in AS_PRINTED:
+        by_name = {picture.name: picture for picture in pictures}
+        return [by_name[printed] for printed in AS_PRINTED[name]]
+    first = (p for word in FIRST for p in pictures if p.name == word)
+    return [next(first, pictures[0])]
 
 
 def make(name: str) -> None:
@@ -63,9 +89,7 @@ def make(name: str) -> None:
         code = main([command, str(case), "--out", str(out)])
         if code:
             raise SystemExit(f"{name}: exit code {code}")
-        pictures = sorted(out.rglob("*.png"))
-        chosen = next((p for first in FIRST for p in pictures if p.name == first), pictures[0])
-        shrink(chosen, GALLERY / f"{name}.png")
+        shrink(chosen(name, sorted(out.rglob("*.png"))), GALLERY / f"{name}.png")
 
 
 def run(names: list[str]) -> None:

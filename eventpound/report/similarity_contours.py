@@ -2,7 +2,7 @@
 
 Π = length / L_e, so that a contour is 1/L_e = Π / length: a straight line of
 slope -1 where both axes are logarithmic. Below the contour of complete
-similarity the response no longer depends on the gap or the yield displacement.
+similarity the response no longer depends on the gap or the yield displacement, says the paper.
 """
 
 from __future__ import annotations
