@@ -44,6 +44,20 @@ def test_links_lead_to_files(page: Path) -> None:
         assert (page.parent / target).exists(), target
 
 
+FOLDERS = "|".join(sorted(p.name for p in (ROOT / "eventpound").iterdir() if p.is_dir()))
+FILE = re.compile(
+    rf"`((?:{FOLDERS}|tests|cases|docs|eventpound)/[\w./-]*?[\w-]+\.(?:py|cpp|c|json))`"
+)
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md"], ids=[*NAMES, "README.md"])
+def test_files_of_the_checkout_are_there(page: Path) -> None:
+    for name in FILE.findall(page.read_text(encoding="utf-8")):
+        # NAME stands for one of the reader's own; results are written by a run.
+        if "NAME" not in name and not name.startswith("results/"):
+            assert (ROOT / name).exists() or (ROOT / "eventpound" / name).exists(), name
+
+
 def test_the_package_names_pages_that_are_there_and_no_files_of_the_checkout() -> None:
     """What is installed has no docs; `eventpound.cli.talk` puts in the address of the site."""
     for file in (ROOT / "eventpound").rglob("*.py"):
