@@ -107,10 +107,6 @@ square of the distance. Reversals that are as near to each other or to an end ar
 SAME_SAMPLE = 1e-9
 """Part of a step, of a record's time step or of a run that is no step of its own: times that are
 sums of steps miss each other by rounding."""
-SOONEST_EVENT = 1e-6
-"""Part of the step proposed before which an event is left to the general step."""
-EVENTS_APART = 1e-9
-"""Part of the step proposed by which a second event must come later."""
 
 # When a cascade of impacts is over.
 LAST_SPEED = 1e-15
@@ -222,7 +218,7 @@ NO_Z = 1e-16
 NO_POWER = 1e-16
 """|z|^n below which it is rounding beside one."""
 NO_TERM = 1e-20
-"""Part of what a column begins with, dt, dt² or dt³, below which the terms of an exponential are
+"""Part of what a sum begins with, dt, dt² or dt³, below which the terms of an exponential are
 left out."""
 NO_ZERO = 1e-150
 """What a root function nearer to zero counts as: products of two are still numbers, by whose signs

@@ -2,8 +2,7 @@
 
 A run keeps a table of extremes (5, M). Its columns are the monitored quantities, one kind after
 the other as in `Places`, the only place that knows their order; whoever takes or reads an extreme
-asks there. Kinds of which two rates are known (distances) come before those with one (forces);
-first come distances that need no spring, which bodies have among them that go by themselves, too.
+asks there. Kinds of which two rates are known (distances) come before those with one (forces).
 """
 
 from __future__ import annotations

@@ -97,20 +97,6 @@ def _row(motion: GroundMotion, restitution: float, gap: float) -> Scene:
     )
 
 
-def _apart(motion: GroundMotion) -> Scene:
-    """Two bodies on springs of their own: one that moves and soon yields, one still at rest."""
-    return Scene(
-        bodies=(Body("a", 1.0, velocity=0.3), Body("b", 2.0)),
-        springs=(
-            Spring("sa", (GROUND, "a"), replace(_LAW, initial_z=0.5)),
-            Spring("sb", (GROUND, "b"), _LAW),
-        ),
-        dashpots=(Dashpot((GROUND, "a"), 0.05),),
-        contacts=(Contact("joint", "a", "b", 0.1, 0.5),),
-        motion=motion,
-    )
-
-
 def _moved(motion: GroundMotion) -> Scene:
     """The row between two supports, a force on one body; it begins and ends at rest."""
     row = _row(motion, 0.0, 0.02)
@@ -216,8 +202,6 @@ def _many(scene: Scene) -> None:
 
 def _fast_of_several(solver: str) -> None:
     _several(solver)
-    for motion in _motions():
-        _run(solver, _apart(motion))
     _run(solver, _remembering(_row(_record(), 0.0, 0.02)), energy=True)
     _many(_row(_record(), 0.5, 0.02))
 

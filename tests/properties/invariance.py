@@ -155,7 +155,7 @@ def variants(
             return restored(seen, view)
 
         yield name, answer
-    # Without it a body by itself, and bodies that go apart, take steps of their own.
+    # Without it a body by itself takes steps of its own.
     yield "no ledger", lambda rtol: run(scene, end, solver, rtol, energy=False)
     split = float(rng.uniform(0.05, 0.95)) * end
 

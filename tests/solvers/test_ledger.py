@@ -1,7 +1,6 @@
-"""`fast` with and without the energy ledger, which one program of several keeps: the same run.
+"""A body alone between barriers in `fast`, by its own kernel and by that of several: the same run.
 
-Without it a body alone between barriers, bodies that no link joins and steps from sample to sample
-of a record each take a way of their own.
+That of several keeps the energy ledger.
 """
 
 from __future__ import annotations
@@ -27,10 +26,9 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.fast.constants import links_of
 from eventpound.solvers.fast.sdof.body import oscillator_of
-from tests.benchmarks.agreement import ROUNDING, distances, loud, sequence
+from tests.benchmarks.agreement import distances, loud, sequence
 from tests.solvers.accuracy import allowed
-from tests.solvers.test_apart import MOTIONS, row
-from tests.solvers.test_sample_steps import BRIDGES, record
+from tests.solvers.test_several import record
 
 RIGHT = Contact("right", "a", BARRIER, 0.2, 0.6)
 LEFT = Contact("left", BARRIER, "a", 0.3, 0.4)
@@ -68,28 +66,17 @@ ALONE = {
     "no contact": scene(bouc_wen(), motion=record()),
     "comes to rest": scene(Linear(3.0), Contact("r", "a", BARRIER, 0.02, 0.3)),
 }
-ROWS = {
-    f"{motion}, gap {gap:g}{', damped' * damped}": row(gap, MOTIONS[motion], damped)
-    for motion in MOTIONS
-    for gap in (0.03, 0.2, 1e3)
-    for damped in (False, True)
-}
-SCENES = ALONE | ROWS | BRIDGES
-RUNS = [(name, rtol) for name in ALONE | BRIDGES for rtol in (1e-6, 1e-10)]
-RUNS += [(name, rtol) for name in ROWS for rtol in (1e-9, 1e-10)]
 PEAKS = ("displacement", "elongation", "acceleration", "base_shear")
-SWINGS = [name for name in ROWS if "gap 1000" in name and not name.startswith(("harm", "Ricker"))]
-TIES = {
-    "elastoplastic": ("acceleration", "base_shear"),
-    **dict.fromkeys(SWINGS, ("displacement", "elongation", "acceleration")),
-}
-"""What is largest at many times: all along a yield plateau, or at each swing after a pulse."""
+TIES = {"elastoplastic": ("acceleration", "base_shear")}
+"""What is largest at many times: all along a yield plateau."""
+END = 12.0
+"""Length of a run (s)."""
 
 
-def both(of: Scene, end: float, rtol: float) -> tuple[Recording, Recording]:
+def both(of: Scene, rtol: float) -> tuple[Recording, Recording]:
     """Without the ledger and with it."""
-    times = np.linspace(0.0, end, 61)
-    tasks = (Task(of, 0.0, end, rtol, output_times=times, energy=e) for e in (False, True))
+    times = np.linspace(0.0, END, 61)
+    tasks = (Task(of, 0.0, END, rtol, output_times=times, energy=e) for e in (False, True))
     without, kept = (solver_named("fast").solve(task) for task in tasks)
     return without, kept
 
@@ -108,21 +95,18 @@ def test_a_body_alone_has_a_way_of_its_own_without_a_ledger(of: Scene) -> None:
     assert not oscillator_of(model, 1.0, links_of(model), energy=True).alone
 
 
-@pytest.mark.parametrize(("name", "rtol"), RUNS)
+@pytest.mark.parametrize("rtol", [1e-6, 1e-10])
+@pytest.mark.parametrize("name", ALONE)
 def test_the_same_run(name: str, rtol: float) -> None:
     """Ends, extremes, events and rows, to what the tolerance allows."""
-    end = 9.0 if name in ROWS else 12.0
-    without, kept = both(SCENES[name], end, rtol)
-    if name in BRIDGES:
-        assert without.work.rhs < 0.9 * kept.work.rhs
-    # Errors grow at the impacts of a row.
-    error = ROUNDING * rtol if name in ROWS else allowed(1.0, rtol)
-    apart = distances(kept, without, end)
-    if without.resting_time.sum() > 0.0 and name in ALONE:
+    without, kept = both(ALONE[name], rtol)
+    error = allowed(1.0, rtol)
+    apart = distances(kept, without, END)
+    if without.resting_time.sum() > 0.0:
         # At rest the acceleration is the ground's, known at the ends of steps only.
         apart = {key: apart[key] for key in apart if not key.startswith("a_")}
-    narrow = ("u", "v", "u_max", "u_min", "gap", *(("x_max", "x_min") if name in ALONE else ()))
-    bounds = {key: error if name in ROWS or key in narrow else 10.0 * error for key in apart}
+    narrow = ("u", "v", "u_max", "u_min", "gap", "x_max", "x_min")
+    bounds = {key: error if key in narrow else 10.0 * error for key in apart}
     assert {key: value for key, value in apart.items() if value > bounds[key]} == {}
 
     # A rate is zero at a peak, a gap at an impact: the error of such a time is theirs over how
@@ -130,7 +114,7 @@ def test_the_same_run(name: str, rtol: float) -> None:
     for which in PEAKS:
         if which not in TIES.get(name, ()):
             peaks = getattr(without, which), getattr(kept, which)
-            assert_near(*peaks, error, time_of_maximum=end, time_of_minimum=end)
+            assert_near(*peaks, error, time_of_maximum=END, time_of_minimum=END)
     assert sequence(without) == sequence(kept)
     rows = kept.history
     speed = np.abs(rows.v).max()
@@ -142,14 +126,14 @@ def test_the_same_run(name: str, rtol: float) -> None:
         assert_near(
             *events,
             error,
-            t=end,
+            t=END,
             gap_velocity_before=speed,
             gap_velocity_after=speed,
             impulse=hardest,
             energy_lost=most,
         )
     # The rows beside an event stand where it happens: there an error of its time counts.
-    assert_near(without.history, rows, error, t=end)
+    assert_near(without.history, rows, error, t=END)
     columns = ("u", "v", "a", "z", "force", "gap")
     sizes = {key: np.abs(getattr(rows, key)).max(initial=0.0) for key in columns}
     assert_near(without.history, rows, 10.0 * error, **sizes)

@@ -18,11 +18,9 @@ from eventpound.mechanics.monitored import (
     Sizes,
     blank_extremes,
     columns_of_kind,
-    distances_of,
     places_in,
 )
 from eventpound.motion.record import Record
-from eventpound.motion.ricker import Ricker
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import by_python, in_python
 from eventpound.scene import (
@@ -74,13 +72,6 @@ def damped() -> Scene:
     return Scene(scene.bodies[:1], (spring,), dashpots, contacts, scene.motion)
 
 
-def apart() -> Scene:
-    """Two bodies that yield, each on a spring of its own, under a formula."""
-    scene = shaken(True)
-    springs = (scene.springs[0], Spring("right", ("b", GROUND), BoucWen(3.0, 1.5, 0.2)))
-    return replace(scene, springs=springs, dashpots=(), motion=Ricker(4.0, 1.2))
-
-
 def resting() -> Scene:
     """Two bodies that meet and rest: extremes are remembered before a mode that may be none."""
     pushed = BilinearElastic(4.0, 4.0, 0.1)
@@ -94,7 +85,6 @@ SCENES = {
     "that yields": shaken(True),
     "alone": alone(),
     "damped": damped(),
-    "apart": apart(),
     "at rest": resting(),
 }
 
@@ -172,13 +162,3 @@ def _run(scene: Scene, solver: str) -> Recording:
     task = Task(scene, 0.0, 1.5, 1e-5, settings=settings)
     with nullcontext() if solver in ("cvode", "ida") else by_python():
         return solver_named(solver).solve(task)
-
-
-def test_a_distance_of_two_bodies_stands_before_displacements_or_is_a_spring() -> None:
-    # Bodies that go by themselves look at what stands before; a spring keeps two from doing so.
-    model = assemble(shaken())
-    at, distances = places_in(model), distances_of(model)
-    assert at.gap == 0
-    ends = list(zip(distances.first.tolist(), distances.second.tolist(), strict=True))
-    behind = {pair for pair in ends[at.displacement :] if min(pair) >= 0}
-    assert behind <= {(int(first), int(second)) for first, second in model.link_ends}

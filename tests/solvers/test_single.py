@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from eventpound.contact import modes
 from eventpound.contact.event_rows import ACCUMULATION, EVENT_WIDTH, IMPACT
@@ -19,12 +20,12 @@ from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spri
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.constants import blank_series, plan_of
+from eventpound.solvers.fast.constants import begin_state, blank_series, plan_of, zero_state
 from eventpound.solvers.fast.run import FastPlan, FastRecord, FastState
 from eventpound.solvers.fast.sdof.body import SdofRun, load_body
+from eventpound.solvers.fast.sdof.exact import fill_table
 from eventpound.solvers.fast.sdof.oscillator import settle_sdof, stays_closed
 from eventpound.tolerances import LAST_SPEED
-from tests.solvers.stepping import state_of
 from tests.solvers.test_modes import TABLE
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -47,7 +48,9 @@ def blank_record(task: Task, model: Model) -> FastRecord:
 def prepared(task: Task) -> tuple[Model, FastPlan, FastState]:
     model = assemble(task.scene)
     plan = plan_of(task, model, scene_scales(task.scene, model, task.end - task.start))
-    return model, plan, state_of(plan, model, model.z0)
+    state = zero_state(model.counts)
+    begin_state(plan, model.u0, model.v0, model.z0, 0.0, state)
+    return model, plan, state
 
 
 def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False) -> SdofRun:
@@ -168,3 +171,20 @@ def test_a_body_squeezed_between_two_barriers_is_left_to_the_general_kernel() ->
     assert not prepared(Task(scene, 0.0, 6.0, 1e-8))[1].oscillator.alone
     wide = replace(scene, contacts=(replace(contacts[0], gap=1e-3), contacts[1]))
     assert prepared(Task(wide, 0.0, 6.0, 1e-8))[1].oscillator.alone
+
+
+@pytest.mark.parametrize("dt", [1e-9, 0.005, 0.08])
+@pytest.mark.parametrize("damping", [0.0, 0.3])
+def test_a_table_is_that_of_the_matrix_exponential(dt: float, damping: float) -> None:
+    """Without damping every other term of the series is zero."""
+    body, step, stiffness = at_barrier(1.0, False, 0.0).body, np.zeros(7), 16.0
+    body.damping = damping
+    fill_table(stiffness, dt, body, step)
+    # u'' = a, a' = -K v - C a - s: the vector (u, v, a, s) is carried by one exponential.
+    rates = np.zeros((4, 4))
+    rates[0, 1] = rates[1, 2] = 1.0
+    rates[2, 1:] = -stiffness, -damping, -1.0
+    whole, order = expm(dt * rates), np.array([1.0, 2.0, 3.0])
+    assert step[0] == dt
+    assert (np.abs(step[1:4] - whole[0, 1:]) <= 1e-14 * dt**order).all()
+    assert (np.abs(step[4:7] - whole[1, 1:]) <= 1e-14 * dt ** (order - 1.0)).all()

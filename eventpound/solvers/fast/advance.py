@@ -1,4 +1,4 @@
-"""The loop of the compiled stepper: settle what is due, go by samples or apart, or take a step."""
+"""The loop of the compiled stepper: settle what is due, or take a step."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration, ground_onset, next_corner
 from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.by_address import by_address
-from eventpound.solvers.fast.apart.steps import go_apart, may_go_apart
 from eventpound.solvers.fast.compiled import compiled, compiled_noinline, compiled_whole
 from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.extremes import distance_now, take_instant
@@ -24,8 +23,6 @@ from eventpound.solvers.fast.followed import follows, put_on_branches
 from eventpound.solvers.fast.instant import instant_of, settle, start
 from eventpound.solvers.fast.record import has_room, save_record, write_row
 from eventpound.solvers.fast.run import GOING_ON, SETTLED, FastRun, piece_of
-from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
-from eventpound.solvers.fast.sdof.body import reset_body
 from eventpound.solvers.fast.sliding import any_slider
 from eventpound.solvers.fast.step import take_step
 from eventpound.tolerances import LENGTH
@@ -61,8 +58,6 @@ def carry_on(budget: int, run: FastRun) -> int:
     last_step = progress.steps + budget
     if not progress.started:
         start(run)
-        for b in range(run.series.each.body.size):
-            reset_body(run.series.each.body[b])
         progress.started = True
     while progress.steps < last_step:
         if not has_room(run):
@@ -76,15 +71,6 @@ def carry_on(budget: int, run: FastRun) -> int:
         i = progress.piece
         piece = by_address(piece_of(i, ground))
         stop = min(ground.ends[i], end)
-        if may_go_apart(piece, run):
-            go_apart(last_step - progress.steps, stop, piece, run)
-        elif piece.family == _SAMPLES and may_go_by_samples(run):
-            sample_steps(last_step - progress.steps, stop, piece, run)
-        if now.t >= ground.ends[i]:
-            progress.due = 1
-        due = progress.due == 1 or now.t >= stop
-        if due or progress.steps >= last_step or not has_room(run):
-            continue
         if piece.family >= _SAMPLES:
             stop = next_corner(piece, now.t, stop)
         ended = take_step(stop, piece, run)

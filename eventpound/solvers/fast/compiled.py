@@ -15,11 +15,6 @@ def compiled(function: F) -> F:
     return compile_with(function, counted=False, inlined=True, fused=True)
 
 
-def compiled_stepwise(function: F) -> F:
-    """As `compiled`, every operation rounded by itself, so the same wherever it is called."""
-    return compile_with(function, counted=False, inlined=True)
-
-
 def compiled_noinline(function: F) -> F:
     """Compile what few steps need, which makes no arrays either, as a function of its own."""
     return compile_with(function, counted=False, fused=True, recipe=EVERY_STEP)

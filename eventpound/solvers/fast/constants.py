@@ -14,7 +14,7 @@ from eventpound.mechanics.elements import CURVE_PLACES
 from eventpound.mechanics.link_law import YIELD, yielding
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model
 from eventpound.mechanics.monitored import distances_of, places_of
-from eventpound.motion.base import Family, Piece
+from eventpound.motion.base import Piece
 from eventpound.motion.parametric import Parametric
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats, Ints
@@ -30,7 +30,6 @@ from eventpound.solvers.fast.run import (
     MORE_TERMS,
     REST_TERMS,
     Contacts,
-    Each,
     FastLocated,
     FastObserved,
     FastPlan,
@@ -43,7 +42,6 @@ from eventpound.solvers.fast.run import (
     Links,
     Sdof,
 )
-from eventpound.solvers.fast.sampled.exact import blank_tables
 from eventpound.solvers.fast.sdof.body import SdofBody, oscillator_of
 from eventpound.tolerances import OF_BACKBONE
 
@@ -229,54 +227,6 @@ def begin_state(
     progress["trial"], progress["due"] = time, 1
 
 
-def _blank_each(plan: FastPlan, loaded: bool) -> Each:
-    """What bodies have for themselves, of none where they cannot go apart.
-
-    They may each on springs to the ground, one of them hysteretic at most, where no power or force
-    is followed; under a formula only if one is hysteretic: else no body ends the steps of others,
-    and nothing would be gained. No z is followed. Which springs have a kink, a run tells.
-    """
-    n, contacts, ends = plan.mass.shape[-1], plan.contacts.left.size, plan.links.ends
-    if n < 2 or loaded or ends.size == 0 or plan.hysteresis.followed.size > 0:
-        return _NOBODY
-    yielding = ends[plan.hysteresis.link].max(axis=1)
-    fits = (
-        ends.min(axis=1).max() < 0
-        and np.unique(yielding).size == yielding.size
-        and (yielding.size > 0 or (plan.ground.family == int(Family.SAMPLES)).any())
-        and not plan.limits.ledger
-    )
-    joint = in_python(places_of)(n, plan.links.springs, contacts)
-    return _each_of(n, contacts, joint.displacement - joint.gap) if fits else _NOBODY
-
-
-def _each_of(n: int, contacts: int, joint: int) -> Each:
-    """The arrays of n bodies with some distances, those of contacts among them."""
-    at = in_python(places_of)(1, 0, 0)
-    extremes = np.zeros((n, 5, at.end))
-    # The base shear of a body by itself is not looked at.
-    extremes[:, 4, at.base_shear] = np.inf
-    return Each(
-        body=np.zeros(n, SdofBody.layout),
-        now=np.zeros(n, Now.layout),
-        progress=np.zeros(n, FastProgress.layout),
-        extremes=extremes,
-        until=np.zeros(n),
-        length=np.zeros(n),
-        order=np.zeros(n, np.int64),
-        event=np.zeros(n, np.int64),
-        turned=np.zeros(n, np.bool_),
-        box=np.zeros((4, n)),
-        since=np.zeros(joint),
-        outside=np.zeros(4),
-        closing=np.zeros(contacts),
-    )
-
-
-_NOBODY = _each_of(0, 0, 0)
-"""Of scenes whose bodies never go apart."""
-
-
 def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
     """Scratch arrays of a run, or of many one after the other; `loaded`: with loads on bodies."""
     bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
@@ -313,10 +263,7 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         **own,
         block=block.data,
         sdof=Sdof(*sdof),
-        each=_blank_each(plan, loaded),
         followed=FollowedMemories(np.zeros(followed), np.zeros(followed), np.zeros(1)),
-        # Steps from sample to sample follow no z.
-        tables=blank_tables(bodies if followed == 0 else 0, links),
         saved=np.zeros((4, in_python(places_of)(bodies, plan.links.springs, contacts).end)),
     )
 
@@ -325,7 +272,6 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
 def clear_scratch(series: FastSeries, located: FastLocated, observed: FastObserved) -> None:
     """Leave nothing of the run before, which may have ended with numbers that are not finite."""
     series.block[:] = 0
-    series.tables.step[:] = 0.0
     clear_located(located)
     located.vanished[:] = False
     observed.contact_force[:] = 0.0

@@ -37,7 +37,7 @@ def observe_at(tau: float, order: int, ground: float, run: FastRun) -> None:
         elif tau > 0.0:
             change, observed.v[b], series.expected[c] = motion(tau, order, series.X[c])
             observed.u[b] += change
-    observe_forces(ground, run)
+    _link_forces(ground, run)
     if tau > 0.0 and follows(run):
         observe_followed(tau, order, run)
     if series.load.shape[0] > 0:
@@ -53,7 +53,7 @@ def observe_at(tau: float, order: int, ground: float, run: FastRun) -> None:
 
 
 @compiled
-def observe_forces(ground: float, run: FastRun) -> None:
+def _link_forces(ground: float, run: FastRun) -> None:
     """Fill `observed` with z and the forces of the links at its displacements and velocities."""
     plan, observed = run.plan, run.observed
     observed.base[0] = ground

@@ -44,21 +44,13 @@ CONVERGED = 0.5
 
 
 @compiled
-def on_curve(h: int, part: Ints) -> bool:
-    """Whether a hysteretic link is on a curved part of its backbone."""
-    return bool(DOWN <= part[h] <= UP)
+def _on_curve(h: int, part: Ints) -> bool:
+    """Whether a hysteretic link, -1 for none, is on a curved part of its backbone."""
+    return bool(h >= 0 and DOWN <= part[h] <= UP)
 
 
 @compiled
-def curve_begins(a: int, h: int, run: FastRun) -> None:
-    """Make link a, whose z_0 stands, ready for `curve_coefficient`."""
-    series, sign = run.series, 1.0 if run.state.part[h] == UP else -1.0
-    memory, z = run.plan.links.law.memory, series.z[h, 0]
-    begin_curve(a, memory, sign, z, series.power[h], series.curve[h])
-
-
-@compiled
-def curve_coefficient(h: int, k: int, x: float, s: FastSeries) -> float:
+def _curve_coefficient(h: int, k: int, x: float, s: FastSeries) -> float:
     """Coefficient k of z on a curved part, `x` that of the elongation; those before it stand."""
     return next_z(k, x, s.z[h], s.power[h], s.speed[h], s.weighted[h], s.curve[h])
 
@@ -95,9 +87,10 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
     clusters, active = progress.clusters, progress.active
     for i in range(active):
         a = series.active[i]
-        h_of_a = links.z_of_link[a]
-        if h_of_a >= 0 and on_curve(h_of_a, state.part):
-            curve_begins(a, h_of_a, run)
+        j = links.z_of_link[a]
+        if _on_curve(j, state.part):
+            sign = 1.0 if state.part[j] == UP else -1.0
+            begin_curve(a, law.memory, sign, series.z[j, 0], series.power[j], series.curve[j])
     order, error, power, over = most, np.inf, h, 1.0 / h
     for k in range(most - 1):
         acceleration[:clusters] = 0.0
@@ -109,8 +102,8 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
                 rate_k = distance_coefficient(first, second, k + 1, series)
                 force = series.stiffness[a] * x_k + law.damping[a] * (k + 1) * rate_k
                 j = links.z_of_link[a]
-                if j >= 0 and on_curve(j, state.part):
-                    force += pull_per_z(a, law.memory) * curve_coefficient(j, k, x_k, series)
+                if _on_curve(j, state.part):
+                    force += pull_per_z(a, law.memory) * _curve_coefficient(j, k, x_k, series)
                 F[a, k] = force
             if first >= 0:
                 acceleration[first] += F[a, k]
@@ -129,7 +122,7 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
         if k + 2 < FEWEST:
             continue
         order = k + 2
-        error = last_terms(order, power, over, clusters, series)
+        error = _last_terms(order, power, over, clusters, series)
         if (following or progress.resting > 0) and (error <= CONVERGED or order == most):
             error = max(error, _last_of_others(order, power * over, over, run))
         if error <= CONVERGED:
@@ -140,7 +133,7 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
 
 
 @compiled
-def last_terms(order: int, power: float, over: float, clusters: int, series: FastSeries) -> float:
+def _last_terms(order: int, power: float, over: float, clusters: int, series: FastSeries) -> float:
     """The last two terms in units of their tolerance; `power` is h^order, `over` 1/h."""
     X, worst = series.X, 0.0
     of_u, of_v = series.weights[0], series.weights[1]
@@ -186,7 +179,7 @@ def _moves_with_others(b: int, mass: Floats, series: FastSeries) -> bool:
 
 
 @compiled
-def set_weights(run: FastRun) -> None:
+def _set_weights(run: FastRun) -> None:
     """What errors of u and v of each cluster are multiplied by, for those of its bodies."""
     plan, state, series = run.plan, run.state, run.series
     limits, weights = plan.limits, series.weights
@@ -228,7 +221,7 @@ def begin_series(t: float, piece: CurrentPiece, run: FastRun) -> None:
         series.stiffness[a] = tangent(a, links, state)
         series.F[a, 0] = force + links.law.damping[a] * x_rate
     saturate(series.x, plan.hysteresis, state)
-    set_weights(run)
+    _set_weights(run)
 
 
 @compiled

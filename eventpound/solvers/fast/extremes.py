@@ -21,7 +21,7 @@ from eventpound.numerics.polynomial import first_root, only_root, value_and_slop
 from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.links import CORE
-from eventpound.solvers.fast.run import Contacts, FastPlan, FastRun, FastSeries
+from eventpound.solvers.fast.run import FastPlan, FastRun, FastSeries
 from eventpound.solvers.fast.search import (
     bound_of_pair,
     distance_coefficient,
@@ -35,25 +35,13 @@ from eventpound.tolerances import FLAT_WITHIN
 @compiled
 def take_instant(t: float, run: FastRun) -> None:
     """Take everything known at one time (s) into the extremes."""
-    observed, running = run.observed, run.running
-    take_all(observed.u, observed.a, observed.gap, observed.base[1], t, run)
-    update_all(running.at.contact_force, observed.contact_force, t, running)
-
-
-@compiled
-def take_all(u: Floats, a: Floats, gap: Floats, shear: float, t: float, run: FastRun) -> None:
-    """Take distances, accelerations and the base shear into the extremes."""
-    running, at = run.running, run.running.at
+    observed, running, at = run.observed, run.running, run.running.at
     for k in range(run.plan.distances.first.size):
-        update_extreme(at.gap + k, distance_now(k, u, gap, run.plan.distances), t, running)
-    update_all(at.acceleration, a, t, running)
-    update_extreme(at.base_shear, shear, t, running)
-
-
-@compiled
-def start_of(k: int, contacts: Contacts) -> float:
-    """Distance k at no displacement (m); the first are gaps."""
-    return contacts.gap[k] if k < contacts.gap.size else 0.0
+        there = distance_now(k, observed.u, observed.gap, run.plan.distances)
+        update_extreme(at.gap + k, there, t, running)
+    update_all(at.acceleration, observed.a, t, running)
+    update_extreme(at.base_shear, observed.base[1], t, running)
+    update_all(at.contact_force, observed.contact_force, t, running)
 
 
 @compiled
@@ -65,7 +53,7 @@ def distance_now(k: int, u: Floats, gap: Floats, distances: Distances) -> float:
 
 
 @compiled
-def leader_of(k: int, at: Places, distances: Distances) -> int:
+def _leader_of(k: int, at: Places, distances: Distances) -> int:
     """Distance with which distance k turns: the displacement of its only body, or itself."""
     first, second = distances.first[k], distances.second[k]
     return k if min(first, second) >= 0 else at.displacement - at.gap + max(first, second)
@@ -143,7 +131,7 @@ def inside_step(tau: float, order: int, run: FastRun) -> None:
     distances = plan.distances
     for k in range(distances.first.size):
         first, second = distances.first[k], distances.second[k]
-        if leader_of(k, at, distances) != k:
+        if _leader_of(k, at, distances) != k:
             continue
         if first < 0:
             # A spring to the ground that yields or unloads ends the step where it reverses.
@@ -178,27 +166,27 @@ def _locate(
     i: int, head: int, tail: int, value: float, tau: float, order: int, run: FastRun
 ) -> None:
     set_distance(value, 1.0, head, tail, order, run.series)
-    set_rate(run.series.c, order, run.series.d)
-    take_turns(i, run.series.c, order, run.state.now[0].t, tau, run)
+    _set_rate(run.series.c, order, run.series.d)
+    _take_turns(i, run.series.c, order, tau, run)
 
 
 @compiled
-def set_rate(c: Floats, order: int, d: Floats) -> None:
+def _set_rate(c: Floats, order: int, d: Floats) -> None:
     """Rate of a polynomial c of a degree into d."""
     for k in range(order):
         d[k] = (k + 1) * c[k + 1]
 
 
 @compiled
-def take_turns(i: int, c: Floats, order: int, start: float, tau: float, run: FastRun) -> None:
-    """Turning points of quantity i, a polynomial c of a degree with the rate `series.d`.
+def _take_turns(i: int, c: Floats, order: int, tau: float, run: FastRun) -> None:
+    """Turning points within tau (s) of quantity i, a polynomial c with the rate `series.d`.
 
-    They are looked for from a time on (s) and within tau (s) of it; `series.d` is overwritten.
+    `series.d` is overwritten.
     """
-    series = run.series
+    series, t, near = run.series, run.state.now[0].t, _flat_time(run.plan)
     for m in range(turning_times(series.d, order, tau, series.turns, series.work)):
         there, _ = value_and_slope(c[: order + 1], series.turns[m])
-        take_turn(i, there, start + series.turns[m], flat_time(run.plan), run.plan, run.running)
+        take_turn(i, there, t + series.turns[m], near, run.plan, run.running)
 
 
 @compiled
@@ -210,13 +198,14 @@ def take_turn(
     leader, b = i - at.gap, i - at.displacement
     update_turning_point(i, value, t, near, running)
     for k in range(at.acceleration - at.gap):
-        if k != leader and leader_of(k, at, distances) == leader:
-            there = start_of(k, plan.contacts) + (value if distances.second[k] == b else -value)
+        if k != leader and _leader_of(k, at, distances) == leader:
+            start = plan.contacts.gap[k] if k < plan.contacts.gap.size else 0.0
+            there = start + (value if distances.second[k] == b else -value)
             update_turning_point(at.gap + k, there, t, near, running)
 
 
 @compiled
-def flat_time(plan: FastPlan) -> float:
+def _flat_time(plan: FastPlan) -> float:
     """Time over which a peak is flat to rounding (s): |u - peak| = a t²/2 with a = L/T²."""
     return float(FLAT_WITHIN * plan.limits.time)
 
@@ -300,7 +289,7 @@ def _turns(c: int, tau: float, order: int, run: FastRun) -> bool:
         if any_slider(run):
             ground, _ = value_and_slope(series.ground[: order + 1], series.turns[m])
         observe_at_noinline(series.turns[m], order, ground, run)
-        t, near = run.state.now[0].t + series.turns[m], flat_time(plan)
+        t, near = run.state.now[0].t + series.turns[m], _flat_time(plan)
         if c < 0:
             update_turning_point(running.at.base_shear, observed.base[1], t, near, running)
             continue
@@ -360,6 +349,6 @@ def _at_rest(tau: float, order: int, run: FastRun) -> None:
 @compiled
 def _polynomial_turns(i: int, c: Floats, tau: float, order: int, run: FastRun) -> None:
     """Turning points of a quantity known by its own series."""
-    set_rate(c, order - 2, run.series.d)
+    _set_rate(c, order - 2, run.series.d)
     if not _settled(i, c[0], tau, order, run.series, run.running):
-        take_turns(i, c, order - 2, run.state.now[0].t, tau, run)
+        _take_turns(i, c, order - 2, tau, run)

@@ -16,8 +16,6 @@ both directions are the same line, so a link that only swings there costs no eve
 
 from __future__ import annotations
 
-import numpy as np
-
 from eventpound.mechanics.backbone import Hysteresis, backbone, backbone_inverse
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
 from eventpound.mechanics.observables import difference, gap_rounding
@@ -130,23 +128,13 @@ def tangent(a: int, links: Links, state: FastState) -> float:
 
 
 @compiled
-def saturate(x: Floats, hysteresis: Hysteresis, state: FastState) -> tuple[bool, bool]:
-    """Put links that have reached saturation there, from the elongations x (L,) of all links (m).
-
-    Returned is whether a link is on a curved part, and whether one was put there.
-    """
-    curved, changed = False, False
+def saturate(x: Floats, hysteresis: Hysteresis, state: FastState) -> None:
+    """Put links that have reached saturation there, from the elongations x (L,) of all (m)."""
     for h in range(hysteresis.link.size):
-        part = state.part[h]
-        if part < DOWN or part > UP:
+        if state.part[h] != UP:
             continue
-        xi = xi_at(h, x[hysteresis.link[h]], hysteresis, state)
-        if part == UP and xi >= hysteresis.saturated[h]:
+        if xi_at(h, x[hysteresis.link[h]], hysteresis, state) >= hysteresis.saturated[h]:
             state.part[h] = SATURATED
-            changed = True
-        else:
-            curved = True
-    return curved, changed
 
 
 @compiled
@@ -159,17 +147,6 @@ def part_at(xi: float, core: float, down: float, saturated: float) -> int:
     if xi >= -core:
         return CORE
     return UNLOADING if xi >= down else DOWN
-
-
-@compiled
-def ends_of_line(part: int, sigma: float, middle: float, width: float) -> tuple[float, float]:
-    """Elongations between which a link stays on its part, a line; `width` that of the core (m).
-
-    ξ = 0 is at `middle`. Below it the part UNLOADING ends where the link turns.
-    """
-    low = middle - width if part == CORE or sigma < 0.0 else -np.inf
-    high = middle + width if part == CORE or sigma > 0.0 else np.inf
-    return (low, high) if part <= UNLOADING else (-np.inf, np.inf)
 
 
 @compiled_noinline

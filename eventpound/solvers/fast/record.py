@@ -64,15 +64,9 @@ def has_room(run: FastRun) -> bool:
 
 
 @compiled
-def next_output(times: Floats, progress: FastProgress) -> float:
-    """Time of the next row of the history (s), inf where there is none."""
-    return times[progress.output] if progress.output < times.size else np.inf
-
-
-@compiled
 def is_due(t: float, times: Floats, progress: FastProgress) -> bool:
     """Whether a row of the history is due before t (s)."""
-    return next_output(times, progress) < t
+    return bool(progress.output < times.size and times[progress.output] < t)
 
 
 @compiled

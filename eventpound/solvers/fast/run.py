@@ -17,7 +17,6 @@ from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.arrays import Bools, Bytes, Floats, Ints, Records
 from eventpound.numerics.records import NamedNumbers
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.sampled.exact import SampleTables
 
 FINISHED, GOING_ON, NOT_FINITE, PENETRATION, STUCK, NO_STEP, DRIFT = 0, 10, 12, 13, 14, 15, 16
 PULL = 17
@@ -185,29 +184,6 @@ class Sdof(NamedTuple):
     work: Floats
 
 
-class Each(NamedTuple):
-    """What bodies have for themselves while they go apart; no rows for scenes where they never do.
-
-    Each has a run of its own.
-    """
-
-    body: Any  # (N,): an `SdofBody`
-    now: Records  # (N,): a `Now`
-    progress: Records  # (N,): a `FastProgress`
-    extremes: Floats  # (N, 5, 3): displacement, acceleration, a base shear that nobody looks at
-    until: Floats  # (N,): end of the step (s)
-    length: Floats  # (N,): how long that is (s)
-    order: Ints  # (N,): of the series of the step
-    event: Ints  # (N,): how the step ends
-    turned: Bools  # (N,): whether the body turns there
-    box: Floats  # (4, N): bounds of displacement (m) and acceleration (m/s²) within the step
-    since: Floats  # until when extremes of the distances before displacements are known (s)
-    closing: Floats  # (K,): when it closes (s)
-
-    # Under a record some go by exact steps, and have no end of one.
-    outside: Floats  # (4,): what they are together
-
-
 class FollowedMemories(NamedTuple):
     """Of z that go by series of their own (F,), `eventpound.solvers.fast.followed`.
 
@@ -268,9 +244,7 @@ class FastSeries(NamedTuple):
     block: Bytes  # all of the above
 
     sdof: Sdof  # of a single body
-    each: Each  # of bodies that go apart
     followed: FollowedMemories  # z that have series of their own
-    tables: SampleTables  # exact steps from sample to sample
     saved: Floats  # (4, M): extremes before a mode that may be none
 
 

@@ -62,8 +62,6 @@ ROOM = 48
 class SdofBody(NamedNumbers, room=ROOM):
     """All numbers of a single body: one address to hand on."""
 
-    known: bool  # whether the rest is filled in
-
     # What moves.
     u: float  # displacement (m)
     v: float  # velocity (m/s)
@@ -151,7 +149,6 @@ class SdofBody(NamedNumbers, room=ROOM):
     high: float  # the same above (m); below `low` where it is on none
     steepest: float  # largest tangent stiffness (1/s²)
     inverse: float  # of what divides the bound of the acceleration
-    stray: float  # of the absolute acceleration from a line between both ends, at most (m/s²)
 
 
 class SdofRun(NamedTuple):
@@ -251,17 +248,13 @@ def pass_border(u: float, body: SdofBody) -> None:
 
 
 @compiled
-def reset_body(body: SdofBody) -> None:
-    """Leave nothing of the run before."""
-    body.known, body.piece_known = False, 0
-    body.on_line[0] = body.saturated[0] = 0.0
-
-
-@compiled
 def load_body(plan: FastPlan, state: FastState, run: SdofRun) -> None:
     """Fill in the constants of a run and what moves, once: from then on it moves here."""
     body, o, contacts = run.body, plan.oscillator, plan.contacts
-    set_constants(0, plan, body)
+    # Nothing is left of the run before.
+    body.piece_known = 0
+    body.on_line[0] = body.saturated[0] = 0.0
+    _set_constants(plan, body)
     open_gaps(plan, state)
     body.u, body.v = state.u[0], state.v[0]
     if o.right >= 0:
@@ -277,15 +270,13 @@ def load_body(plan: FastPlan, state: FastState, run: SdofRun) -> None:
 
 
 @compiled
-def set_constants(b: int, plan: FastPlan, body: SdofBody) -> None:
-    """Constants of body b of a scene, without barriers."""
-    links, m, h = plan.links, plan.mass[b], -1
+def _set_constants(plan: FastPlan, body: SdofBody) -> None:
+    """Constants of the body, without barriers."""
+    links, m, h = plan.links, plan.mass[0], -1
     stiffness, damping, pull = 0.0, 0.0, 0.0
-    body.known, body.side, body.scale = True, 1.0, np.inf
+    body.side, body.scale = 1.0, np.inf
     for a in range(links.offset.size):
-        if links.ends[a, 0] != b and links.ends[a, 1] != b:
-            continue
-        side = 1.0 if links.ends[a, 1] == b else -1.0
+        side = 1.0 if links.ends[a, 1] == 0 else -1.0
         stiffness += links.extension[a]
         damping += links.law.damping[a]
         pull += side * links.extension[a] * links.offset[a]
@@ -297,7 +288,7 @@ def set_constants(b: int, plan: FastPlan, body: SdofBody) -> None:
     body.released = False
     body.rests_on = body.right_force = body.left_force = 0.0
     body.u_r = body.xi_r = body.standing = body.whole = body.strength = 0.0
-    _set_limits(b, plan.limits, body)
+    _set_limits(plan.limits, body)
     body.hysteretic = h >= 0
     if body.hysteretic:
         _set_backbone(h, plan, body)
@@ -318,9 +309,9 @@ def _set_backbone(h: int, plan: FastPlan, body: SdofBody) -> None:
 
 
 @compiled
-def _set_limits(b: int, limits: Limits, body: SdofBody) -> None:
+def _set_limits(limits: Limits, body: SdofBody) -> None:
     """Tolerances of a step, and what is rounding."""
-    body.atol_u, body.atol_v = LOCAL_SHARE * limits.atol_u[b], LOCAL_SHARE * limits.atol_v[b]
+    body.atol_u, body.atol_v = LOCAL_SHARE * limits.atol_u[0], LOCAL_SHARE * limits.atol_v[0]
     body.rtol = LOCAL_SHARE * limits.rtol
     body.still = still_rate(limits.length, limits.time)
     body.no_acceleration = ACCELERATION * limits.length / limits.time**2
@@ -340,14 +331,8 @@ def store_body(o: Oscillator, body: SdofBody, state: FastState) -> None:
         state.gap[o.left], state.gap_rate[o.left] = body.left, body.v
         state.resting[o.left] = body.rests_on < 0.0
     if body.hysteretic:
-        leave_curve(0, body, state)
-
-
-@compiled
-def leave_curve(h: int, body: SdofBody, state: FastState) -> None:
-    """On which curve the hysteretic link h of a body is, back to where everyone looks for it."""
-    state.sigma[h], state.part[h] = body.side * body.sigma, body.part
-    state.x_r[h], state.xi_r[h] = body.side * body.u_r, body.xi_r
+        state.sigma[0], state.part[0] = body.side * body.sigma, body.part
+        state.x_r[0], state.xi_r[0] = body.side * body.u_r, body.xi_r
 
 
 @compiled

@@ -22,8 +22,8 @@ Jennings, Bull. Seism. Soc. Am. 59 (1969) 909-922):
 
     u += α_v v + α_a a + α_s slope,    v = β_v v + β_a a + β_s slope.
 
-The six numbers are the matrices of `eventpound.solvers.fast.sampled.exact` for one body, made
-once for each stiffness. With its largest tangent stiffness K,
+The six numbers are Taylor series, ``(k+1) (k+2) x_{k+2} = -K_t x_k - (k+1) C x_{k+1}``, summed to
+rounding, once for each stiffness. With the largest tangent stiffness K,
 
     |a(τ)| <= (|a| + dt (K |v| + |slope|)) / (1 - C dt - K dt²/2).
 
@@ -37,31 +37,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.monitored import Running, update_extreme, update_turning_point
+from eventpound.mechanics.monitored import update_extreme, update_turning_point
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import (
     CurrentPiece,
     ground_acceleration,
     ground_taylor,
     next_sample,
+    sample_time,
 )
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred_loop, compiled_noinline
 from eventpound.solvers.fast.extremes import stays_within, turning_times
-from eventpound.solvers.fast.links import (
-    CORE,
-    DOWN,
-    SATURATED,
-    UNLOADING,
-    UP,
-    ends_of_line,
-)
+from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.record import is_due, pass_time
 from eventpound.solvers.fast.run import REST_TERMS
-from eventpound.solvers.fast.sampled.exact import MOST_TURN, put_column
-from eventpound.solvers.fast.sampled.forces import GroundLine, line_at
 from eventpound.solvers.fast.sdof.body import (
     SdofBody,
     SdofRun,
@@ -83,7 +75,7 @@ from eventpound.solvers.fast.sdof.record import (
 from eventpound.solvers.fast.sdof.series import linear_series, swing
 from eventpound.solvers.fast.sdof.step import FREE, TURNED, arrive, closed_at, equations_hold
 from eventpound.solvers.fast.search import release_time
-from eventpound.tolerances import SAME_SAMPLE
+from eventpound.tolerances import NO_TERM, SAME_SAMPLE
 
 LONGEST = 1.0
 """Longest step under a sinusoid, in its radians; `REST_TERMS` terms then err by rounding."""
@@ -246,22 +238,32 @@ def swing_freely(stop: float, piece: CurrentPiece, run: SdofRun) -> int:
 
 ROW_ORDER = 16
 """Order of the series that gives rows between samples: 0.5^8 / 16! is far below rounding."""
+MOST_TURN = 0.5
+"""Largest ``C dt + K dt²`` for which the bounds of a step are good."""
+_MOST_TERMS = 30
 
 
 @compiled_noinline
-def _fill_table(stiffness: float, dt: float, body: SdofBody, step: Floats) -> None:
-    """Numbers of a step of length dt (s): dt, α, β."""
+def fill_table(stiffness: float, dt: float, body: SdofBody, step: Floats) -> None:
+    """Numbers of a step of length dt (s): dt, α and β of velocity, acceleration and slope."""
     step[0] = dt
-    K, C, work = step[8:9].reshape(1, 1), step[9:10].reshape(1, 1), step[10:13].reshape(3, 1)
-    K[0, 0], C[0, 0] = stiffness, body.damping
     for kind in range(3):
-        put_column(kind, 0, dt, K, C, work, step[1 + kind : 2 + kind], step[4 + kind : 5 + kind])
-
-
-@compiled
-def turn_in(dt: float, body: SdofBody) -> float:
-    """What the divisor of the bound of the acceleration lacks to one, for a time dt (s)."""
-    return body.damping * dt + 0.5 * steepest(body) * dt * dt
+        low, high = 1.0 if kind == 0 else 0.0, 0.5 if kind == 1 else 0.0
+        change, rate = dt * (low + dt * high), low + 2.0 * dt * high
+        power, before, least = dt * dt, np.inf, NO_TERM * dt ** (kind + 1)
+        for k in range(1, _MOST_TERMS):
+            total = -1.0 if kind == 2 and k == 1 else 0.0
+            total -= stiffness * low + body.damping * (k + 1) * high
+            low, high = high, total / ((k + 1) * (k + 2))
+            rate += (k + 2) * high * power
+            change += high * power * dt
+            last = abs(high) * power * dt
+            power *= dt
+            # Without damping every other term is zero.
+            if max(last, before) < least:
+                break
+            before = last
+        step[1 + kind], step[4 + kind] = change, rate
 
 
 @compiled
@@ -271,57 +273,57 @@ def set_line(dt: float, body: SdofBody) -> None:
     None is taken where it would be too long.
     """
     part, sigma, k, saturated = body.part, body.sigma, tangent(body), body.part == SATURATED
-    turn = turn_in(dt, body)
-    body.steepest, body.inverse, body.low, body.high = steepest(body), 1.0 / (1.0 - turn), 1.0, -1.0
+    body.steepest = steepest(body)
+    turn = body.damping * dt + 0.5 * body.steepest * dt * dt
+    body.inverse, body.low, body.high = 1.0 / (1.0 - turn), 1.0, -1.0
     if UNLOADING < part < SATURATED or max(turn, (body.damping + k * dt) * dt) > MOST_TURN:
         return
     table = body.saturated if saturated else body.on_line
     if table[0] != dt:
-        _fill_table(k, dt, body, table)
+        fill_table(k, dt, body, table)
     z = sigma if saturated else sigma * place_of(0.0, body)
     body.line_pull = absolute_acceleration(0.0, 0.0, z, body)
     low, high = -np.inf, np.inf
-    if body.hysteretic:
-        middle = body.u_r - sigma * body.xi_r * body.scale
-        low, high = ends_of_line(part, sigma, middle, body.core_end * body.scale)
+    if part <= UNLOADING and body.hysteretic:
+        # ξ = 0 is in the middle. Below it the part UNLOADING ends where the body turns.
+        middle, width = body.u_r - sigma * body.xi_r * body.scale, body.core_end * body.scale
+        if part == CORE or sigma < 0.0:
+            low = middle - width
+        if part == CORE or sigma > 0.0:
+            high = middle + width
     body.low = max(low, body.own_gap - body.left_gap)
     body.high = min(high, body.right_gap - body.own_gap)
-
-
-@compiled
-def fastest_ahead(a: float, v: float, slope: float, dt: float, body: SdofBody) -> float:
-    """Bound of the relative acceleration for a time dt (s), in which the ground has one slope."""
-    return (abs(a) + dt * (body.steepest * abs(v) + abs(slope))) * body.inverse
 
 
 class ExactStep(NamedTuple):
     """Whether an exact step holds, and where it ends.
 
-    change: of displacement (m). v: velocity (m/s). a: absolute acceleration (m/s²). fastest: bound
-    of the relative acceleration (m/s²).
+    change: of displacement (m). v: velocity (m/s). a: absolute acceleration (m/s²).
     """
 
     holds: bool
     change: float
     v: float
     a: float
-    fastest: float
 
 
 @compiled
 def exact_step(
-    u: float, v: float, a: float, ground: GroundLine, dt: float, body: SdofBody, running: Running
+    u: float, v: float, a: float, g: float, slope: float, dt: float, run: SdofRun
 ) -> ExactStep:
     """The exact step of a body at u (m) with the velocity v and the absolute acceleration a.
 
-    It holds where bounds say that the body stays on its line and exceeds no extreme inside.
+    The acceleration of the ground is g (m/s²) with a slope (m/s³). It holds where bounds say that
+    the body stays on its line and exceeds no extreme inside.
     """
+    body = run.body
     table = body.saturated if body.part == SATURATED else body.on_line
-    pulled, slope, k, damping = a - ground.g, ground.slope, tangent(body), body.damping
+    pulled, k, damping = a - g, tangent(body), body.damping
     change = table[1] * v + table[2] * pulled + table[3] * slope
     next_v = table[4] * v + table[5] * pulled + table[6] * slope
     next_a = body.line_pull - k * (u + change) - damping * next_v
-    fastest = fastest_ahead(pulled, v, slope, dt, body)
+    # Of the relative acceleration.
+    fastest = (abs(pulled) + dt * (body.steepest * abs(v) + abs(slope))) * body.inverse
     one_way, reach = abs(v) > dt * fastest, dt * (abs(v) + dt * fastest)
     low, high = min(u, u + change), max(u, u + change)
     if not one_way:
@@ -330,22 +332,11 @@ def exact_step(
     if body.part != CORE:
         holds = holds and one_way and body.sigma * v > 0.0
     if holds and not one_way:
-        holds = stays_within(running.at.displacement, low, high, running)
+        holds = stays_within(run.running.at.displacement, low, high, run.running)
     if holds and (damping > 0.0 or not one_way):
         spread = k * reach + damping * dt * fastest
-        holds = not force_exceeds(a - spread, a + spread, body.mass, running)
-    return ExactStep(holds, change, next_v, next_a, fastest)
-
-
-@compiled
-def show_line(v: float, a: float, dt: float, body: SdofBody) -> int:
-    """Order of the series of an exact step from the velocity v and the relative acceleration a.
-
-    Its terms are not needed to a tolerance. The slope of the ground is `odd`.
-    """
-    body.x[1], body.x[2] = v, 0.5 * a
-    body.step, body.of_u, body.of_v = dt, 0.0, 0.0
-    return linear_series(tangent(body), ROW_ORDER, body)[0]
+        holds = not force_exceeds(a - spread, a + spread, run)
+    return ExactStep(holds, change, next_v, next_a)
 
 
 @compiled_deferred_loop
@@ -357,7 +348,8 @@ def sample_steps(
     Rows of the history that fall between samples are written on the way, so that
     the motion does not depend on them. The sample where the body is then is returned.
     """
-    body, dt = run.body, piece.coefficients[1]
+    body, coefficients, samples = run.body, piece.coefficients, piece.samples
+    origin, dt = coefficients[0], coefficients[1]
     if UNLOADING < body.part < SATURATED:
         return segment
     set_line(dt, body)
@@ -366,26 +358,30 @@ def sample_steps(
     while due:
         due = False
         # This loop writes nothing, so what it needs to know stays where it is.
-        while segment - first < budget:
-            ground = line_at(segment, piece, t)
-            if not ground.end < until:
+        while segment - first < budget and segment + 2 < samples.size:
+            t_end = sample_time(origin, dt, segment + 1)
+            if not t_end < until:
                 break
-            step = exact_step(u, v, a, ground, dt, body, run.running)
-            due = step.holds and is_due(ground.end, run.plan.output_times, run.progress)
+            g, slope = samples[segment], (samples[segment + 1] - samples[segment]) / dt
+            step = exact_step(u, v, a, g, slope, dt, run)
+            due = step.holds and is_due(t_end, run.plan.output_times, run.progress)
             if due or not step.holds:
                 break
-            u, v, a, t = u + step.change, step.v, step.a, ground.end
+            u, v, a, t = u + step.change, step.v, step.a, t_end
             segment += 1
         if segment > started:
             _arrive(u, v, t, segment - started, dt, run)
             started = segment
         if due:
             # The body's own ground is not known any more.
-            body.odd, body.segment = ground.slope, -1
-            order = show_line(v, a - ground.g, dt, body)
-            due = sample_sdof(t, ground.end, order, piece, run)
+            body.odd, body.segment = slope, -1
+            # Terms of its series are not needed to a tolerance.
+            body.x[1], body.x[2] = v, 0.5 * (a - g)
+            body.step, body.of_u, body.of_v = dt, 0.0, 0.0
+            order, _ = linear_series(tangent(body), ROW_ORDER, body)
+            due = sample_sdof(t, t_end, order, piece, run)
         if due:
-            u, v, a, t = u + step.change, step.v, step.a, ground.end
+            u, v, a, t = u + step.change, step.v, step.a, t_end
             segment += 1
     if segment > first:
         body.z, body.a = spring_state(u, run), a

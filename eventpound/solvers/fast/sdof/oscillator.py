@@ -58,7 +58,6 @@ from eventpound.solvers.fast.sdof.body import (
     absolute_acceleration,
     acceleration_level,
     load_body,
-    reset_body,
     set_force,
     side_closed,
     spring_state,
@@ -190,7 +189,6 @@ def oscillate(budget: int, plan: FastPlan, state: FastState, sdof: Sdof, record:
     )
     body, now, progress = run.body, run.now, run.progress
     if not progress.started:
-        reset_body(body)
         load_body(plan, state, run)
         progress.started = True
     last_step = progress.steps + budget

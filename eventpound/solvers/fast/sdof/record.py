@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from eventpound.mechanics.elements import pull_per_z
 from eventpound.mechanics.monitored import (
-    Running,
     update_extreme,
     update_settled,
     update_turning_point,
@@ -21,7 +20,6 @@ from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compil
 from eventpound.solvers.fast.extremes import stays_within, take_turn, turning_times
 from eventpound.solvers.fast.record import is_due, takes_rows
 from eventpound.solvers.fast.sdof.body import (
-    SdofBody,
     SdofRun,
     absolute_acceleration,
     set_force,
@@ -104,12 +102,12 @@ def sample_sdof(t: float, t_end: float, order: int, piece: CurrentPiece, run: Sd
 
 
 @compiled
-def force_exceeds(low: float, high: float, mass: float, running: Running) -> bool:
+def force_exceeds(low: float, high: float, run: SdofRun) -> bool:
     """Whether the absolute acceleration (m/s²), or the base shear it makes, may leave its extremes.
 
     The two are apart once the body has rested on a barrier.
     """
-    at = running.at
+    running, at, mass = run.running, run.running.at, run.body.mass
     inside = stays_within(at.acceleration, low, high, running)
     return not (inside and stays_within(at.base_shear, -mass * high, -mass * low, running))
 
@@ -136,7 +134,7 @@ def take_if_new(t: float, u: float, a: float, run: SdofRun) -> None:
     i = running.at.displacement
     same = 2.0 * running.rounding[i]
     new = u > running.maximum[i] - same or u < running.minimum[i] + same
-    if new or force_exceeds(a, a, run.body.mass, running):
+    if new or force_exceeds(a, a, run):
         _take_turn(t, u, a, run)
 
 
@@ -169,21 +167,15 @@ def take_contact_forces(t: float, run: SdofRun) -> None:
 
 
 @compiled
-def acceleration_coefficient(k: int, body: SdofBody) -> float:
-    """Coefficient k of the absolute acceleration in a step (m/s^(2+k))."""
-    ground = body.ground[k] * (body.odd if k & 1 else body.even)
-    return (k + 1) * (k + 2) * body.x[k + 2] + ground
-
-
-@compiled
 def damped_acceleration(t: float, tau: float, order: int, run: SdofRun) -> None:
     """Turning points of acceleration and base shear within a step, and their values at its end."""
     body, d, spread = run.body, run.scratch.rate, 0.0
     for k in range(order - 2, 0, -1):
-        term = acceleration_coefficient(k, body)
+        ground = body.ground[k] * (body.odd if k & 1 else body.even)
+        term = (k + 1) * (k + 2) * body.x[k + 2] + ground
         d[k - 1] = k * term
         spread = (spread + abs(term)) * tau
-    if force_exceeds(body.a - spread, body.a + spread, body.mass, run.running):
+    if force_exceeds(body.a - spread, body.a + spread, run):
         _take_acceleration(t, tau, order, run)
 
 

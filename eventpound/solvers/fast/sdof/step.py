@@ -219,7 +219,7 @@ def _of_standing(
     spread = reach * (body.stiffness + body.strength * body.per_scale)
     place = run.running.at.displacement
     new = not stays_within(place, body.u - reach, body.u + reach, run.running)
-    if new or force_exceeds(body.a - spread, body.a + spread, body.mass, run.running):
+    if new or force_exceeds(body.a - spread, body.a + spread, run):
         turn = first_turn(order, first, tau, body, run.scratch.work)
         if turn < tau:
             tau, event = turn, FREE
@@ -254,14 +254,8 @@ def _first_unordered(h: float, reach: float, order: int, run: SdofRun) -> tuple[
 
 
 @compiled
-def propose(
-    wanted: float, stop: float, piece: CurrentPiece, run: SdofRun
-) -> tuple[int, float, float, int, bool]:
-    """A step of at most `wanted` (s), to `stop` (s) at most, that holds at its end.
-
-    Returned are the order of its series, 0 where no step holds, its length (s), its end (s), how
-    it ends, and whether the body turns there. The motion at its end stands in `SdofBody`.
-    """
+def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SdofRun) -> int:
+    """One step of at most `wanted` (s); GOING_ON, or why not."""
     body, t = run.body, run.now.t
     a_g = body.even
     if not body.pair:
@@ -274,26 +268,16 @@ def propose(
     tau, event, turn = first_event(h, order, first, run)
     for halving in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
-        observe_ground(t_end, piece, body)
+        _observe_ground(t_end, piece, body)
         observe_end(run)
         if equations_hold(tau, order, body):
             break
         if halving == MOST_HALVINGS - 1:
-            order = 0
-            break
+            return NO_STEP
         event = FREE
         tau *= _shortened(tau, order, body)
         body.change, body.rate, body.bend = motion(tau, order, body.x[:])
-    return order, tau, t_end, event, event == TURNED or (turn <= tau and event == FREE)
-
-
-@compiled
-def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SdofRun) -> int:
-    """One step of at most `wanted` (s); GOING_ON, or why not."""
-    body, t = run.body, run.now.t
-    order, tau, t_end, event, turned = propose(wanted, stop, piece, run)
-    if order == 0:
-        return NO_STEP
+    turned = event == TURNED or (turn <= tau and event == FREE)
     if body.damping > 0.0:
         damped_acceleration(t, tau, order, run)
     due = is_due(t_end, run.plan.output_times, run.progress)
@@ -348,7 +332,7 @@ def audit(stalled: int, body: SdofBody) -> int:
 
 
 @compiled
-def observe_ground(t: float, piece: CurrentPiece, body: SdofBody) -> None:
+def _observe_ground(t: float, piece: CurrentPiece, body: SdofBody) -> None:
     """What the ground is at the end of a step, at t (s)."""
     if body.pair:
         body.next_g, body.next_odd = pair_at(t, piece, body)

@@ -1,4 +1,4 @@
-"""Bodies that go apart under a record beside CVODE: motion, events, peaks and rows are the same."""
+"""Rows of bodies under a record beside CVODE: motion, events, peaks and rows are the same."""
 
 from __future__ import annotations
 
@@ -104,15 +104,6 @@ def test_as_cvode(seed: int) -> None:
         np.testing.assert_allclose(rows, wanted, rtol=0.0, atol=far, err_msg=name)
 
 
-def test_a_step_takes_all_from_one_sample_to_the_next() -> None:
-    """Of twenty bodies each turns, yields and hits by itself, while the record lasts."""
-    scene, end = row(9, 20, 3.0)
-    end *= 6.0 / 7.0
-    found = solver_named("fast").solve(Task(scene, 0.0, end, 1e-6))
-    assert len(found.events) > 20
-    assert found.work.steps < 1.1 * end / scene.motion.time_step
-
-
 def test_rows_do_not_change_the_motion() -> None:
     """Nor does being one of many, to the last bit."""
     scene, end = row(3, 5)
@@ -126,7 +117,7 @@ def test_rows_do_not_change_the_motion() -> None:
         assert (peaks == with_rows.displacement.maximum[b]).all()
 
 
-def test_a_plastic_impact_is_left_to_all_together() -> None:
+def test_plastic_impacts() -> None:
     """Two bodies rest on each other, while others go on."""
     scene, end = row(5, 4)
     contacts = tuple(replace(contact, restitution=0.0) for contact in scene.contacts)
@@ -135,14 +126,4 @@ def test_a_plastic_impact_is_left_to_all_together() -> None:
     kinds = [event.kind.name for event in true.events]
     assert "REST" in kinds
     assert [event.kind.name for event in found.events] == kinds
-    np.testing.assert_allclose(found.u, true.u, rtol=0.0, atol=FAR * np.abs(true.history.u).max())
-
-
-def test_a_body_too_stiff_for_its_bounds_keeps_all_together() -> None:
-    """Its period is three times that of the samples."""
-    scene, end = row(2, 4)
-    dt = scene.motion.time_step
-    stiff = Linear(scene.bodies[0].mass * (2.0 * np.pi / (3.0 * dt)) ** 2)
-    scene = replace(scene, springs=(replace(scene.springs[0], law=stiff), *scene.springs[1:]))
-    found, true = solved(scene, end, "fast", RTOL), solved(scene, end, "cvode", 0.1 * RTOL)
     np.testing.assert_allclose(found.u, true.u, rtol=0.0, atol=FAR * np.abs(true.history.u).max())

@@ -1,40 +1,45 @@
-"""Bodies that go apart: what comes out is what bodies that step together, or are alone, do."""
+"""Several bodies: peaks beside fine histories; rows, pauses and a ledger change nothing."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from eventpound.mechanics.model import assemble
-from eventpound.mechanics.supported import lowered
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.harmonic import Harmonic
 from eventpound.motion.mavroeidis_papageorgiou import MavroeidisPapageorgiou
 from eventpound.motion.pulses import Cosine, Sine
+from eventpound.motion.record import Record
 from eventpound.motion.ricker import Ricker
 from eventpound.scene import (
     BARRIER,
     GROUND,
+    BilinearElastic,
     Body,
     BoucWen,
     Contact,
     Dashpot,
-    Force,
     Linear,
     Scene,
     Spring,
 )
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import Task
+from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.constants import blank_series, clear_scratch, plan_of
-from tests.solvers.stepping import stepper_of
+from eventpound.solvers.fast import solver as fast
+from eventpound.solvers.fast.constants import (
+    blank_located,
+    blank_series,
+    clear_scratch,
+    plan_of,
+)
+from eventpound.solvers.fast.evaluate import blank_fast_observed
 
-END = 9.0
-"""Length of a run (s)."""
+END, STEP = 9.0, 0.02
+"""Length of a run (s), and of a step of the record."""
 FAR = 1e3
 """A gap that never closes (m)."""
 MOTIONS = {
@@ -72,14 +77,6 @@ def row(gap: float, motion: GroundMotion = MOTIONS["sine"], damped: bool = True)
     return Scene(bodies, springs, dashpots, contacts, motion)
 
 
-def test_a_row_where_they_set_out_stands_once() -> None:
-    """They may do so at the very start, of which there is a row already, at an output time."""
-    for gap in np.linspace(0.2, 0.9, 40):
-        task = Task(row(float(gap)), 0.0, END, 1e-9, output_times=np.linspace(0.0, END, 200))
-        t = solver_named("fast").solve(task).history.t
-        assert (t[:2] == 0.0).sum() == 1
-
-
 def test_base_shear_is_that_of_all_at_once() -> None:
     """Its peaks are those of the sum of the forces, which a fine history comes close to."""
     times = np.linspace(0.0, END, 20_001)
@@ -107,41 +104,67 @@ def test_gaps_are_watched_from_one_step_to_the_other() -> None:
     assert (found.largest_gap >= gap.max(axis=0) - 1e-12 * FAR).all()
 
 
-def _with(**changes: object) -> Scene:
-    return replace(row(0.2), **changes)
-
-
-ROW = row(0.2)
-STAY = {
-    "one body": Scene(ROW.bodies[:1], ROW.springs[:1], (), ROW.contacts[:1], ROW.motion),
-    "no hysteresis": _with(springs=ROW.springs[3:]),
-    "a spring between two": _with(springs=(*ROW.springs, Spring("e", ("a", "b"), Linear(1.0)))),
-    "two that yield": _with(
-        springs=(*ROW.springs, Spring("f", (GROUND, "a"), BoucWen(1.0, 1.0, 0.1)))
-    ),
-    "a force": _with(forces=(Force("a", Sine(1.0, 1.0)),)),
-}
-
-
-def _bodies_that_may(scene: Scene) -> int:
-    """How many bodies have arrays of their own."""
-    scene = lowered(scene, 0.0)
-    task, model = Task(scene, 0.0, END, 1e-9), assemble(scene)
-    plan = plan_of(task, model, scene_scales(scene, model, END))
-    return blank_series(plan, model.loads > 0).each.body.size
-
-
-@pytest.mark.parametrize("why", STAY)
-def test_who_never_goes_apart(why: str) -> None:
-    """There are no arrays for them, and so no step that they do not need."""
-    assert _bodies_that_may(STAY[why]) == 0
-    assert _bodies_that_may(ROW) == len(ROW.bodies)
-
-
 @pytest.mark.usefixtures("interpreted")
 def test_a_run_among_many_takes_no_acceleration_over() -> None:
     """That of a run that ended with numbers that are not finite would come into the next defect."""
-    at = stepper_of(ROW, np.zeros(3), 1e-9)
-    at.series.expected[:] = np.nan
-    clear_scratch(at.series, at.run.located, at.run.observed)
-    assert (at.series.expected == 0.0).all()
+    task, model = Task(row(0.2), 0.0, END, 1e-9), assemble(row(0.2))
+    plan = plan_of(task, model, scene_scales(task.scene, model, END))
+    series = blank_series(plan)
+    series.expected[:] = np.nan
+    clear_scratch(series, blank_located(plan), blank_fast_observed(plan))
+    assert (series.expected == 0.0).all()
+
+
+def record() -> Record:
+    t = STEP * np.arange(501)
+    return Record(np.sin(2.3 * t) * np.sin(7.1 * t + 1.0) * np.exp(-(((t - 4.0) / 3.0) ** 2)), STEP)
+
+
+def bridge(yields: bool, gap: float, damping: float = 0.3) -> Scene:
+    """Two segments on springs, joined by a cable, one with a stop that acts when pushed into."""
+    laws = (
+        (BoucWen(4.0, 1.2, 0.1, 20.0), BoucWen(3.0, 1.5, 0.2, 20.0, 0.7, 0.3))
+        if yields
+        else (Linear(16.0), Linear(10.5))
+    )
+    springs = (
+        Spring("left", (GROUND, "a"), laws[0]),
+        Spring("right", (GROUND, "b"), laws[1]),
+        Spring("cable", ("a", "b"), Linear(0.8)),
+        Spring("stop", ("b", GROUND), BilinearElastic(9.0, 0.4, 0.02)),
+    )
+    dashpots = (Dashpot((GROUND, "a"), damping), Dashpot(("a", "b"), 0.5 * damping))
+    contacts = (Contact("joint", "a", "b", gap, 0.7), Contact("end", "b", BARRIER, 0.4, 0.5))
+    bodies = (Body("a", 1.0), Body("b", 2.2, 0.01, 0.05))
+    return Scene(bodies, springs, dashpots if damping else (), contacts, record())
+
+
+SCENES = {
+    "linear": bridge(False, 2.0),
+    "linear, pounding": bridge(False, 0.02),
+    "yielding, undamped": bridge(True, 2.0, 0.0),
+    "yielding, pounding": bridge(True, 0.03),
+    **{motion: row(0.2, MOTIONS[motion]) for motion in MOTIONS},
+}
+
+
+def solved(scene: Scene, rows: int, energy: bool = False) -> Recording:
+    times = np.linspace(0.0, END, rows)
+    return solver_named("fast").solve(
+        Task(scene, 0.0, END, 1e-8, output_times=times, energy=energy)
+    )
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_rows_pauses_and_a_ledger_change_nothing(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few, many = solved(SCENES[name], rows=2), solved(SCENES[name], rows=1777)
+    kept = solved(SCENES[name], rows=2, energy=True)
+    monkeypatch.setattr(fast, "BUDGET", 3)
+    for other in (many, kept, solved(SCENES[name], rows=2)):
+        assert other.work.steps == few.work.steps
+        for which in ("u", "v", "z", "smallest_gap"):
+            np.testing.assert_array_equal(getattr(other, which), getattr(few, which))
+        np.testing.assert_array_equal(other.displacement.maximum, few.displacement.maximum)
+        np.testing.assert_array_equal(other.base_shear.minimum, few.base_shear.minimum)

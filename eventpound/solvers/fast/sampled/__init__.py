@@ -1,1 +1,0 @@
-"""Steps of several bodies under a record; the door is `steps`."""
