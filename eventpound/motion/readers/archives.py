@@ -169,6 +169,10 @@ COSMOS = Dialect(
 _SMC_KIND = r"\s*[0-9]\s+((UN)?CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|.*SPECTR)"
 
 
+_SMC_UNKNOWN = 1e37
+"""Reals above are not known; 1.7e38 is written."""
+
+
 def _smc_extent(source: Source) -> list[Extent]:
     kind = source.line(1)
     if "accelerogram" not in kind.casefold():
@@ -176,6 +180,11 @@ def _smc_extent(source: Source) -> list[Extent]:
     integers = read_block(source, 12, StatedCount(48, 1, "integers"), 10)
     reals = read_block(source, integers.next_line, StatedCount(50, 1, "reals"), 15)
     comments, samples = integers.values[15:17].tolist()
+    if reals.values[1] > _SMC_UNKNOWN:
+        raise source.error(
+            integers.next_line,
+            "no samples per second: an uncorrected record of uneven times; give the corrected one",
+        )
     known = {
         "samples": (f"{int(samples)}", integers.next_line - 4),
         "samples per second": (repr(float(reals.values[1])), integers.next_line),

@@ -27,7 +27,7 @@ from eventpound.motion.readers.numbers import NUMBER, numbers_of_line, to_count,
 
 _LONGEST_AT2 = 30
 _COUNT_AND_STEP = (
-    word_pattern(rf"NPTS\s*=\s*(?P<NPTS>\d+)\b.*\bDT\s*=\s*(?P<DT>{NUMBER})"),
+    word_pattern(rf"\bNPTS?\s*[=:]?\s*(?P<NPTS>\d+)\b.*\b(?:DT|TSTEP)\s*[=:]?\s*(?P<DT>{NUMBER})"),
     word_pattern(rf"^\s*(?P<NPTS>\d+)[\s,]+(?P<DT>{NUMBER})[\s,]+NPTS\s*,\s*DT"),
 )
 _DATE = re.compile(r"\d{1,2}/\d{1,2}/\d{2,4}")

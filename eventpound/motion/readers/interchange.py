@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from itertools import islice
-
-import numpy as np
+from datetime import datetime
+from itertools import islice, takewhile
 
 from eventpound.motion.readers.base import Given, Source
 from eventpound.motion.readers.block import StatedCount, numbers_of_block
 from eventpound.motion.readers.extents import Extent, groups_of, word_pattern
-from eventpound.motion.readers.labelled import Dialect, Labelled, Series
-from eventpound.motion.readers.numbers import NUMBER, numbers_of_line, split_token, to_float
-from eventpound.motion.readers.rows import COMMENT, SEPARATOR
+from eventpound.motion.readers.labelled import Dialect, Labelled, Series, refuse_other_times
+from eventpound.motion.readers.numbers import (
+    NUMBER,
+    numbers_of_line,
+    split_token,
+    to_float,
+)
+from eventpound.motion.readers.rows import SEPARATOR
 
 # EarthScope and ObsPy, described in obspy.io.ascii: a line "TIMESERIES NET_STA_LOC_CHAN_Q,
 # 12 samples, 40 sps, 2003-05-29T02:13:22.043400, SLIST, INTEGER, Counts" before each series, whose
@@ -57,19 +61,19 @@ def _timeseries_numbers(
 
 def _without_times(source: Source, first: int, rate: float) -> Source:
     """The file with the times left out, which must be those of the rate (Hz)."""
-    lines, start = source.lines[: first - 1], None
+    lines = source.lines[: first - 1]
+    times: list[datetime] = []
     for number, line in enumerate(source.lines[first - 1 :], start=first):
-        time, _, sample = line.strip().partition(" ")
-        try:
-            at = np.datetime64(time.upper().rstrip("Z"), "us") if time else None
-        except ValueError as error:
-            raise source.error(number, f"found {time!r}; a time is expected") from error
-        start = at if start is None else start
-        if at is not None and start is not None:
-            off = (at - start) / np.timedelta64(1, "s") - (number - first) / rate
+        time, *sample = line.split(maxsplit=1)[:2] or [""]
+        if time:
+            try:
+                times.append(datetime.fromisoformat(time).replace(tzinfo=None))
+            except ValueError as error:
+                raise source.error(number, f"found {time!r}; a time is expected") from error
+            off = (times[-1] - times[0]).total_seconds() - (len(times) - 1) / rate
             if abs(off) > _OFF / rate:
                 raise source.error(number, f"its time is {off:g} s off those of {rate:g} Hz")
-        lines.append(sample)
+        lines.append("".join(sample))
     return Source(source.file, "\n".join(lines).encode())
 
 
@@ -130,42 +134,72 @@ SAC_ALPHANUMERIC = Dialect(
     width=15,
 )
 
-# A line "2000 0.01" (or "0.01 2000") with the number of samples and the time step, perhaps after
-# lines of text, and then the samples: DEEPSOIL has a time beside each, eqsig a title before the
-# line, others run along lines. Nothing states units.
+# A head with the number of samples and the time step, then the samples, or times and samples:
+# "2000 0.01", also with more whole numbers or words behind (DEEPSOIL, eqsig with a title above,
+# SHAKE), one on each of two lines, or "NPTS: 2000, DT: 0.01". Nothing need state units.
 
-_MOST_TITLES = 4
+_LONGEST_HEAD = 8
 _LARGEST_STEP = 1.0
+_COUNT = word_pattern(
+    r"(?:\bNPTS?|\b(?:NUMBER|NO\.?) OF (?:\w+ )?(?:POINTS|SAMPLES|DATA|VALUES))\W*(\d+)"
+)
+_STEP = word_pattern(
+    rf"(?:\bDT|\bTIME[ _-]?STEP|\bTSTEP|\bDELTA[ _-]?T|\bSAMPLING (?:INTERVAL|PERIOD))\b"
+    rf"[^\d.\n]*({NUMBER})"
+)
 
 
 def _count_and_step(source: Source) -> Extent | None:
-    """The line with both, unless what follows goes on from it as a second row would."""
-    texts = (
-        (i, x) for i, x in enumerate(source.lines, start=1) if x.strip() and not COMMENT.match(x)
-    )
-    before = 0
-    for number, line in texts:
-        row = _row(line)
-        if row is None:
-            before += 1
-            if before > _MOST_TITLES:
-                return None
+    """The shortest head that states both, where so many samples follow.
+
+    Without words a line of two such numbers is taken even if they do not follow, which is
+    refused then.
+    """
+    texts = list(islice(((i, x) for i, x in enumerate(source.lines, 1) if x.strip()), 11))
+    for cut in range(1, min(_LONGEST_HEAD, len(texts) - 2) + 1):
+        first, second = (_row(text) for _, text in texts[cut : cut + 2])
+        if not first or not second:
             continue
-        found = sorted(row, key=to_float, reverse=True)
-        if len(row) != 2 or not re.fullmatch(r"\d+", found[0]) or int(found[0][:12]) < 2:
-            return None
-        count, step = int(found[0][:12]), to_float(found[1])
-        following = [_row(x) for _, x in islice(texts, 2)]
-        if not 0.0 < step <= _LARGEST_STEP or len(following) < 2 or None in following:
-            return None
-        first, second = ([to_float(x) for x in other or ()] for other in following)
-        pairs = len(first) == 2
-        if pairs and not (first[0] in (0.0, step) and abs(second[0] - first[0] - step) < step / 2):
-            return None
-        known = {"samples": (f"{count}", number), "step": (found[1], number)}
-        known |= {"pairs": ("pairs", number)} if pairs else {}
-        return Extent(number, number, number, known)
+        counts, steps = _stated([text for _, text in texts[:cut]])
+        if len(steps) != 1 or not 0.0 < to_float(steps[0]) <= _LARGEST_STEP:
+            continue
+        line, head = texts[cut - 1]
+        pairs = len(first) == len(second) == 2
+        if pairs and not _begin_again(first[0], second[0], to_float(steps[0])):
+            continue
+        rows = (_row(x) for x in source.lines[line:])
+        follow = sum(len(row) for row in rows if row) if counts else 0
+        found = next((x for x in counts if to_float(x) * (1 + pairs) == follow), None)
+        if found is None and len(_row(head) or ()) == 2 == len(counts) + len(steps):
+            found = counts[0]
+        if found is not None:
+            known = {"samples": (found, line), "step": (steps[0], line)}
+            return Extent(1, line, line, known | ({"pairs": ("yes", line)} if pairs else {}))
     return None
+
+
+def _stated(head: list[str]) -> tuple[list[str], list[str]]:
+    """What may be the number of samples and the time step: by the words of a head, or its end."""
+    count, step = (like.search("\n".join(head)) for like in (_COUNT, _STEP))
+    if count and step:
+        return [count.group(1)], [step.group(1)]
+    numbers = _leading(head[-1])
+    if len(numbers) == 1 == len(_row(head[-1]) or ()) and len(head) > 1:
+        numbers += _row(head[-2]) or []
+    whole = [x for x in numbers if to_float(x) >= 2.0 and to_float(x).is_integer()]
+    return whole, [x for x in numbers if x not in whole]
+
+
+def _begin_again(first: str, second: str, step: float) -> bool:
+    """Whether times begin at zero or after one step."""
+    start, off = to_float(first), to_float(second) - to_float(first) - step
+    return start in (0.0, step) and abs(off) < 0.5 * step
+
+
+def _leading(line: str) -> list[str]:
+    """Numbers with which a line begins."""
+    tokens = SEPARATOR.split(line.strip())
+    return list(takewhile(lambda token: re.fullmatch(NUMBER, token), tokens))
 
 
 def _row(line: str) -> list[str] | None:
@@ -183,14 +217,12 @@ def _count_and_step_numbers(
     if "pairs" not in head:
         return Series(*numbers_of_block(commas, first, stated))
     pairs = StatedCount(2 * stated.count, stated.line, f"twice the {stated.name}")
-    numbers = numbers_of_block(commas, first, pairs)[0]
-    step, _ = head.number("step")
-    off = np.abs(np.diff(numbers[0::2]) - step) > _OFF * step
-    if off.any():
-        raise source.error(
-            head.line("step"), f"a time step of {step:g} s is stated, that of its times differs"
-        )
-    return Series(numbers[1::2])
+    numbers, notes = numbers_of_block(commas, first, pairs)
+    after = enumerate(commas.lines[first - 1 :], start=first)
+    rows = list(islice(((i, x.split()[0]) for i, x in after if x.strip()), stated.count))
+    times, lines = [time for _, time in rows], [i for i, _ in rows]
+    refuse_other_times(source, times, lines, *head.number("step"))
+    return Series(numbers[1::2], notes)
 
 
 def _count_and_step_extents(source: Source) -> list[Extent]:
@@ -205,6 +237,7 @@ COUNT_AND_STEP = Dialect(
     begins=(),
     also=lambda source: _count_and_step(source) is not None,
     extents=_count_and_step_extents,
+    patterns=(r"\bUNITS? *(?:OF|ARE|IN|:|=) *\(? *(?P<units>[A-Z]+(?:/[A-Z0-9/^*]+)?)",),
     count="samples",
     step="step",
     numbers=_count_and_step_numbers,

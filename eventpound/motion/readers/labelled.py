@@ -3,8 +3,8 @@
 A dialect says where headers stand in a file, how their values are found (labels with values
 behind them, patterns with named groups) and which of them is what. The numbers follow a
 header, one component in a block or several in columns. Letter case means nothing in the words
-of a header: agencies change it between years. The dialects are in `dialects.py`, `archives.py`
-and `volumes.py`.
+of a header: agencies change it between years. The dialects are in `dialects.py`, `archives.py`,
+`volumes.py` and `interchange.py`.
 """
 
 from __future__ import annotations
@@ -339,14 +339,24 @@ class Dialect:
         if not last or any(row != last[0] for row in after):
             raise InputError(miscounted(source, stated, len(rows.rows), rows.lines[-1], "rows"))
         if self.timed:
-            step = even_step(source, rows.column_texts(0), rows.lines, header.time_step)
-            if header.time_step is None or abs(step - header.time_step) > 1e-9 * step:
-                raise source.error(
-                    header.time_step_line,
-                    f"a time step of {header.time_step!r} s is stated, "
-                    f"its times are {step!r} s apart",
-                )
+            times = rows.column_texts(0)
+            refuse_other_times(source, times, rows.lines, header.time_step, header.time_step_line)
         return rows
+
+
+def refuse_other_times(
+    source: Source,
+    times: list[str],
+    lines: list[int],
+    time_step: float | None,
+    line: int | None,
+) -> None:
+    """Stop where times beside the samples are not those of the step that a line states (s)."""
+    step = even_step(source, times, lines, time_step)
+    if time_step is None or abs(step - time_step) > 1e-9 * step:
+        raise source.error(
+            line, f"a time step of {time_step!r} s is stated, its times are {step!r} s apart"
+        )
 
 
 def _parted(line: str, at: str | int) -> tuple[str, bool, str]:

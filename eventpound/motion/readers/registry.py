@@ -53,7 +53,7 @@ _OF_TEXT = (
 READERS: tuple[Reader, ...] = (waveforms.MINISEED, waveforms.SAC, *_OF_TEXT)
 
 GROUP = "eventpound.readers"
-_PLAIN = 2
+_PLAIN = 3
 """The last of `READERS`, which take what no other recognises."""
 
 
@@ -74,13 +74,14 @@ def reader_of(source: Source, name: str | None) -> Reader:
     plugins = _plugged_in()
     readers = _readers(plugins)
     known = ", ".join(reader.name for reader in readers)
-    found = next((x for x in readers if (x.name == name if name else x.detect(source))), None)
+    asked = (x for x in readers if (x.detect(source) if name is None else x.name == name))
+    found = next(asked, None)
     if name is not None and found is None:
         if name in plugins.troubles:
             raise InputError(f"{source.file}: format '{name}': {plugins.troubles[name]}")
         raise InputError(f"{source.file}: format '{name}' is not known; accepted: {known}")
     if found is None or found in _OF_TEXT:
-        told = found is not None and found.detect(source)
+        told = found is not None and (name is None or found.detect(source))
         if kind := binary_kind(source.content, may_have_zeros=told):
             raise source.error(None, f"found {kind}; a record is needed")
     if found is not None:

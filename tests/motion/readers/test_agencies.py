@@ -13,6 +13,7 @@ import pytest
 from eventpound.errors import InputError
 from eventpound.motion import read_record
 from eventpound.motion.readers import UnstatedError, components_of
+from eventpound.motion.readers.header import unit_factor
 from tests.motion.readers import writers
 from tests.motion.readers.writers import motion
 
@@ -138,8 +139,9 @@ PAIRS = "".join(f"{i * STEP:.2f}\t{x:.6f}\n" for i, x in enumerate(MOTION))
         f"A title of 3 words\n400 0.01\n{COLUMN}",
         f"# made up\n400\t1e-2\n{PAIRS}".replace("\t", ","),
         "Title\nAnother 2\n 400 .01\n" + writers.rows(MOTION, 8, "9.6f"),
+        f"400.0 0.01\n{COLUMN}",
     ],
-    ids=["deepsoil", "column", "step-first", "eqsig", "commas", "along-lines"],
+    ids=["deepsoil", "column", "step-first", "eqsig", "commas", "along-lines", "pointed"],
 )
 def test_a_count_and_a_step_before_the_samples(text: str, tmp_path: Path) -> None:
     file = written(tmp_path, text)
@@ -153,9 +155,43 @@ def test_a_count_and_a_step_before_the_samples(text: str, tmp_path: Path) -> Non
         read_record(cut, units="m/s2")
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"400 0.01 g\n{PAIRS}",
+        f"400\n0.01\n{COLUMN}",
+        f"0.01\n400\n{COLUMN}",
+        f"NPTS = 400\nDT = 0.01\n{COLUMN}",
+        f"# Number of points: 400\n# Time step: 0.01 s\n{PAIRS}",
+        "  400  512  .01   (8F9.6)    a title\n" + writers.rows(MOTION, 8, "9.6f"),
+    ],
+    ids=["unit-behind", "two-lines", "step-first", "labels", "comments", "shake"],
+)
+def test_a_count_and_a_step_told_otherwise(text: str, tmp_path: Path) -> None:
+    file = written(tmp_path, text)
+    read = read_record(file, units="m/s2")
+    np.testing.assert_allclose(read.acceleration, MOTION, rtol=0.0, atol=0.51e-6)
+    assert (read.time_step, read.format) == (STEP, "count-and-step")
+    with pytest.raises(InputError, match=r"0.02 s was given, but the file has a time step of 0.01"):
+        read_record(file, units="m/s2", time_step=0.02)
+
+
+def test_units_in_a_head_are_heeded(tmp_path: Path) -> None:
+    file = written(tmp_path, f"NPTS = 400\nDT = 0.01\nUNITS: CM/S2\n{COLUMN}")
+    read = read_record(file)
+    np.testing.assert_allclose(read.acceleration, 0.01 * MOTION, rtol=0.0, atol=0.51e-8)
+    with pytest.raises(InputError, match=r"units = 'g' were given, but the file states 'CM/S2'"):
+        read_record(file, units="g")
+
+
+def test_a_scale_beside_a_count_and_a_step_is_not_ignored(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="3 numbers on a line"):
+        read_record(written(tmp_path, f"400 0.01 9.81\n{COLUMN}"), units="m/s2", time_step=STEP)
+
+
 def test_times_beside_a_count_and_a_step_are_as_stated(tmp_path: Path) -> None:
-    text = f"400 0.01\n{PAIRS}".replace("\n2.00\t", "\n2.005\t")
-    with pytest.raises(InputError, match=r"a time step of 0.01 s is stated, that of its times"):
+    text = f"400 0.0104\n{PAIRS}"
+    with pytest.raises(InputError, match=r"step of 0.0104 s is stated, its times are 0.01 s apart"):
         read_record(written(tmp_path, text), units="m/s2")
 
 
@@ -225,3 +261,25 @@ def test_seed_without_obspy_is_named(
     file.write_bytes(begins + bytes(200))
     with pytest.raises(InputError, match=r"'miniseed' is read by ObsPy, which is not installed"):
         read_record(file, units="g")
+
+
+def test_smc_of_uneven_times_is_named(tmp_path: Path) -> None:
+    text = writers.smc(MOTION, STEP).text
+    assert text.count("  1.0000000E+02") == 1
+    text = text.replace("  1.0000000E+02", "  1.7000000E+38")
+    with pytest.raises(InputError, match="no samples per second: an uncorrected record"):
+        read_record(written(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("units", "factor"),
+    [
+        ("g.", 9.80665),
+        ("CMS/SEC/SEC", 0.01),
+        ("gals", 0.01),
+        ("Cm/Sec**2", 0.01),
+        ("1.00 mm/s/s", 0.001),
+    ],
+)
+def test_units_as_headers_spell_them(units: str, factor: float) -> None:
+    assert unit_factor(units) == factor

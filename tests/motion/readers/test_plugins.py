@@ -38,7 +38,7 @@ def test_the_documented_example(monkeypatch: pytest.MonkeyPatch, tmp_path: Path)
     project = tomllib.loads(files["pyproject.toml"])["project"]
     sources = {"mynet_reader.py": files["mynet_reader.py"]}
     plug_in(monkeypatch, tmp_path, sources, project["entry-points"][GROUP], project["name"], GROUP)
-    assert format_names()[-3:] == ["mynet", "opensees", "columns"]
+    assert format_names()[-4:] == ["mynet", "count-and-step", "opensees", "columns"]
     path = tmp_path / "record"
     path.write_text("MYNET ATH N-S\n3 samples every 0.01 s\n 1.0 -2.0\n 3.5\n")
     data = read_record(path)

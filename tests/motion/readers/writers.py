@@ -414,7 +414,8 @@ def geonet(a: Floats, dt: float, *, corrected: bool = True) -> Written:
 
     def part(values: Floats, name: str) -> str:
         head = [
-            f"{'Corrected' if corrected else 'Uncorrected'} accelerogram 1999_MADE GNS Science",
+            f"{'Corrected' if corrected else 'Uncorrected'} accelerogram 19990102_030405_MADE "
+            "GNS Science",
             "Site MADE      1 1 1S  1 1 1E",
             "Made Up",
             *["-"] * 4,
