@@ -113,7 +113,7 @@ def compare(
     case: Case,
     asked: Sequence[SolverChoice],
     against: Sequence[Path] = (),
-    columns: Mapping[str, str] | None = None,
+    columns: Mapping[str, str | int] | None = None,
     *,
     repeats: int = REPEATS,
     restitution: float | None = None,
@@ -129,8 +129,8 @@ def compare(
         Solvers at tolerances or steps; `entries` makes them.
     against : sequence of Path
         Histories of other programs.
-    columns : mapping of str to str, optional
-        Their columns, by what we call them.
+    columns : mapping of str to str or int, optional
+        Their columns by name or number, by what we call them.
     repeats : int
         Runs whose median time is taken.
     restitution : float, optional

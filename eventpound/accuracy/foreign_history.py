@@ -1,7 +1,9 @@
 """Another program's history as a run to be judged.
 
 The file has the columns of ``history.csv``: ``t`` and ``u.<body>``, and ``v.<body>`` and
-``z.<spring>`` where the program knows them; or a map says which of its columns are these.
+``z.<spring>`` where the program knows them; or a map says which of its columns are these, by
+their names or numbers. Where such a name says a unit, it is read; times that an even step
+explains within the rounding of their print are those of this step.
 Its peaks are those of its rows. Impacts are read off the velocities, unless a file beside
 it lists them: ``X.events.csv`` beside ``X.csv``, ``events.csv`` beside ``history.csv``.
 The reference runs over the stretch of time that the file covers, with rows at its times.
@@ -21,8 +23,12 @@ from eventpound.accuracy.work_precision import Judged
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.mechanics.supported import lowered, moving_supports, support_motion
+from eventpound.motion.readers.base import Source
+from eventpound.motion.readers.numbers import HALF_A_DIGIT
+from eventpound.motion.readers.time_column import even_step, resolution
+from eventpound.motion.readers.titles import Kind, title_of
 from eventpound.numerics.arrays import Floats
-from eventpound.score.answer import Motion, columns_of, read_motion
+from eventpound.score.answer import Motion, columns_of, place_of, read_motion
 from eventpound.score.difference import Difference
 from eventpound.score.levels import SAME_TIME, ScoreError
 from eventpound.solvers.base import Event, EventKind, Task
@@ -63,7 +69,7 @@ class ForeignHistory:
         )  # fmt: skip
 
 
-def read_foreign(case: Case, path: Path, columns: Mapping[str, str]) -> ForeignHistory:
+def read_foreign(case: Case, path: Path, columns: Mapping[str, str | int]) -> ForeignHistory:
     """Read a history.
 
     Parameters
@@ -72,8 +78,9 @@ def read_foreign(case: Case, path: Path, columns: Mapping[str, str]) -> ForeignH
         Whose history it is.
     path : Path
         The file.
-    columns : mapping of str to str
-        Names of its columns by what we call them; ours where one is not mapped.
+    columns : mapping of str to str or int
+        Names of its columns, or their numbers from 1, by what we call them; ours where one is
+        not mapped.
 
     Raises
     ------
@@ -88,20 +95,59 @@ def read_foreign(case: Case, path: Path, columns: Mapping[str, str]) -> ForeignH
             f"--columns: {', '.join(unknown)} is not known; accepted: {', '.join(wanted)}"
         )
     contacts = [contact.name for contact in scene.contacts]
+    called = {ours: str(theirs) for ours, theirs in columns.items()}
     try:
-        motion, names = read_motion(path, bodies, springs, contacts, called=columns)
+        motion, names = read_motion(path, bodies, springs, contacts, called=called)
     except ScoreError as error:
-        hint = "; --columns OURS=THEIRS says which is which" if "no column" in str(error) else ""
+        hint = ""
+        if "no column" in str(error):
+            hint = "; --columns OURS=THEIRS says which is which, by names or numbers of columns"
         raise InputError(f"{error}{hint}") from error
-    if missing := [place for place in columns.values() if place not in names]:
+    called = {ours: place_of(names, theirs) for ours, theirs in called.items()}
+    if missing := [place for place in called.values() if place not in names]:
         raise InputError(
             f"{path}: has no column {', '.join(missing)}, which --columns names; "
             f"it has {', '.join(names)}"
         )
+    motion = _in_si(path, motion, called, bodies)
     _check_times(path, motion.t, case)
     return ForeignHistory(
-        path, motion, tuple(name for name in wanted if columns.get(name, name) not in names)
+        path, motion, tuple(name for name in wanted if called.get(name, name) not in names)
     )
+
+
+def _in_si(path: Path, motion: Motion, called: Mapping[str, str], bodies: list[str]) -> Motion:
+    """A motion in the units that the titles of mapped columns say, at even times if they are."""
+
+    def factor(ours: str, kind: Kind) -> float:
+        title = title_of(called.get(ours, ""))
+        if title.unit is not None and title.kind is not kind:
+            raise InputError(f"{path}: column '{title.text}' is no {ours}, which is {kind.value}")
+        return title.factor
+
+    t = _even(factor("t", Kind.TIME) * motion.t)
+    u = motion.u * [factor(f"u.{body}", Kind.DISPLACEMENT) for body in bodies]
+    v = motion.v
+    if v is not None:
+        v = v * [factor(f"v.{body}", Kind.VELOCITY) for body in bodies]
+    return replace(motion, t=t, u=u, v=v)
+
+
+def _even(t: Floats) -> Floats:
+    """Times of the even step that explains them within their rounding; else the same."""
+    texts = [repr(x) for x in t.tolist()]
+    try:
+        step = even_step(Source("", b""), texts, [0] * t.size)
+    except InputError:
+        return t
+    even: Floats = step * np.arange(t.size, dtype=np.float64)
+    off = t - even
+    spread, half = float(np.ptp(off)), HALF_A_DIGIT * resolution(texts)
+    if not SAME_TIME * (t[-1] - t[0]) < spread <= 2.0 * half:
+        return t
+    # A run begins at a time of few digits, as printed, if that can be.
+    first = t[0] if abs(off - t[0]).max() <= half else 0.5 * (off.max() + off.min())
+    return even + float(first)
 
 
 def _check_times(path: Path, t: Floats, case: Case) -> None:

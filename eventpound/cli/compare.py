@@ -8,7 +8,7 @@ A solver's settings follow its name, NAME:key=value:key=value, as they stand in 
 --steps for those that have it.
 
 A history has the columns of results/history.csv (t and u.<body>; v.<body> and z.<spring>
-where known); --columns says what they are called in it. Impacts are read off the
+where known); --columns says what they are called in it, or their numbers. Impacts are read off the
 velocities, unless X.events.csv (or events.csv beside history.csv) lists them.
 
 Errors are held against the case's certificate.json where there is one, else against cvode
@@ -56,7 +56,9 @@ def add(commands: Commands) -> None:
     steps = arguments.list_of(arguments.seconds)
     compare.option("--steps X,Y,...", "time steps (s)", steps, default=[])
     compare.option("--against CSV", "histories to judge", Path, nargs="+", default=[])
-    compare.option("--columns OURS=THEIRS,...", "what their columns are called", default="")
+    compare.option(
+        "--columns OURS=THEIRS,...", "what their columns are called, or their numbers", default=""
+    )
     compare.option("--repeats N", "the median of N counts (5)", arguments.count_argument, default=5)
     rigid = "of the rigid law beside contacts with laws of their own (what each stands for)"
     compare.option("--restitution E", rigid, arguments.restitution)

@@ -102,7 +102,7 @@ def read_motion(
     first : str, optional
         What its first line must be, before that of the names.
     called : mapping of str to str, optional
-        What columns are called there, by what we call them.
+        What columns are called there, by what we call them, or the numbers of columns.
 
     Returns
     -------
@@ -120,7 +120,10 @@ def read_motion(
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise ScoreError(f"{path}: column {', '.join(twice[:5])} is there more than once")
-    places = {name: (called or {}).get(name, name) for name in columns_of(bodies, springs)}
+    places = {
+        name: place_of(names, (called or {}).get(name, name))
+        for name in columns_of(bodies, springs)
+    }
     missing = [name for name, place in places.items() if name[0] in "tu" and place not in names]
     if missing:
         raise ScoreError(
@@ -148,6 +151,12 @@ def read_motion(
     return Motion(t, u, v, z, *_listed(path.with_name(beside), contacts)), names
 
 
+def place_of(names: Sequence[str], place: str) -> str:
+    """Name of the column that is called so, or has this number (from 1)."""
+    numbered = place not in names and place.isdecimal() and 0 < int(place) <= len(names)
+    return names[int(place) - 1] if numbered else place
+
+
 def _cells(path: Path, first: str | None) -> tuple[list[str], list[tuple[str, ...]]]:
     """Names and columns of a CSV file, whose first line may be prescribed."""
     try:
@@ -160,10 +169,9 @@ def _cells(path: Path, first: str | None) -> tuple[list[str], list[tuple[str, ..
             other = found.removeprefix("# problem ") if found.startswith("# problem ") else ""
             said = f"is the answer to problem {other}" if other else f"begins with {found[:60]!r}"
             raise ScoreError(f"{path}: {said}; expected as its first line: {first}")
-        lines = lines[1:]
-    elif lines and lines[0].startswith("# kinds"):
-        lines = lines[1:]
-    rows = [row for row in csv.reader(lines) if row]
+        rows = [row for row in csv.reader(lines[1:]) if row]
+    else:
+        rows = _rows_of_any(lines)
     if not rows or (len(rows) == 1 and first is not None):
         raise ScoreError(f"{path}: has no rows")
     names = [name.strip() for name in rows[0]]
@@ -172,6 +180,40 @@ def _cells(path: Path, first: str | None) -> tuple[list[str], list[tuple[str, ..
         line = short[0] + (1 if first is None else 2)
         raise ScoreError(f"{path}: line {line}: {len(rows[short[0]])} cells, not {len(names)}")
     return names, list(zip(*rows[1:], strict=True)) or [()] * len(names)
+
+
+def _rows_of_any(lines: Sequence[str]) -> list[list[str]]:
+    """Names and rows of another program, parted by what parts its last line.
+
+    Where there are no names, as in the files of a recorder, the last comment may have them; else
+    the numbers of the columns are their names.
+    """
+    comments = [line.lstrip()[1:] for line in lines if line.lstrip()[:1] in ("#", "%")]
+    lines = [line for line in lines if line.strip() and line.lstrip()[0] not in "#%"]
+    mark = next((mark for mark in ",;\t" if lines and mark in lines[-1]), None)
+
+    def cells(lines: Sequence[str]) -> list[list[str]]:
+        return (
+            [line.split() for line in lines]
+            if mark is None
+            else [*csv.reader(lines, delimiter=mark)]
+        )
+
+    rows = cells(lines)
+    if not rows or not all(map(_is_number, rows[0])):
+        return rows
+    named = cells(comments[-1:])
+    if not named or len(named[0]) != len(rows[0]):
+        named = [[str(i + 1) for i in range(len(rows[0]))]]
+    return named + rows
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
 
 
 def _numbers(path: Path, name: str, cells: tuple[str, ...], unknown: bool = False) -> Floats:

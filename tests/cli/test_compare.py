@@ -249,6 +249,8 @@ def test_numbers_that_are_none(case, capsys, words):
             "u.deck=y",
             "no column u.deck; found t, x; accepted: t, u.deck, v.deck; --col",
         ),
+        ("0 0\n4 0\n", "t=1,u.deck=3", "no column u.deck; found 1, 2; accepted: t, u.deck"),
+        ("t,x (m/s)\n0,0\n4,0\n", "u.deck=2", "'x (m/s)' is no u.deck, which is a displacement"),
         ("t,x\n0,0\n4,0\n", "u.dock=x", "u.dock is not known; accepted: t, u.deck, v.deck"),
         ("t,u.deck\n0,0\n4,\n", "", "row 2, column u.deck: found ''; accepted: a finite number"),
         ("t,u.deck\n0,0\n4,x\n", "", "row 2, column u.deck: found 'x'; accepted: a finite number"),
@@ -265,6 +267,29 @@ def test_histories_that_cannot_be_judged(case, tmp_path, capsys, text, columns, 
     assert main(["compare", str(case), "--against", str(file), *words]) == 2
     assert message in capsys.readouterr().err
     assert not (case / "comparison").exists()
+
+
+def test_a_recorder_without_names_is_judged_by_the_numbers_of_its_columns(case, history, tmp_path):
+    named = tmp_path / "named"
+    shutil.copytree(case, named)
+    words = ["--against", str(history), "--columns", COLUMNS]
+    assert main(["compare", str(named), *words]) == 0
+    (tmp_path / "node.out").write_text(
+        "".join(" ".join(row.values()) + "\n" for row in _rows(history))
+    )
+    order = list(_rows(history)[0])
+    numbers = {ours: 1 + order.index(theirs) for ours, theirs in _pairs(COLUMNS)}
+    words = ["--against", str(tmp_path / "node.out")]
+    words += ["--columns", ",".join(f"{ours}={number}" for ours, number in numbers.items())]
+    assert main(["compare", str(case), *words]) == 0
+    ours, theirs = (_rows(each / "comparison" / "comparison.csv")[0] for each in (case, named))
+    for key in theirs:
+        if "error" in key or "distance" in key or "impact" in key:
+            assert ours[key] == theirs[key], key
+
+
+def _pairs(columns: str) -> list[tuple[str, str]]:
+    return [(ours, theirs) for ours, _, theirs in (p.partition("=") for p in columns.split(","))]
 
 
 def test_events_of_an_unknown_contact(case, tmp_path, capsys):
