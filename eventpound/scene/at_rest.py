@@ -26,7 +26,16 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene.elastic_laws import as_arrays, elastic_force, reduced
 from eventpound.scene.linkage import Linkage, linkage_of
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Backfill, BoucWen, Hysteretic, Law, Linear, Slider, Spring
+from eventpound.scene.spring import (
+    Backfill,
+    BoucWen,
+    Hysteretic,
+    Law,
+    Linear,
+    Series,
+    Slider,
+    Spring,
+)
 from eventpound.scene.support_drift import starts_of_supports
 
 AT_KINK = 1e-9
@@ -120,6 +129,8 @@ def _tangent(law: Law, x: float, length: float) -> Tangent:
     """Of a law at an elongation (m), which is a sum of lengths of this size (m)."""
     sides = reduced(law)
     kink = law.touched if isinstance(law, Backfill) else sides.offset
+    if isinstance(law, Series):
+        length = max(length, *(abs(reduced(part).offset) for part in law.parts))
     if abs(x - kink) <= AT_KINK * max(length, abs(kink)):
         x = kink
     if isinstance(law, Hysteretic):

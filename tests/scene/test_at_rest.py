@@ -147,6 +147,15 @@ def test_at_a_kink_the_smaller_counts_whatever_rounding_says() -> None:
         assert beside(law, place, place * K + k * (place - 0.3)) == pytest.approx(k, rel=1e-9)
 
 
+def test_offsets_in_series_that_cancel_but_for_rounding_are_a_kink() -> None:
+    offsets = (0.3, -0.1, -0.2)
+    assert sum(offsets) != 0.0
+    for order in (offsets, offsets[::-1]):
+        law = Series(tuple(BilinearElastic(3.0 * K, 6.0 * K, each) for each in order))
+        assert told_at_rest(deck(law))["at_kink"] == ["other"]
+        assert beside(law) == pytest.approx(K, rel=1e-12)
+
+
 def test_a_spring_that_has_yielded_counts_as_it_unloads() -> None:
     standing = in_equilibrium(deck(BoucWen(1e6, 5e5, 0.01), force=2e6))
     told = told_at_rest(standing)
