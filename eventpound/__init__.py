@@ -25,5 +25,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """Public names, whether they were imported by now or not."""
-    return sorted({*globals(), *_HOME})
+    """Public names only, whether they were imported by now or not."""
+    return sorted([*(name for name in globals() if name.startswith("__")), *_HOME])

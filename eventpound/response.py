@@ -16,9 +16,10 @@ from eventpound.errors import EventpoundError, InputError
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.apart import avoiding_gaps
-from eventpound.quantities.base import SIX, pi_unit
+from eventpound.quantities.base import SIX, TakenFrom, pi_unit
 from eventpound.quantities.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.quantities.between import Between
+from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_of
 from eventpound.quantities.owners import owners
 from eventpound.quantities.rows import rows_at, settled, warn_unsettled
@@ -118,7 +119,9 @@ class Response:
     def numbers(self) -> dict[str, float | int | bool | None]:
         """What `summary` holds, as a dictionary."""
         runs = self.runs
-        return {named.name: named.of_one(runs) for named in tabled(runs)} | dict(self.named)
+        beside = [q for q in LISTED if not q.tabled and q.source is TakenFrom.EXTREMES]
+        known = (*tabled(runs), *all_of(self.scene, beside))
+        return {named.name: named.of_one(runs) for named in known} | dict(self.named)
 
     @checked
     def quantity(self, name: str) -> float | None:

@@ -59,11 +59,11 @@ class Dimension(Enum):
 
 
 USUAL = {
-    Dimension.LENGTH: {"m": 1.0, "cm": 0.01, "mm": 0.001},
+    Dimension.LENGTH: {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254},
     Dimension.VELOCITY: {"m/s": 1.0, "cm/s": 0.01},
     Dimension.ACCELERATION: {"m/s^2": 1.0, "g": STANDARD_GRAVITY},
     Dimension.MASS: {"kg": 1.0, "t": 1e3},
-    Dimension.FORCE: {"N": 1.0, "kN": 1e3, "MN": 1e6},
+    Dimension.FORCE: {"N": 1.0, "kN": 1e3, "MN": 1e6, "kip": 4448.2216152605},
     Dimension.STIFFNESS: {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6},
     Dimension.DAMPING: {"N s/m": 1.0, "kN s/m": 1e3},
     Dimension.TIME: {"s": 1.0, "ms": 0.001},
@@ -152,10 +152,18 @@ def _factor(unit: str, dimension: Dimension, found: str) -> float:
         try:
             return float(registry().Quantity(1.0, normal).to(dimension.unit).magnitude)
         except pint.DimensionalityError:
-            problem = f"{unit!r} is no unit of {dimension.value[0]}"
+            problem = f"{unit!r} is no unit of {dimension.value[0]}" + _of_force(normal, dimension)
         except pint.PintError:
             pass
     raise InputError(f"found {found!r}: {problem}; accepted: {dimension.accepted}")
+
+
+def _of_force(unit: str, dimension: Dimension) -> str:
+    """What to write where a mass stands in the place of a force; empty elsewhere."""
+    weight = registry().Quantity(1.0, unit) * registry().Quantity(1.0, "standard_gravity")
+    if not weight.is_compatible_with(dimension.unit):
+        return ""
+    return ", it has a mass for a force: write kN, or tf (the weight of 1 t, 9.80665 kN) or kgf"
 
 
 def _refuse_ambiguous(unit: str, dimension: Dimension, found: str) -> None:

@@ -15,7 +15,7 @@ from typing import Any
 from eventpound.basics.given import checked
 from eventpound.basics.input_files import read_bytes
 from eventpound.case.building import with_buildings
-from eventpound.case.case import Case
+from eventpound.case.case import Case, RunOptions
 from eventpound.case.damping import read_damping
 from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts
@@ -48,6 +48,7 @@ from eventpound.scene.plausibility import doubts
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Linear
 from eventpound.scene.support_drift import starts_of_supports, support_warnings
+from eventpound.scene.usual import SMALLEST_RATIO, unusual
 from eventpound.units import Dimension, quantity
 
 CASE_FILE = "case.toml"
@@ -219,6 +220,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         ratios = given_ratios(damped)
         step = run.output_step if run_table.has("output_step") else None
         warnings += doubts(scene, step, ratios, bare_accelerations(document), start)
+        warnings += unusual(scene, _given(top, run, ratios))
     return Case(
         title=title,
         scene=scene,
@@ -237,6 +239,30 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         carried=carried,
         largest_scale=excitation.largest_scale,
     )
+
+
+def _given(
+    top: Table, run: RunOptions, ratios: Sequence[tuple[str, float]]
+) -> dict[str, tuple[str, float]]:
+    """Numbers of a sound case that its scene has not, by rows of `USUAL`: where, and in SI."""
+    found = {
+        "run.start_time": ("run", run.start_time),
+        "run.threshold_speed": ("run", run.stated.threshold_speed),
+    }
+    small = [each for each in ratios if 0.0 < each[1] < SMALLEST_RATIO]
+    found |= {"damping.ratio": small[0]} if small else {}
+    if top.table("run").has("duration"):
+        found["run.duration"] = "run", run.duration
+    excitation = top.table("excitation")
+    for key, dimension in (("rest", Dimension.TIME), ("psa_damping", Dimension.NUMBER)):
+        if excitation.has(key):
+            found[f"excitation.{key}"] = "excitation", excitation.quantity(key, dimension)
+    for spring in top.tables("spring"):
+        if spring.has("wall_width"):
+            width = spring.quantity("wall_width", Dimension.LENGTH)
+            if "spring.wall_width" not in found or width > found["spring.wall_width"][1]:
+                found["spring.wall_width"] = spring.where, width
+    return found
 
 
 def _excitation(top: Table, directory: Path) -> Excitation | None:

@@ -124,7 +124,7 @@ def _read_law(table: Table, between: tuple[str, str], masses: Mapping[str, float
         case "backfill":
             law = _read_backfill(table)
         case "slider":
-            law = _read_slider(table)
+            law = _read_slider(table, between, masses)
         case "series":
             law = _read_series(table)
         case _:
@@ -166,8 +166,16 @@ def _soil_behind(table: Table, wall: Mapping[str, float | None]) -> Sequence[flo
     return [math.nan] * len(_SOIL)
 
 
-def _read_slider(table: Table) -> Slider:
-    law = Slider(**read_numbers(table, Slider))
+def _read_slider(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> Slider:
+    stiffnesses = Stiffnesses(table, between, masses)
+    force = stiffnesses.force("normal_force")
+    stiffnesses.close()
+    if force is None:
+        table.report_missing("normal_force", Dimension.FORCE.accepted)
+    law = Slider(
+        normal_force=math.nan if force is None else force,
+        **read_numbers(table, Slider, "normal_force"),
+    )
     radius = table.optional_quantity("radius", Dimension.LENGTH)
     if radius is None:
         return law

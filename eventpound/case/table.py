@@ -18,6 +18,9 @@ from eventpound.basics.given import numbers_of
 from eventpound.errors import InputError
 from eventpound.units import Dimension, quantity
 
+_CONTROL = re.compile(r"[^\n\t\x20-\x7e\x80-\U0010ffff]|[\x80-\x9f]")
+"""What no text that is read by people has; lines may end."""
+
 
 @dataclass(frozen=True, slots=True)
 class CaseProblem:
@@ -158,6 +161,7 @@ class Table:
             return default or ""
         value = self.data[key]
         if isinstance(value, str) and value.strip():
+            self.require(key, not _CONTROL.search(value), f"{accepted}, no control characters")
             return value
         self.reject(key, accepted)
         return ""

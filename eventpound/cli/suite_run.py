@@ -69,13 +69,19 @@ def _orders(intensity: pd.DataFrame, table: pd.DataFrame) -> Iterator[str]:
     from eventpound.study.suite_statistics import MEASURES
 
     for demand, rows in intensity.groupby("demand", sort=False):
-        found = zip(rows["measure"], rows["rank_correlation"], rows["dispersion"], strict=True)
-        each = ", ".join(f"{name} {rank:.2f} ({spread:.2f})" for name, rank, spread in found)
-        yield f"{str(demand).split('.')[1]:<16} ordered by {each}"
-    yield "          rank correlation, in brackets the dispersion of ln u"
+        keys = ("measure", "rank_correlation", "rank_low", "rank_high", "dispersion")
+        found = zip(*(rows[key] for key in keys), strict=True)
+        each = ", ".join(_order(*row) for row in found)
+        yield f"{str(demand).removeprefix('peaks.').removesuffix('.abs_max'):<16} ordered by {each}"
+    yield "          rank correlation, its 95 % interval, in brackets the dispersion of ln u"
     same = [name for name in MEASURES if name in table and name not in set(intensity["measure"])]
     if same:
         yield f"          {', '.join(same)} the same for all records: orders nothing"
+
+
+def _order(measure: str, rank: float, low: float, high: float, spread: float) -> str:
+    within = f" [{low:.2f} to {high:.2f}]" if low < high else ""
+    return f"{measure} {rank:.2f}{within} ({spread:.2f})"
 
 
 def _keeper(folder: Path) -> Keep:

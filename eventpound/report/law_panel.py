@@ -79,12 +79,15 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
         said = "\n".join(", ".join(words[i : i + 2]) for i in range(0, len(words), 2))
     else:
         whole = reduced(law)
-        x = whole.offset + np.array([-1.0, 0.0, 1.0]) * max(1.0, 2.0 * abs(whole.offset))
+        x = whole.offset + np.array([-1.0, 0.0, 1.0]) * (3.0 * abs(whole.offset) or 1.0)
         force, _ = elastic_force(whole, x)
         pair = whole.compression, whole.extension
         said = f"k = {_stiffness(pair[0])}"
         if not isinstance(law, Linear):
             said = f"compression {_stiffness(pair[0])}\nextension {_stiffness(pair[1])}"
+        if whole.offset:
+            axes.plot(whole.offset, 0.0, ".", color="#888888", markersize=4.0)
+            said += f"\noffset {_length(abs(whole.offset))}{' (closing)' * (whole.offset < 0.0)}"
     color = PALETTE[0] if isinstance(law, Hysteretic) else PALETTE[1]
     axes.plot(x, force, color="#333333" if isinstance(law, Linear) else color, linewidth=1.2)
     axes.set_title(literal(name), fontsize=8.0)

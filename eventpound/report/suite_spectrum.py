@@ -17,6 +17,8 @@ from eventpound.study.suite_statistics import Order, groups_of, order_of, peaks_
 
 _MARKERS = "os^DvPX*"
 _WIDTH, _HEIGHT = 7.4, 3.1
+_IN_A_COLUMN, _MOST_COLUMNS, _NARROW = 4, 3, 4.6
+"""Panels one below the other, columns of them, and the width of one of several (in)."""
 
 
 @styled()
@@ -30,23 +32,30 @@ def suite_spectrum_figure(
     table : DataFrame
         As `eventpound.simulate_suite` returns it; failed records are left out.
     bodies : mapping of str to str
-        Bodies and what they are called: a panel each, from the top.
+        Bodies and what they are called: a panel each, row by row; a column for every four.
     groups : int
         Groups of T_m with the same number of records.
     title : str
         Above the figure.
     """
-    figure = new_figure(_WIDTH, 0.5 + _HEIGHT * len(bodies), title)
-    panels = figure.subplots(len(bodies), 1, squeeze=False, sharex=True).ravel()
-    for axes, (body, name) in zip(panels, bodies.items(), strict=True):
-        _draw(axes, table, body, groups)
+    columns = min(-(-len(bodies) // _IN_A_COLUMN), _MOST_COLUMNS)
+    rows = -(-len(bodies) // columns)
+    width = _WIDTH if columns == 1 else _NARROW * columns
+    figure = new_figure(width, 0.5 + _HEIGHT * rows, title)
+    panels = figure.subplots(rows, columns, squeeze=False, sharex=True).ravel()
+    for axes, (body, name) in zip(panels, bodies.items(), strict=False):
+        _draw(axes, table, body, groups, "; " if columns == 1 else "\n")
         axes.set_ylabel(rf"{literal(name)}: $u_{{\mathrm{{max}}}}$ (cm)")
-    panels[-1].set_xlabel(r"energetic length scale $L_e = a_g/\omega_g^2$ (cm)")
+    for axes in panels[len(bodies) :]:
+        axes.set_visible(False)
+    for axes in panels[: len(bodies)][-columns:]:
+        axes.set_xlabel(r"energetic length scale $L_e = a_g/\omega_g^2$ (cm)")
+        axes.tick_params(labelbottom=True)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 
 
-def _draw(axes: Axes, table: pd.DataFrame, body: str, groups: int) -> None:
+def _draw(axes: Axes, table: pd.DataFrame, body: str, groups: int, between: str) -> None:
     peaks, order = peaks_of(table, body), order_of(table, body)
     length, u = 100.0 * peaks["L_e"].to_numpy(), 100.0 * peaks["u"].to_numpy()
     periods = peaks["T_m"].to_numpy()
@@ -62,7 +71,7 @@ def _draw(axes: Axes, table: pd.DataFrame, body: str, groups: int) -> None:
     if math.isfinite(order.scatter):
         _draw_line(axes, np.array([length.min(), length.max()]), order)
     plain_logarithms(axes)
-    axes.set_title(_words(order), loc="left")
+    axes.set_title(between.join(_words(order)), loc="left")
 
 
 def _draw_line(axes: Axes, ends: Floats, order: Order) -> None:
@@ -74,7 +83,7 @@ def _draw_line(axes: Axes, ends: Floats, order: Order) -> None:
     axes.fill_between(ends, line / spread, line * spread, label="one standard deviation", **look)
 
 
-def _words(order: Order) -> str:
+def _words(order: Order) -> list[str]:
     """Numbers of a panel; what is the same for all motions has no rank and no line."""
     ranks = {
         "$L_e$": order.rank_length,
@@ -88,4 +97,4 @@ def _words(order: Order) -> str:
     if math.isfinite(order.scatter):
         factor = math.exp(order.scatter)
         words.append(f"slope {order.exponent:.2f}, scatter a factor {factor:.2f}")
-    return "; ".join(words)
+    return words

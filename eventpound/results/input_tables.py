@@ -218,6 +218,9 @@ def _motion_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if "begins" in motion:
         sizes += f", records from {', '.join(f'{begin:.6g}' for begin in motion['begins'])} s on"
     yield "motion", f"{motion['kind']}{sizes}"
+    if "file" in motion:
+        said = (motion.get(key) for key in ("event", "date", "station", "component"))
+        yield "record", ", ".join([motion["file"], *filter(None, said)])
     length = f"from {run['start']:g} s, as long as each motion says"
     if "duration" in run:
         length = f"{run['start']:g} to {run['start'] + run['duration']:.6g} s"

@@ -242,7 +242,8 @@ def _motion(case: Case) -> Row:
         row |= {"time_step": motion.time_step, "samples": motion.samples.size}
         row |= {"begins": motion.begins.tolist()} if motion.begins.size else {}
     if case.record is not None:
-        row["file"] = case.record.file
+        said = {key: getattr(case.record, key) for key in ("event", "date", "station", "component")}
+        row |= {"file": case.record.file, **{key: text for key, text in said.items() if text}}
     return row
 
 

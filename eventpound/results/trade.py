@@ -46,11 +46,12 @@ class Trade:
             next((word for word in self.chosen if word in USUAL[dimension]), word)
             for dimension, word in zip(TOLD, usual, strict=True)
         )
-        size = USUAL[Dimension.FORCE][force]
+        size, inch = USUAL[Dimension.FORCE][force], USUAL[Dimension.LENGTH]["in"]
+        energy = ("kip in", size * inch) if force == "kip" else (force.replace("N", "J"), size)
         told = {
             Dimension.FORCE: (force, size),
             Dimension.IMPULSE: (f"{force} s", size),
-            Dimension.ENERGY: (force.replace("N", "J"), size),
+            Dimension.ENERGY: energy,
             Dimension.LENGTH: (length, USUAL[Dimension.LENGTH][length]),
             Dimension.ACCELERATION: (
                 acceleration.replace("^2", "²"),

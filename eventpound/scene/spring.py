@@ -35,7 +35,9 @@ from eventpound.units import STANDARD_GRAVITY, Dimension
 
 GROUND = "ground"
 _TINY = sys.float_info.min
-_NOT_BELOW = Accepted("a stiffness >= 0 (N/m)", not_negative)
+_NOT_BELOW = Accepted(
+    "a stiffness >= 0 (N/m); P-Delta is a smaller stiffness of the storey", not_negative
+)
 _STIFF = Accepted("a positive stiffness (N/m)", above_zero)
 _LONG = Accepted("a positive length (m)", above_zero)
 _FROM_ONE = Accepted("a number >= 1", lambda law, n: n >= 1.0)

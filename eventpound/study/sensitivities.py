@@ -49,6 +49,8 @@ _COARSER = 2.0, 10.0
 """Step and tolerance of the second difference, beside those of the first."""
 _FAR = 0.01
 """Part of a derivative by which two differences of it are apart where there is none."""
+_SAMPLING = "excitation.time_step"
+"""What nobody designs: it stretches the record."""
 _SHOWN = 3
 _COUNTED = ("contacts.<contact>.impacts_faster", "contacts.<contact>.fastest_closing")
 
@@ -84,7 +86,7 @@ def sensitivities(
     to : sequence of str or mapping of str to float
         Numbers by their keys, as for `simulate_many`; in a mapping each with its step (SI, or a
         text with a unit), which one that is zero needs. Without any: all that can be varied by a
-        part of themselves. Of a case in Π-terms its terms.
+        part of themselves, but the time step of a record. Of a case in Π-terms its terms.
     rtol : float
         Relative tolerance.
     duration : float or str, optional
@@ -191,7 +193,7 @@ def _numbers(base: Base, to: Sequence[str] | Mapping[str, float | str]) -> list[
     steps = to if isinstance(to, Mapping) else {}
     numbers: list[_Number] = []
     problems: list[str] = []
-    for key in dict.fromkeys(to or there):
+    for key in dict.fromkeys(to or [key for key in there if key != _SAMPLING]):
         try:
             if key not in there:
                 meant = suggestion(key, list(there)) or f"; accepted: {', '.join(there)}"

@@ -119,12 +119,16 @@ def varies(x: Floats) -> bool:
 
 
 def _interval(rank: float, records: int) -> tuple[float, float]:
-    """95 % interval of a rank correlation; NaN for fewer than four records."""
-    if records < 4 or not abs(rank) < 1.0:
-        return (rank, rank) if records >= 4 else (float("nan"), float("nan"))
+    """95 % interval of a rank correlation; NaN for fewer than four records.
+
+    One of 1 is certain of no more than the next that so many records can have: half-way to it.
+    """
+    if records < 4:
+        return float("nan"), float("nan")
     half = _NORMAL_95 * math.sqrt(_FIELLER / (records - 3))
-    middle = math.atanh(rank)
-    return math.tanh(middle - half), math.tanh(middle + half)
+    most = 1.0 - 6.0 / (records**3 - records)
+    middle = math.atanh(max(-most, min(rank, most)))
+    return min(math.tanh(middle - half), rank), max(math.tanh(middle + half), rank)
 
 
 def peaks_of(table: pd.DataFrame, body: str) -> pd.DataFrame:

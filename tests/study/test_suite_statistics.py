@@ -100,6 +100,17 @@ def test_intervals_hold_what_they_say() -> None:
     assert 0.90 < inside / count < 0.985
 
 
+def test_five_records_in_one_order_are_not_certain() -> None:
+    """By chance 5 of 5 are in order once in 60: the interval begins near the rank that is then."""
+    table = pd.DataFrame({"failed": "", "L_e": [1.0, 2.0, 3.0, 4.0, 5.0]})
+    table["peaks.deck.abs_max"] = table["L_e"] ** 2
+    row = intensity_table(table, ["deck"]).iloc[0]
+    assert row["rank_correlation"] == pytest.approx(1.0, abs=1e-12)
+    # tanh(artanh(0.95) - 1.96 sqrt(1.06/2)), 0.95 half-way from 1 to 0.9, the next of five.
+    assert row["rank_low"] == pytest.approx(math.tanh(math.atanh(0.95) - 1.4269), abs=1e-4)
+    assert row["rank_high"] == pytest.approx(1.0, abs=1e-12)
+
+
 def test_records_without_a_mean_period_are_left_out_of_what_needs_it() -> None:
     table = pd.DataFrame(
         {
