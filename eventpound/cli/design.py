@@ -1,10 +1,10 @@
 """Give the design numbers: separation, seat, impulse, ductility, drift.
 
-Of a run, a suite or a study. For each contact: the least gap at which nothing touches there,
-where the others stay as they are and strike ("separation needed"), and where they do not; what
-codes combine from the peaks without contact; opening, seat width used, impulse. Then springs,
-storeys and bodies. Of a suite the 50 and 84 % fractiles over the records, the largest, and its
-record. What each row is: the page "design" of the documentation.
+Of a run, a suite or a study. For each joint the gap with which nothing touches anywhere
+("separation needed"). For each contact: what it takes up of that, and the gap if only this contact
+is opened; what codes combine from the peaks without contact; opening, seat width used, impulse.
+Then springs, storeys and bodies. Of a suite the 50 and 84 % fractiles over the records, the
+largest, and its record. What each row is: the page "design" of the documentation.
 
 Files, in CASE/results/design: design.pdf and design.html, a report of two pages of A4 (of a study
 one page); design.csv, a row a demand (of a study: for each combination of its axes), which a

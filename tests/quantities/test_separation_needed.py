@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -66,8 +66,7 @@ class Built:
         noise = self.rng.normal(0.0, 1.0, 180)
         smooth = np.convolve(noise, np.hanning(9) / np.hanning(9).sum(), "same")
         record = Record(4.0 * smooth / np.abs(smooth).max(), 0.02)
-        kinds = self.bodies, self.springs, self.dashpots, self.contacts, record, self.supports
-        return Scene(*map(tuple, kinds[:4]), record, tuple(self.supports))  # type: ignore[arg-type]
+        return Scene(self.bodies, self.springs, self.dashpots, self.contacts, record, self.supports)
 
 
 def building(b: Built, name: str, storeys: int, period: float) -> list[str]:
@@ -204,7 +203,7 @@ def test_many_runs_tell_it_of_their_own_gaps() -> None:
         assert many.table[name][i] == pytest.approx(one.quantity(name), rel=1e-7)
 
 
-def joined(*links: tuple[str, str], contacts: list[tuple[str, str]]) -> list[list[int]]:
+def joined(*links: tuple[str, str], contacts: list[tuple[str, str]]) -> Sequence[Sequence[int]]:
     names = sorted({n for pair in (*links, *contacts) for n in pair} - {GROUND, BARRIER})
     return joints_of(
         Scene(
