@@ -115,6 +115,13 @@ USC = Dialect(
     numbers=_pairs,
 )
 
+# A line "CHAN  1: 360 DEG     Location: Abutment 1", or of one component "COMP S58W".
+_CSMIP_CHANNEL = r"^ *(?:(?P<channel>CHAN +\d+):|COMP\b)"
+_NAME = (
+    r" *(?P<component>\S.*?) *(?:DEG\w*)?[ ,]*"
+    r"(?:Loc\w*\.?: *(?P<location>.*?) *|FROM.*|\(.*| {3,}.*)?"
+)
+
 # California Strong Motion Instrumentation Program (CSMIP, CDMG), uncorrected records of film, and
 # RENADIC (Universidad de Chile), in its layout: a head for each channel, "/&" after its pairs.
 _UNCORRECTED = r"UNCORRECTED ACCELEROGRAM\b"
@@ -128,8 +135,7 @@ CDMG = Dialect(
     patterns=(
         r"NO\. OF POINTS\s*=\s*(?P<NO_OF_POINTS>\d+)",
         r"\A.*\n(?P<event>.*)\n(?P<date>.*?)(?: {3,}.*)?\n",
-        r"^ *STATION NO.*\n *(?P<station>.*?)(?: {3,}.*)?\n *(?P<channel>CHAN +\d+): *"
-        r"(?P<component>.*?) *(?:DEG\w*)? *(?:\(.*)?$",
+        r"^ *STATION NO.*\n *(?P<station>.*?)(?: {3,}.*)?\n" + _CSMIP_CHANNEL + _NAME + "$",
         rf"\bMAX\s*=\s*(?P<peak>{NUMBER})\s+(?P<peak_units>G)\b",
     ),
     needs=(_UNITS,),
@@ -137,7 +143,7 @@ CDMG = Dialect(
     units=_UNITS,
     width=7,
     numbers=_pairs,
-    other_names=lambda head: (head.text("channel") or "",),
+    other_names=lambda head: (head.text("channel") or "", head.text("location") or ""),
 )
 
 # Building and Housing Research Centre of Iran (BHRC, ISMN): Volume I of even samples, not pairs,
@@ -192,7 +198,6 @@ _CSMIP_NUMBERS = (
         r" in units of\s+(?P<units>\S+?)\s*\.?\s+Format:\s*\(\d+f(?P<width>\d+)"
     ),
 )
-_CSMIP_CHANNEL = r"^ *(?:(?P<channel>CHAN +\d+):|COMP\b)"
 
 
 def _csmip_extents(source: Source) -> Iterator[Extent]:
@@ -222,9 +227,7 @@ CSMIP = Dialect(
     also=lambda source: line_like(source, _CSMIP_CHANNEL, 12) > 0,
     extents=_csmip_extents,
     patterns=(
-        _CSMIP_CHANNEL + r" *(?P<component>\S.*?) *(?:DEG\w*)? *"
-        r"(?:Loc\w*\.?: *(?P<location>.*?) *|FROM.*|\(.*| {3,}.*)?\n *"
-        r"(?P<event>.*?)(?: {3,}(?P<date>.*?)(?: {3,}.*)?)?$",
+        _CSMIP_CHANNEL + _NAME + r"\n *(?P<event>.*?)(?: {3,}(?P<date>.*?)(?: {3,}.*)?)?$",
         r"^ *STATION\b.*\n *(?P<station>.*?)(?: {3,}.*)?$",
         rf"PEAK ACCELERATION\s*=\s*(?P<peak>{NUMBER})\s+(?P<peak_units>CMS?/SEC/SEC|G)\b",
         rf"\bMax\s*=\s*(?P<peak>{NUMBER})\s+(?P<peak_units>g)\b",
