@@ -1,7 +1,7 @@
 """Whether certificates of the solved problems hold: true errors against the bounds stated.
 
-``python -m tests.reference.certificates [NAME ...]`` prints the table of
-docs/measured/certificates.md; its last column but one is processor time.
+``python -m tests.reference.certificates [NAME ...]`` prints a row of each, its last column but one
+processor time, and the table of docs/accuracy.md.
 
 An impact is compared with the row of its contact that is nearest in time; where the
 stored answer has several within `INSTANT` of the run, which are one problem to

@@ -12,8 +12,7 @@ from tests.reference.problems import load
 
 PROBLEMS = load()
 # Undamped, it ends on its barrier with no speed: v² errs as the energy does, and the routes'
-# tolerances of 1e-12 leave half as many digits of v; none gives seven
-# (docs/measured/certificates.md).
+# tolerances of 1e-12 leave half as many digits of v; none gives seven.
 TOUCHED = {("A10", "final.b0.v")}
 SAMPLE = ("A07", "A10", "B12", "D07", "D11", "E04")
 SLACK = 1e4
