@@ -152,15 +152,16 @@ _STEP = word_pattern(
 def _count_and_step(source: Source) -> Extent | None:
     """The shortest head that states both, where so many samples follow.
 
-    Without words a line of two such numbers is taken even if they do not follow, which is
-    refused then.
+    Where words say so, or a line has just these two numbers, it is a head even if another number
+    follows, which is refused then.
     """
-    texts = list(islice(((i, x) for i, x in enumerate(source.lines, 1) if x.strip()), 11))
-    for cut in range(1, min(_LONGEST_HEAD, len(texts) - 2) + 1):
+    written = ((i, x) for i, x in enumerate(source.lines, start=1) if x.strip())
+    texts = list(islice(written, _LONGEST_HEAD + 2))
+    for cut in range(1, len(texts) - 1):
         first, second = (_row(text) for _, text in texts[cut : cut + 2])
         if not first or not second:
             continue
-        counts, steps = _stated([text for _, text in texts[:cut]])
+        counts, steps, told = _stated([text for _, text in texts[:cut]])
         if len(steps) != 1 or not 0.0 < to_float(steps[0]) <= _LARGEST_STEP:
             continue
         line, head = texts[cut - 1]
@@ -170,7 +171,7 @@ def _count_and_step(source: Source) -> Extent | None:
         rows = (_row(x) for x in source.lines[line:])
         follow = sum(len(row) for row in rows if row) if counts else 0
         found = next((x for x in counts if to_float(x) * (1 + pairs) == follow), None)
-        if found is None and len(_row(head) or ()) == 2 == len(counts) + len(steps):
+        if (told and len(first) <= 2) or (counts and len(_row(head) or ()) == 2):
             found = counts[0]
         if found is not None:
             known = {"samples": (found, line), "step": (steps[0], line)}
@@ -178,16 +179,16 @@ def _count_and_step(source: Source) -> Extent | None:
     return None
 
 
-def _stated(head: list[str]) -> tuple[list[str], list[str]]:
-    """What may be the number of samples and the time step: by the words of a head, or its end."""
+def _stated(head: list[str]) -> tuple[list[str], list[str], bool]:
+    """What may be the number of samples and the time step, and whether words of a head say so."""
     count, step = (like.search("\n".join(head)) for like in (_COUNT, _STEP))
     if count and step:
-        return [count.group(1)], [step.group(1)]
+        return [count.group(1)], [step.group(1)], True
     numbers = _leading(head[-1])
     if len(numbers) == 1 == len(_row(head[-1]) or ()) and len(head) > 1:
         numbers += _row(head[-2]) or []
     whole = [x for x in numbers if to_float(x) >= 2.0 and to_float(x).is_integer()]
-    return whole, [x for x in numbers if x not in whole]
+    return whole, [x for x in numbers if x not in whole], False
 
 
 def _begin_again(first: str, second: str, step: float) -> bool:

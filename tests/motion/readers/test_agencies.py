@@ -184,6 +184,13 @@ def test_units_in_a_head_are_heeded(tmp_path: Path) -> None:
         read_record(file, units="g")
 
 
+def test_another_count_than_words_say_is_refused(tmp_path: Path) -> None:
+    for samples in (COLUMN, PAIRS):
+        file = written(tmp_path, f"# Number of points: 500\n# Time step: 0.01 s\n{samples}")
+        with pytest.raises(InputError, match=r"line 2 states .*samples = (500|1000)"):
+            read_record(file, units="m/s2")
+
+
 def test_a_scale_beside_a_count_and_a_step_is_not_ignored(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="3 numbers on a line"):
         read_record(written(tmp_path, f"400 0.01 9.81\n{COLUMN}"), units="m/s2", time_step=STEP)
