@@ -31,7 +31,7 @@ from eventpound.case.options import (
 )
 from eventpound.case.pi import OF_SCENE, read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
-from eventpound.case.record_scaling import large_scales
+from eventpound.case.record_scaling import large_scales, named_file
 from eventpound.case.spring_stiffness import masses_carried
 from eventpound.case.springs import read_springs
 from eventpound.case.suite import Suite, with_suite
@@ -99,7 +99,7 @@ def _factors(scene: Scene, document: Mapping[str, Any]) -> list[tuple[str, float
     tables = [document["excitation"], *(s.get("excitation") for s in document.get("support", ()))]
     motions = [scene.motion, *(support.motion for support in scene.supports)]
     return [
-        (file if isinstance(file := table["file"], str) else ", ".join(file), motion.factor)
+        (named_file(table), motion.factor)
         for table, motion in zip(tables, motions, strict=True)
         if isinstance(motion, Record) and table
     ]

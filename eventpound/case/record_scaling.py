@@ -190,6 +190,12 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
     return None if wrong else RecordScaling(scale, pga, psa, period, damping, target, at, limit)
 
 
+def named_file(excitation: Mapping[str, Any]) -> str:
+    """What ``[excitation]`` calls its record, or those of a sequence, without their folders."""
+    file = excitation["file"]
+    return ", ".join(Path(each).name for each in ([file] if isinstance(file, str) else file))
+
+
 def large_scales(factors: Sequence[tuple[str, float]], limit: float) -> str:
     """A sentence on records that are scaled by more than a limit; empty where none is.
 
@@ -213,6 +219,8 @@ def large_scales(factors: Sequence[tuple[str, float]], limit: float) -> str:
     more = f" and {len(each) - most} more" if len(each) > most else ""
     count = f"{len(over)} of {len(factors)}"
     who = f"{count} runs scale their record" if several else f"{count} records are scaled"
+    if len(factors) == 1:
+        who = "the record is scaled"
     named = ", ".join(each[:most]) + more
     return f"{who} by more than {limit:g} (largest_scale in [excitation]): {named}"
 

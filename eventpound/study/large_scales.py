@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.case.case import Case
-from eventpound.case.record_scaling import large_scales
+from eventpound.case.record_scaling import large_scales, named_file
 from eventpound.errors import InputError
 from eventpound.motion.record import Record
 from eventpound.scene.parameters import motion_with, places_of
@@ -42,8 +42,9 @@ def _factors(base: Base) -> Iterator[tuple[str, float]]:
             # Its run says so.
             continue
     if not base.records:
-        motion: Any = base.case.understood.get("excitation", {})
-        yield from ((str(motion.get("file")), f) for f in _over_axes(base))
+        excitation: Any = base.case.understood.get("excitation", {})
+        name = named_file(excitation) if "file" in excitation else base.case.title
+        yield from ((name, f) for f in _over_axes(base))
 
 
 def _over_axes(base: Base) -> Iterator[float]:

@@ -55,7 +55,7 @@ def test_a_suite_lists_its_records(
 def test_a_run_says_it_of_its_record(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     psa = 'file = "a.txt"\npsa = "3 g"\npsa_period = "T1"'
     said = told(folder, psa, "", capsys)
-    assert "1 of 1 records are scaled by more than 4 (largest_scale in [excitation])" in said
+    assert "the record is scaled by more than 4 (largest_scale in [excitation])" in said
     motion = load_case(folder).scene.motion
     assert f"a.txt times {motion.factor:.3g}" in said  # type: ignore[attr-defined]
     assert told(folder, f"{psa}\nlargest_scale = 1e6", "", capsys) == ""
