@@ -49,6 +49,8 @@ STILL_GAP_RATE = 1e-9
 """Part of L/T below which a gap rate of a method with fixed steps counts as none."""
 BALANCE = 1e-12
 """Part of L/T that the balance of momentum of such a step may miss."""
+AT_REST = 1e-10
+"""Part of L, or L/T, up to which a motion is rest: none of its digits is asked for."""
 NO_SPEED = 1e-30
 """Part of L/T that is none at all."""
 

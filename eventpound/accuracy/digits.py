@@ -18,6 +18,7 @@ import numpy as np
 
 from eventpound.accuracy.bound import SAFETY
 from eventpound.accuracy.conditioning import LARGE
+from eventpound.accuracy.quantities import own_scale
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import History
 from eventpound.tolerances import EPS
@@ -61,7 +62,12 @@ def positions(history: History, times: Floats) -> Floats:
 
 
 def digits_over_time(
-    times: Floats, reference: Floats, loose: Floats, others: Sequence[Floats], growth: Floats
+    times: Floats,
+    reference: Floats,
+    loose: Floats,
+    others: Sequence[Floats],
+    growth: Floats,
+    of_scene: float,
 ) -> DigitsOverTime:
     """Digits and amplification in equal stretches of time.
 
@@ -75,8 +81,10 @@ def digits_over_time(
         Those of independent routes.
     growth : ndarray, shape (m,)
         Largest change of any displacement where inputs change by `LARGE` (m).
+    of_scene : float
+        Length that is L where no displacement is more than rounding (m).
     """
-    length = float(np.max(np.abs(reference), initial=0.0)) or 1.0
+    length = float(own_scale(np.max(np.abs(reference), initial=0.0), of_scene))
     error = SAFETY * np.max(np.abs(reference - loose), axis=1)
     if others:
         apart = [np.max(np.abs(reference - other), axis=1) for other in others]

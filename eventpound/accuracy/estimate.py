@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.accuracy.judge import INDEPENDENT, judge_of, task_of_judge
-from eventpound.accuracy.quantities import quantities_of, values_of
+from eventpound.accuracy.quantities import own_scale, quantities_of, scales_of_task, values_of
 from eventpound.accuracy.sequences import KINDS, instead_of, parted, weights_for
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.numerics.arrays import Floats
@@ -157,12 +157,15 @@ def rests_of_both(
     return [_Rests(*numbers) for numbers in zip(*counts, *times, strict=True)]
 
 
-def impacts_apart(ours: Sequence[Event], theirs: Sequence[Event], contacts: int) -> Floats:
+def impacts_apart(
+    ours: Sequence[Event], theirs: Sequence[Event], contacts: int, of_scene: float
+) -> Floats:
     """How far the impacts of two runs differ at each contact, shape (K,).
 
     The largest difference of the closing speeds of the fastest impacts of either run, of the
-    second fastest and so on, in parts of the fastest of all; an impact that only one run has
-    differs by its speed. An order in time would shift with each soft impact more or less.
+    second fastest and so on, in parts of the fastest of all, or of the speed `of_scene` (m/s) where
+    none is more than rounding; an impact that only one run has differs by its speed. An order in
+    time would shift with each soft impact more or less.
     """
     speeds = [_closing_speeds(events, contacts) for events in (ours, theirs)]
     apart, fastest = np.zeros(contacts), 0.0
@@ -171,7 +174,7 @@ def impacts_apart(ours: Sequence[Event], theirs: Sequence[Event], contacts: int)
         if more.size:
             fastest = max(fastest, more[-1], *fewer[-1:])
             apart[j] = np.abs(more - np.pad(fewer, (more.size - fewer.size, 0))).max()
-    return apart / fastest if fastest > 0.0 else apart
+    return np.asarray(apart / own_scale(fastest, of_scene))
 
 
 def _closing_speeds(events: Sequence[Event], contacts: int) -> list[Floats]:
@@ -230,7 +233,8 @@ def _doubts(response: Response, others: Sequence[Event], paired: Paired, by: str
                 f"{names[j]} rests for {found.our_time:.6g} s in all, "
                 f"by {by} for {found.their_time:.6g} s"
             )
-    for j, part in enumerate(impacts_apart(ours, others, len(names))):
+    speed = scales_of_task(task).speed
+    for j, part in enumerate(impacts_apart(ours, others, len(names), speed)):
         if part > allowed and j not in partings:
             yield (
                 f"impacts at {names[j]} have other speeds than by {by}, "

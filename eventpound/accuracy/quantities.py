@@ -10,7 +10,8 @@ The scale of a quantity is what its error is divided by and its digits are count
 displacement the largest one of its body (not the peak itself, since a body that hardly moves to
 the left has a smallest displacement near zero), of a velocity the largest sampled one of its body,
 of a time the length of the run, of z its bound, of a gap's speed the largest speed there is, of an
-impulse what stops the lighter body from that speed.
+impulse what stops the lighter body from that speed. What is zero but for rounding has no scale of
+its own, and that of the scene is taken. Friction that is not unique is no quantity.
 """
 
 from __future__ import annotations
@@ -23,10 +24,12 @@ import numpy as np
 from eventpound.accuracy.sequences import SOFT, loudness, stands_by
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import lowered
+from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
 from eventpound.score.difference import Difference, MotionScales, ScaledValue, Truth, difference
 from eventpound.solvers.base import ENDS_OF_REST, EventKind, History, Recording, Task
 from eventpound.solvers.events.scales import SceneScales, scene_scales, z_size
+from eventpound.tolerances import AT_REST
 
 PEAKS, FINAL = "peaks", "final"
 """First part of the name of a quantity."""
@@ -41,16 +44,24 @@ def scales_of_task(task: Task) -> SceneScales:
     return scene_scales(scene, assemble(scene), task.end - task.start)
 
 
-def motion_scales(task: Task, recording: Recording) -> MotionScales:
-    """Scales of a motion: its own largest displacements and speeds.
+def own_scale(own: Any, of_scene: float) -> Floats:
+    """Scales of what has some of its own; those of the scene where these are but rounding."""
+    return np.where(own > AT_REST * of_scene, own, of_scene)
 
-    Of bodies that never move those of the scene.
+
+def motion_scales(task: Task, recording: Recording) -> MotionScales:
+    """Scales of a motion: its own largest displacements and speeds, and the bounds of z.
+
+    inf for a z that is not unique, of which no difference counts.
     """
     x, scene = recording.displacement, scales_of_task(task)
     u = np.maximum(np.abs(x.maximum), np.abs(x.minimum))
     v = np.abs(recording.history.v).max(axis=0)
-    u, v = np.where(u > 0.0, u, scene.length), np.where(v > 0.0, v, scene.length / scene.time)
-    return MotionScales(scene.time, u, v, z_size(scene.z_bound))
+    z = z_size(scene.z_bound)
+    if recording.unique_z is not None:
+        z = np.where(recording.unique_z, z, np.inf)
+    u, v = own_scale(u, scene.length), own_scale(v, scene.speed)
+    return MotionScales(scene.time, u, v, z)
 
 
 def values_of(
@@ -99,7 +110,7 @@ def quantities_of(
         ScaledValue(name, float(value), float(by_unit[unit][i]), unit)
         for name, value, unit, i in _stated(scene, recording, moments)
     ]
-    return [*found, *(_of_events(scene, recording, duration) if events else ())]
+    return [*found, *(_of_events(task, recording) if events else ())]
 
 
 def _stated(
@@ -116,7 +127,8 @@ def _stated(
         yield f"{FINAL}.{body.name}.u", recording.u[i], "m", i
         yield f"{FINAL}.{body.name}.v", recording.v[i], "m/s", i
     for i, (spring, name) in enumerate(scene.memory):
-        yield f"{FINAL}.{spring}.{name}", recording.z[i], "", i
+        if recording.unique_z is None or recording.unique_z[i]:
+            yield f"{FINAL}.{spring}.{name}", recording.z[i], "", i
     for k, moment in enumerate(moments):
         for i, body in enumerate(scene.bodies):
             yield f"history.{k}.{body.name}", np.interp(moment, history.t, history.u[:, i]), "m", i
@@ -134,10 +146,11 @@ def largest_speed(recording: Recording) -> float:
     return max(fastest, float(np.max(np.abs(recording.history.v), initial=0.0)))
 
 
-def _of_events(scene: Scene, recording: Recording, duration: float) -> list[ScaledValue]:
+def _of_events(task: Task, recording: Recording) -> list[ScaledValue]:
+    scene, duration = task.scene, task.end - task.start
     loud = loudness(recording.events)
     fastest = float(np.max(loud, initial=0.0))
-    speed = largest_speed(recording) or 1.0
+    speed = float(own_scale(largest_speed(recording), scales_of_task(task).speed))
     mass = {body.name: body.mass for body in scene.bodies}
     found = []
     for row, event in enumerate(recording.events[:MOST_EVENTS]):

@@ -14,7 +14,7 @@ from eventpound.accuracy.certified_quantities import certified_quantities
 from eventpound.accuracy.conditioning import Conditioning, conditioning
 from eventpound.accuracy.digits import DigitsOverTime, digits_over_time, positions
 from eventpound.accuracy.near_misses import grazes, near_misses
-from eventpound.accuracy.quantities import MOST_EVENTS
+from eventpound.accuracy.quantities import MOST_EVENTS, scales_of_task
 from eventpound.accuracy.routes import (
     TIGHTEST,
     RouteFailure,
@@ -256,6 +256,7 @@ def _digits(task: Task, found: RoutesCompared, conditions: Conditioning) -> Digi
             if other
         ],
         conditions.growth,
+        scales_of_task(task).length,
     )
 
 

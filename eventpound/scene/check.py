@@ -21,7 +21,7 @@ from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, DegradingBoucWen, Law, Series, Slider
 from eventpound.scene.support_drift import starts_of_supports
-from eventpound.tolerances import EPS
+from eventpound.tolerances import EPS, PENETRATED
 
 _KEYS = {word: f"initial.{word}" for word in ("displacement", "velocity")}
 """What a case calls numbers that it does not call by their fields."""
@@ -275,18 +275,20 @@ def _overlaps(scene: Scene, start: float) -> dict[int, float]:
     displacements |= {BARRIER: 0.0, GROUND: 0.0, **starts_of_supports(scene, start)}
     # Bodies at rest on each other stand at sums of the coordinates and gaps of their row.
     largest = max((abs(contact.gap) for contact in scene.contacts), default=0.0)
-    largest += 2.0 * max(map(abs, displacements.values())) + _scale_of_supports(scene)
+    largest += 2.0 * max(map(abs, displacements.values()))
+    rounding = 4.0 * math.ulp(1.0) * largest + PENETRATED * _scale_of_motions(scene)
     found = {}
     for i, contact in enumerate(scene.contacts):
         gap = float(opening(contact, contact.gap, displacements))
-        if contact.law is None and gap < -4.0 * math.ulp(1.0) * largest:
+        if contact.law is None and gap < -rounding:
             found[i] = gap
     return found
 
 
-def _scale_of_supports(scene: Scene) -> float:
-    """Length of which the way of a support before the start, as in a tail, is rounding (m)."""
-    scales = [support.moved_by(scene.motion).scales() for support in scene.supports]
+def _scale_of_motions(scene: Scene) -> float:
+    """Length of which what a motion left, or the way of a support in a tail, is rounding (m)."""
+    moved = [support.moved_by(scene.motion) for support in scene.supports]
+    scales = [motion.scales() for motion in (scene.motion, *moved)]
     return max((each.length for each in scales if each is not None), default=0.0)
 
 

@@ -292,6 +292,9 @@ class Recording:
         Largest value of each gap (m).
     sticks : tuple of Stick
         Of sliders, in order of time.
+    unique_z : ndarray of bool, shape (H,), optional
+        False for the z of a slider whose friction was, at some time, not unique; None where the
+        scene has no sliders.
     """
 
     success: bool
@@ -318,6 +321,7 @@ class Recording:
     integrated: float | None = None
     largest_gap: Floats | None = None
     sticks: tuple[Stick, ...] = ()
+    unique_z: np.ndarray | None = None
 
 
 class ReadyTask(Protocol):

@@ -19,6 +19,7 @@ def test_digits_fall_with_a_growing_error():
         still + error[:, np.newaxis],
         [still + 3.0 * error[:, np.newaxis], still - 1.0],
         LARGE * np.exp(t),
+        1.0,
     )
     assert found.t.size == found.digits.size == found.amplification.size == WINDOWS
     assert (found.start, found.t[-1]) == (1.0, 11.0)
@@ -31,7 +32,7 @@ def test_digits_fall_with_a_growing_error():
 def test_a_steady_motion_loses_none():
     t = np.linspace(0.0, 1.0, 101)
     still = np.ones((t.size, 2))
-    found = digits_over_time(t, still, still, [], np.zeros(t.size))
+    found = digits_over_time(t, still, still, [], np.zeros(t.size), 1.0)
     # Nothing tells more digits than a double has.
     assert np.all(found.digits == pytest.approx(-np.log10(np.finfo(float).eps)))
     assert found.lost_from is None

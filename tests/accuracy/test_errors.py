@@ -10,7 +10,14 @@ import numpy as np
 import pytest
 
 from eventpound import load_case
-from eventpound.accuracy.quantities import FINAL, PEAKS, errors_of
+from eventpound.accuracy.quantities import (
+    FINAL,
+    PEAKS,
+    errors_of,
+    motion_scales,
+    scales_of_task,
+    truth_of,
+)
 from eventpound.accuracy.reference import StatedBounds, reference_of
 from eventpound.errors import InputError
 from eventpound.score.difference import ScaledValue
@@ -123,3 +130,29 @@ def test_a_certificate_beside_a_run_that_nothing_checked(tmp_path, off, taken) -
     else:
         with pytest.raises(InputError, match="run eventpound verify again"):
             stated.instead_of([own])
+
+
+def test_friction_that_is_not_unique_is_not_judged(pair):
+    case, reference = pair
+    shared = replace(reference.recording, unique_z=np.array([False, True]))
+    truth = truth_of(reference.task, shared)
+    z = shared.history.z + np.array([0.5, 0.0])
+    other = replace(shared, z=z[-1], history=replace(shared.history, z=z))
+    errors = errors_of(case.scene, other, truth, shared.history)
+    assert "final.flexible-piers.z" not in [q.quantity.name for q in errors.quantities]
+    assert errors.largest(FINAL) == errors.distance.graph == errors.distance.sup == 0.0
+
+
+def test_what_rounding_alone_moves_has_the_scales_of_the_scene(pair):
+    r, task = pair[1].recording, pair[1].task
+    scale, own = scales_of_task(task), motion_scales(task, r)
+    tiny = np.array([1e-15, 1.0])
+    x, h = r.displacement, r.history
+    still = replace(
+        r,
+        displacement=replace(x, maximum=x.maximum * tiny, minimum=x.minimum * tiny),
+        history=replace(h, u=h.u * tiny, v=h.v * tiny),
+    )
+    found = motion_scales(task, still)
+    assert found.u == pytest.approx([scale.length, own.u[1]], rel=1e-15)
+    assert found.v == pytest.approx([scale.speed, own.v[1]], rel=1e-15)

@@ -190,6 +190,23 @@ def test_a_case_that_no_tolerance_tells_warns_without_fast(name, monkeypatch):
     assert found["warnings"]
 
 
+def test_a_body_at_rest_is_no_doubt(tmp_path: Path) -> None:
+    # Its velocities are the rounding of a balance of forces.
+    text = """
+        excitation = { kind = "none" }
+        body = [{ name = "joint", mass = 1e3 }]
+        spring = [{ between = ["ground", "joint"], law = "linear", stiffness = 330e6 }]
+        force = [{ body = "joint", value = 700e3 }]
+        run = { start = "equilibrium", duration = 0.1 }
+        """
+    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+    response = simulate(load_case(tmp_path))
+    assert 0.0 < response.history["v.joint"].abs().max() < 1e-14
+    errors = estimate_errors(response)
+    assert errors["warnings"] == []
+    assert errors["largest"]["part"] < 1e-12
+
+
 def test_a_value_that_the_tolerance_does_not_tell_is_a_warning(monkeypatch):
     """A judge that errs by a thousandth of the motion."""
     response = simulate(WALL, "cvode", 1e-9, duration=4.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -237,6 +238,9 @@ def test_a_warning_names_what_was_asked_and_what_helps(monkeypatch: pytest.Monke
     assert [each.filename for each in warned] == [__file__]
     with pytest.warns(AccuracyWarning, match="some 1.40e-09 of its size, not to 1e-09"):
         rows.warn_unsettled("velocity.a.*", 1.4e-9, 1e-9)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rows.warn_unsettled("velocity.a.*", 1.004e-9, 1e-9)
     assert response.quantity("contacts.joint.largest_gap")
     monkeypatch.setattr(rows, "MOST_ROWS", 1)
     response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)

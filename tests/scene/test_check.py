@@ -107,6 +107,17 @@ def test_rounding_of_a_row_is_no_penetration() -> None:
         check_scene(scene(1e-15))
 
 
+def test_rounding_of_what_a_motion_left_is_no_penetration() -> None:
+    # Bodies that came to rest where they began, without gaps: nothing else has a length.
+    def scene(overlap: float) -> Scene:
+        contacts = (Contact("wall", "a", "barrier", 0.0, 0.5),)
+        return Scene((Body("a", 1.0, overlap),), contacts=contacts, motion=Sine(3.0, 0.5))
+
+    check_scene(scene(1e-16))
+    with pytest.raises(InputError, match="not penetrated"):
+        check_scene(scene(1e-13))
+
+
 def test_bound_of_z() -> None:
     # (beta + gamma)^(-1/n) = 0.25^(-1/2) = 2
     law = replace(BOUC_WEN, beta=0.1, gamma=0.15, exponent=2.0, initial_z=-2.0)

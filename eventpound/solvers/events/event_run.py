@@ -168,8 +168,6 @@ class EventRun:
             else:
                 unique = unique_forces(mode.clusters, model.left, model.right)
             self.unique_forces[mode.clusters.resting] &= unique
-            # Those of sliders are no part of what the history is told.
-            self.unique_forces[model.own_contacts :] = True
 
     def check_held(self) -> None:
         """See that what the forces of others are to keep closed is closed.

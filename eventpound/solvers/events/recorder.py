@@ -184,8 +184,10 @@ def history_of(rows: Floats, unique: Bools, model: Model) -> History:
         rows = np.delete(rows, again, axis=0)
     t, ground, *others = columns_of(rows, model)
     history = History(t[:, 0], ground[:, 0], *others)
-    if not unique.all():
-        press_locked(history.gap, history.contact_force, unique, model)
+    if not unique[: model.own_contacts].all():
+        # Those of sliders are no part of what is told.
+        own = np.arange(unique.size) < model.own_contacts
+        press_locked(history.gap, history.contact_force, unique | ~own, model)
     return history
 
 
@@ -222,7 +224,8 @@ def own_recording(recording: Recording, model: Model) -> Recording:
         return recording
     own = model.own_contacts
     h, laws, z = recording.history, recording.laws, recording.z.copy()
-    of_sliders = model.z_of_link[model.sliders]
+    of_sliders, unique_z = model.z_of_link[model.sliders], np.ones(z.size, np.bool_)
+    unique_z[of_sliders] = recording.unique_forces[own:]
     if h.t.size > 0:
         z[of_sliders] = h.z[-1, of_sliders]
     if laws is not None:
@@ -243,6 +246,7 @@ def own_recording(recording: Recording, model: Model) -> Recording:
         resting_time=recording.resting_time[:own],
         max_force=recording.max_force[:own],
         unique_forces=recording.unique_forces[:own],
+        unique_z=unique_z,
         laws=laws,
     )
 

@@ -96,7 +96,7 @@ def _form(run: FastRun) -> tuple[int, int]:
     edges = clusters.elimination.shape[0]
     for row in range(edges):
         copy_numbers(clusters.elimination[row], series.elimination[row])
-    unique, locked, sliders = unique_forces(clusters, left, right), clusters.locked, 0
+    unique, locked = unique_forces(clusters, left, right), clusters.locked
     if any_slider(run):
         sliders = run.plan.links.sliders.size
         rests = left, right, contacts.gap, state.resting
@@ -104,9 +104,7 @@ def _form(run: FastRun) -> tuple[int, int]:
     for i in range(clusters.resting.size):
         j = clusters.resting[i]
         state.unlocked[j] = not (locked[i] or clusters.redundant[i])
-        # Forces of sliders are no part of what is told.
-        if j < state.gap.size - sliders:
-            run.record.unique[j] &= unique[i]
+        run.record.unique[j] &= unique[i]
     put_as_one(clusters.of_body, np.zeros(bodies), mass, state.v)
     return clusters.count, edges
 

@@ -248,7 +248,7 @@ class Arrays:
         # Elsewhere no impact can come at once.
         if any(model.v0.tolist()):
             rows = np.vstack((lines_before(task, model, scales), rows))
-        unique = record.unique
+        unique = record.unique[: model.own_contacts].tolist()
         return Left(
             (*task.scene.contacts, *(task.scene.springs[a] for a in model.sliders)),
             model,
@@ -257,7 +257,7 @@ class Arrays:
             run.plan.hysteresis,
             events,
             rows,
-            None if all(unique.tolist()) else history_of(rows, unique.copy(), model),
+            None if all(unique) else history_of(rows, record.unique.copy(), model),
             energy,
             clock.seconds,
             clock.compilation,
