@@ -74,7 +74,7 @@ _COMMENTS = word_pattern(r"\s*(\d+)\s+Comment line")
 _COSMOS_NUMBERS = word_pattern(
     rf"\s*(?P<pts>\d+)\s+(?P<kind>.*?)\W*\b(?:pts|points)\b"
     rf"(?:.*?approx\w*\W*(?P<length>{NUMBER})\s*sec)?"
-    r".*?units\s*[=:]?\s*(?P<units>[^,.(\s]+)"
+    r"(?:(?!approx).)*?units\s*[=:]?\s*(?P<units>[^,.(\s]+)"
     r"(?:.*?Format\s*[=:]?\s*\(\s*\d*[FEGI](?P<width>\d+))?"
 )
 _AZIMUTH_AT, _UNKNOWN = 53, -999.0

@@ -278,7 +278,7 @@ def csmnc(a: Floats, dt: float) -> Written:
         "SITE CONDITION: ROCK",
         "INSTRUMENT TYPE: NONE",
         "OBSERVING POINT: GROUND",
-        "COMP. EW",
+        "COMP. NS",
         "UNCORRECTED ACCELERATION          UNIT: CM/SEC/SEC",
         f"NO. OF POINTS: {a.size:6d}  EQUALLY SPACED INTERVALS OF:  {dt:5.3f}  SEC",
         f"PEAK VALUE:  {100 * a[np.argmax(np.abs(a))]:10.3f}   AT   1.00 SEC    DURATION:  9 SEC",
@@ -286,7 +286,7 @@ def csmnc(a: Floats, dt: float) -> Written:
         "CSMNC",
         "",
     ]
-    return Written("\n".join(head) + "\n" + rows(100.0 * a, 8, "14.6E"), 0.5e-6 * 2.5, ("EW",))
+    return Written("\n".join(head) + "\n" + rows(100.0 * a, 8, "14.6E"), 0.5e-6 * 2.5, ("NS",))
 
 
 def slist(a: Floats, dt: float) -> Written:
