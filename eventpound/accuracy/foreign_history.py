@@ -26,7 +26,7 @@ from eventpound.mechanics.supported import lowered, moving_supports, support_mot
 from eventpound.motion.readers.base import Source
 from eventpound.motion.readers.numbers import HALF_A_DIGIT
 from eventpound.motion.readers.time_column import even_step, resolution
-from eventpound.motion.readers.titles import Kind, title_of
+from eventpound.motion.readers.titles import Content, title_of
 from eventpound.numerics.arrays import Floats
 from eventpound.score.answer import Motion, columns_of, place_of, read_motion
 from eventpound.score.difference import Difference
@@ -119,17 +119,17 @@ def read_foreign(case: Case, path: Path, columns: Mapping[str, str | int]) -> Fo
 def _in_si(path: Path, motion: Motion, called: Mapping[str, str], bodies: list[str]) -> Motion:
     """A motion in the units that the titles of mapped columns say, at even times if they are."""
 
-    def factor(ours: str, kind: Kind) -> float:
+    def factor(ours: str, kind: Content) -> float:
         title = title_of(called.get(ours, ""))
         if title.unit is not None and title.kind is not kind:
             raise InputError(f"{path}: column '{title.text}' is no {ours}, which is {kind.value}")
         return title.factor
 
-    t = _even(factor("t", Kind.TIME) * motion.t)
-    u = motion.u * [factor(f"u.{body}", Kind.DISPLACEMENT) for body in bodies]
+    t = _even(factor("t", Content.TIME) * motion.t)
+    u = motion.u * [factor(f"u.{body}", Content.DISPLACEMENT) for body in bodies]
     v = motion.v
     if v is not None:
-        v = v * [factor(f"v.{body}", Kind.VELOCITY) for body in bodies]
+        v = v * [factor(f"v.{body}", Content.VELOCITY) for body in bodies]
     return replace(motion, t=t, u=u, v=v)
 
 

@@ -19,7 +19,7 @@ from eventpound.motion.readers import Given
 from eventpound.motion.readers.base import load
 from eventpound.motion.readers.columns import table_of
 from eventpound.motion.readers.time_column import even_step
-from eventpound.motion.readers.titles import Kind
+from eventpound.motion.readers.titles import Content
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.force import Force, constant_force
 from eventpound.scene.support import Support
@@ -257,7 +257,7 @@ def read_force(path: Path) -> tuple[float, float, Floats]:
         raise source.error(rows.lines[0], f"found {rows.width} columns; {accepted}")
     time, force = times[0], 1 - times[0]
     title = table.titles[force]
-    if title.kind not in (None, Kind.FORCE):
+    if title.kind not in (None, Content.FORCE):
         raise source.error(rows.lines[0] - 1, f"'{title.text}' is no force but {title.kind.value}")
     unit = table.titles[time].factor
     step = even_step(source, rows.column_texts(time), rows.lines, table.stated.time_step, unit)

@@ -35,7 +35,7 @@ from eventpound.motion.readers.rows import (
     runs_along_lines,
 )
 from eventpound.motion.readers.time_column import even_step, increases
-from eventpound.motion.readers.titles import Kind, Title, titles_of
+from eventpound.motion.readers.titles import Content, Title, titles_of
 from eventpound.numerics.arrays import Floats
 
 _LEADING_CONSTANT = 10.0
@@ -48,7 +48,7 @@ def _detect(source: Source) -> bool:
 
 
 @dataclass(frozen=True)
-class Table:
+class ColumnTable:
     """Rows of samples, the titles of their columns, and what stands before them.
 
     Parameters
@@ -72,7 +72,7 @@ class Table:
     def times(self) -> list[int]:
         """Columns of times: those that titles call so, else the first if it goes up."""
         width = self.rows.width
-        titled = [i for i, title in enumerate(self.titles) if title.kind is Kind.TIME]
+        titled = [i for i, title in enumerate(self.titles) if title.kind is Content.TIME]
         if titled or width == 1 or self.titles[0].kind is not None:
             return titled if width > 1 else []
         untitled = width == 2 and not self.titles[0].text
@@ -85,10 +85,10 @@ class Table:
         return [i for i, kind in kinds if kind not in _OTHERS and i not in self.times]
 
 
-_OTHERS = (Kind.VELOCITY, Kind.DISPLACEMENT, Kind.FORCE)
+_OTHERS = (Content.VELOCITY, Content.DISPLACEMENT, Content.FORCE)
 
 
-def table_of(source: Source, given: Given) -> Table:
+def table_of(source: Source, given: Given) -> ColumnTable:
     """What stands in a file, as far as its numbers can be read.
 
     Raises
@@ -98,7 +98,7 @@ def table_of(source: Source, given: Given) -> Table:
     """
     rows = read_rows(source)
     if rows.bad:
-        return Table(rows, [Title()] * rows.width)
+        return ColumnTable(rows, [Title()] * rows.width)
     rows, stated, notes = without_head(source, rows, given.time_step)
     before = [COMMENT.sub("", line) for line in rows.before[-2:]]
     titles = titles_of(before, rows.width)
@@ -111,7 +111,7 @@ def table_of(source: Source, given: Given) -> Table:
             rows = rows.without_column(index)
             titles = titles[:index] + titles[index + 1 :]
             notes += (f"column {index + 1} counts the rows",)
-    return Table(rows, titles, stated, notes + _passed_over(rows))
+    return ColumnTable(rows, titles, stated, notes + _passed_over(rows))
 
 
 def _counts_rows(source: Source, rows: NumberRows, index: int, title: Title, given: Given) -> bool:
@@ -122,7 +122,7 @@ def _counts_rows(source: Source, rows: NumberRows, index: int, title: Title, giv
     UnstatedError
         Where it may be seconds as well.
     """
-    if title.kind is Kind.COUNT:
+    if title.kind is Content.COUNT:
         texts = rows.column_texts(index)
         return increases(texts) and all(text.isdecimal() for text in texts)
     if title.kind is not None or index not in (0, rows.width - 1) or not counts(rows, index):
@@ -204,7 +204,7 @@ OPENSEES = Reader("opensees", _detect_along_lines, _channels_along_lines)
 
 
 def read_column(
-    source: Source, given: Given, table: Table, column: int, name: str | None
+    source: Source, given: Given, table: ColumnTable, column: int, name: str | None
 ) -> RecordData:
     """One column of a table.
 
@@ -212,7 +212,7 @@ def read_column(
     ----------
     source, given : Source, Given
         The file, and what the caller says.
-    table : Table
+    table : ColumnTable
         What stands in it.
     column : int
         Which of its columns.

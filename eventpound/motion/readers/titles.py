@@ -16,7 +16,7 @@ from eventpound.motion.readers.header import unit_factor
 from eventpound.units import STANDARD_GRAVITY, Dimension, quantity
 
 
-class Kind(Enum):
+class Content(Enum):
     """What a column holds; the value is what messages call it."""
 
     TIME = "a time"
@@ -28,17 +28,17 @@ class Kind(Enum):
 
 
 _NAMES = {
-    Kind.TIME: r"t|([a-z]+\W*)?times?(\W+(of|since|from|after)\b.*)?|date|timestamp|datetime|clock|"
-    r"zeit|temps|tiempo|tempo",
-    Kind.COUNT: r"(data)?\W*(samples?|index|idx|i|n|no|nr|num|number|points?|pts?|row|record|rec|"
-    r"step|scan|id|count)?\W*(no|nr|num|number|index|id|#)?",
-    Kind.ACCELERATION: r"(.*[^a-z])?acc(el.*|[^a-z].*)?|a_?g|a([^a-z].*)?",
-    Kind.VELOCITY: r"(.*[^a-z])?vel(oc.*|[^a-z].*)?",
-    Kind.DISPLACEMENT: r"(.*[^a-z])?dis(pl?|placem.*)?([^a-z].*)?",
-    Kind.FORCE: r"(.*[^a-z])?(force|load)s?|f|p",
+    Content.TIME: r"t|([a-z]+\W*)?times?(\W+(of|since|from|after)\b.*)?|date|timestamp|datetime|"
+    r"clock|zeit|temps|tiempo|tempo",
+    Content.COUNT: r"(data)?\W*(samples?|index|idx|i|n|no|nr|num|number|points?|pts?|row|record|"
+    r"rec|step|scan|id|count)?\W*(no|nr|num|number|index|id|#)?",
+    Content.ACCELERATION: r"(.*[^a-z])?acc(el.*|[^a-z].*)?|a_?g|a([^a-z].*)?",
+    Content.VELOCITY: r"(.*[^a-z])?vel(oc.*|[^a-z].*)?",
+    Content.DISPLACEMENT: r"(.*[^a-z])?dis(pl?|placem.*)?([^a-z].*)?",
+    Content.FORCE: r"(.*[^a-z])?(force|load)s?|f|p",
 }
 """What they are called, each with everything before a unit."""
-_BESIDE_ACCELERATION = {"v": Kind.VELOCITY, "d": Kind.DISPLACEMENT, "u": Kind.DISPLACEMENT}
+_BESIDE_ACCELERATION = {"v": Content.VELOCITY, "d": Content.DISPLACEMENT, "u": Content.DISPLACEMENT}
 """Letters with which names begin that are components elsewhere (V is vertical)."""
 _LETTER = re.compile(r"([vdu])([^a-z].*)?", re.IGNORECASE)
 _SECONDS = {
@@ -80,7 +80,7 @@ class Title:
         As printed.
     name : str
         Without its unit.
-    kind : Kind or None
+    kind : Content or None
         What is in the column; None where the title does not say.
     unit : str or None
         As printed; None where there is none that is known.
@@ -90,7 +90,7 @@ class Title:
 
     text: str = ""
     name: str = ""
-    kind: Kind | None = None
+    kind: Content | None = None
     unit: str | None = None
     factor: float = 1.0
 
@@ -138,7 +138,7 @@ def titles_of(lines: list[str], width: int) -> list[Title] | None:
         # A line of names, and one of units below it.
         bare = [text.strip("()[]{}<> ") for text in found]
         titles = [title_of(f"{name} [{unit}]") for name, unit in zip(above, bare, strict=True)]
-    if any(title.kind is Kind.ACCELERATION for title in titles):
+    if any(title.kind is Content.ACCELERATION for title in titles):
         for i, title in enumerate(titles):
             if title.kind is None and (letter := _LETTER.fullmatch(title.name)):
                 titles[i] = replace(title, kind=_BESIDE_ACCELERATION[letter.group(1).lower()])
@@ -157,7 +157,7 @@ def _fields(line: str, width: int) -> list[str] | None:
     return None
 
 
-def _kind_of(name: str) -> Kind | None:
+def _kind_of(name: str) -> Content | None:
     """What a name says is in its column."""
     plain = name.strip(" .:").lower()
     if not plain:
@@ -165,12 +165,12 @@ def _kind_of(name: str) -> Kind | None:
     return next((kind for kind, like in _NAMES.items() if re.fullmatch(like, plain)), None)
 
 
-def _measured(unit: str, named: Kind | None) -> tuple[Kind, float] | None:
+def _measured(unit: str, named: Content | None) -> tuple[Content, float] | None:
     """What is measured in a unit, and its SI value; None for what is no unit."""
     plain = re.sub(r"[\s*^.'’]", "", unit.lower()).replace("²", "2").replace("_", "/")
-    if plain in _SECONDS and named in (None, Kind.TIME):
-        return Kind.TIME, _SECONDS[plain]
-    if named is Kind.FORCE:
+    if plain in _SECONDS and named in (None, Content.TIME):
+        return Content.TIME, _SECONDS[plain]
+    if named is Content.FORCE:
         try:
             return named, quantity(f"1 {unit}", Dimension.FORCE)
         except InputError:
@@ -179,8 +179,8 @@ def _measured(unit: str, named: Kind | None) -> tuple[Kind, float] | None:
     plain = re.sub(r"(?<=[mnt])/?s-?2", "/s2", plain)
     factor = _ACCELERATIONS.get(plain) or unit_factor(plain)
     if factor is not None:
-        return Kind.ACCELERATION, factor
+        return Content.ACCELERATION, factor
     length, slash, per = plain.partition("/")
     if length in _LENGTHS and per == ("s" if slash else ""):
-        return (Kind.VELOCITY if slash else Kind.DISPLACEMENT), _LENGTHS[length]
+        return (Content.VELOCITY if slash else Content.DISPLACEMENT), _LENGTHS[length]
     return None
