@@ -126,7 +126,7 @@ def _least_step(times: Floats, width: float) -> float | None:
         most, least = int(np.argmax(rest)), int(np.argmin(rest))
         if rest[most] - rest[least] <= width + rounding:
             return h
-        if most < least:
+        if most <= least:
             return None
         higher = float(times[most] - times[least] - width) / (most - least)
         if not higher > h:
