@@ -65,7 +65,8 @@ def response() -> Response:
 
 
 def test_every_public_name_is_listed_and_there() -> None:
-    assert set(eventpound.__all__) <= set(dir(eventpound))
+    named = [name for name in dir(eventpound) if not name.startswith("__")]
+    assert named == eventpound.__all__
     for name in eventpound.__all__:
         assert getattr(eventpound, name) is not None
     assert files("eventpound").joinpath("py.typed").is_file()

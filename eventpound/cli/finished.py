@@ -59,15 +59,16 @@ def fit_fragility(options: Options, out: Path) -> dict[str, bytes]:
     from eventpound.study.stated import PSA, psa_at
 
     paper = options.paper()
-    table, excitation = _read(out)
+    table, excitations = _read(out)
     table = _where(table, options.where, out)
     of_demand = dimension_of(options.demand)
     limits = [number("--limit", text, of_demand) for text in options.limit]
     records = None if options.counts else _records(table, options.measure)
     with told_of(f"{out}: "):
         curves = fragility_table(table, options.measure, options.demand, limits, records)
-    at = psa_at(excitation) if options.measure == PSA else ""
-    figure = fragility_figure(curves, table, options.measure, options.demand, at)
+    at = {psa_at(excitation) for excitation in excitations} if options.measure == PSA else {""}
+    at_one = at.pop() if len(at) == 1 else ""
+    figure = fragility_figure(curves, table, options.measure, options.demand, at_one)
     units = [f" {dimension_of(key).unit}".rstrip() for key in (options.measure, options.demand)]
     for _, row in curves.iterrows():
         found = row["note"] or (
@@ -96,17 +97,16 @@ def _set_aside(out: Path, made: bytes) -> None:
     print(f"moved     the curves that were in {there} are in {name}.csv")
 
 
-def _read(out: Path) -> tuple[pd.DataFrame, Mapping[str, Any]]:
-    """The table of a study, else of a suite, and the ``[excitation]`` it was made with."""
+def _read(out: Path) -> tuple[pd.DataFrame, list[Mapping[str, Any]]]:
+    """The table of a study, else of a suite, and each ``[excitation]`` it was made with."""
     from eventpound.study.table import SUITE_TABLE, TABLE, read_manifest, read_suite, read_table
 
     if (out / TABLE).is_file():
-        scenes: Any = (read_manifest(out) or {}).get("scenes") or [{}]
-        each = [scene.get("case", {}).get("excitation", {}) for scene in scenes]
-        return read_table(out), each[0] if each.count(each[0]) == len(each) else {}
+        scenes: Any = (read_manifest(out) or {}).get("scenes", [])
+        return read_table(out), [scene["case"].get("excitation", {}) for scene in scenes]
     if (out / SUITE_TABLE).is_file():
         table, manifest = read_suite(out)
-        return table, manifest["case"].get("excitation", {})
+        return table, [manifest["case"].get("excitation", {})]
     raise InputError(
         f"{out}: neither {TABLE} nor {SUITE_TABLE}; `eventpound study` or `eventpound run` of a "
         "suite writes it"

@@ -79,7 +79,7 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
         said = "\n".join(", ".join(words[i : i + 2]) for i in range(0, len(words), 2))
     else:
         whole = reduced(law)
-        x = whole.offset + np.array([-1.0, 0.0, 1.0]) * (3.0 * abs(whole.offset) or 1.0)
+        x = whole.offset + np.array([-1.0, 0.0, 1.0]) * (2.0 * abs(whole.offset) or 1.0)
         force, _ = elastic_force(whole, x)
         pair = whole.compression, whole.extension
         said = f"k = {_stiffness(pair[0])}"

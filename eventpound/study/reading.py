@@ -242,5 +242,5 @@ def _with_first_values(document: _Document, axes: Sequence[NumberAxis]) -> _Docu
         terms = {key.removeprefix(PI): v for key, v in firsts.items() if key.startswith(PI)}
         document = {**document, "pi": {**pi, **terms}}
     if isinstance(motion, dict) and _PSA in firsts:
-        document = {**document, "excitation": {"psa": firsts[_PSA], **motion}}
+        document = {**document, "excitation": {"psa": f"{firsts[_PSA]!r} m/s^2", **motion}}
     return document

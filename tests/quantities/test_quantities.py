@@ -64,6 +64,14 @@ def test_the_threshold_is_the_stated_one(response: Response) -> None:
     assert other.summary["contacts.joint.impacts_faster"] == np.count_nonzero(speeds > threshold)
 
 
+def test_terms_and_scales_stand_in_the_summary(response: Response) -> None:
+    scales = response.scene.motion.scales()
+    assert scales is not None
+    largest = max(response.summary[f"peaks.{b.name}.abs_max"] for b in response.scene.bodies)
+    assert response.summary["pi_um"] == pytest.approx(largest / scales.length, rel=1e-14)
+    assert response.summary["scales.L_e"] == scales.length
+
+
 def test_energy_lost_in_contacts_adds_up_to_the_ledger(response: Response) -> None:
     lost = sum(response.summary[f"contacts.{c}.energy_lost"] for c in ("left", "joint", "right"))
     assert response.energy is not None

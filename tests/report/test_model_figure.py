@@ -296,6 +296,21 @@ def test_laws_that_differ_are_drawn_below_the_scene() -> None:
     assert "extension 1.731 MN/m" in said
 
 
+def test_the_slack_of_a_cable_is_told_and_seen() -> None:
+    scene = Scene(
+        (Body("deck", 1e6),),
+        (
+            Spring("piers", (GROUND, "deck"), Linear(4e7)),
+            Spring("cable", (GROUND, "deck"), BilinearElastic(0.0, 6e7, 0.02)),
+        ),
+    )
+    axes = model_figure(scene, with_laws=True).axes[2]
+    assert axes.get_xlabel().splitlines()[-1] == "offset 2 cm"
+    x = np.asarray(axes.lines[-1].get_xdata())
+    # The kink lies well within the picture, away from zero.
+    assert 0.2 < 0.02 / (x.max() - x.min()) < 0.5
+
+
 def test_laws_of_many_springs_are_one_of_each_kind() -> None:
     springs = [Spring(f"s{i}", (GROUND, f"b{i}"), BoucWen(1.0, 1.0 + i, 1.0)) for i in range(5)]
     springs += [Spring("l", (GROUND, "b0"), Linear(1.0)), Spring("m", (GROUND, "b1"), Linear(1.0))]

@@ -54,6 +54,23 @@ def test_spectrum_draws_every_record_that_did_not_fail(few: Case) -> None:
         assert "3 motions; rank correlation" in axes.get_title(loc="left")
 
 
+def test_many_bodies_stand_side_by_side() -> None:
+    """Nine floors in three columns of three, each with its label; no strip of nine."""
+    rng = np.random.default_rng(2)
+    table = pd.DataFrame({"failed": "", "PGA": rng.random(6), "T_m": 0.5, "L_e": rng.random(6)})
+    for i in range(10):
+        table[f"peaks.A{i}.abs_max"] = rng.random(6)
+    for count, columns, rows in ((4, 1, 4), (9, 3, 3), (10, 3, 4)):
+        names = {f"A{i}": f"floor {i}" for i in range(count)}
+        figure = suite_spectrum_figure(table, names, 2, "title")
+        shown = [axes for axes in figure.axes if axes.get_visible()]
+        assert [axes.get_ylabel().split(":")[0] for axes in shown] == [*names.values()]
+        grid = shown[0].get_subplotspec().get_gridspec()
+        assert (grid.nrows, grid.ncols) == (rows, columns)
+        # Each column has the name of its axis below its last panel.
+        assert len([axes for axes in shown if axes.get_xlabel()]) == columns
+
+
 def test_contours_have_their_value_and_records_their_height() -> None:
     wanted = Figure(
         FigureKind.SIMILARITY_CONTOURS,

@@ -20,8 +20,8 @@ from tests.study.test_suite import CASE, time_series
 CASES = Path(__file__).parents[2] / "cases"
 GRAVITY = 9.80665
 ACCEPTED = (
-    "accepted: a list of texts, at most one unit each of force (N, kN, MN), "
-    "length (m, cm, mm), acceleration (m/s^2, g)"
+    "accepted: a list of texts, at most one unit each of force (N, kN, MN, kip), "
+    "length (m, cm, mm, in), acceleration (m/s^2, g)"
 )
 
 
@@ -121,7 +121,7 @@ def test_a_case_that_was_understood_keeps_its_units(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "units",
-    ['["kip"]', '["cm", "mm"]', '["kN", "kN"]', '["kN", "s"]', '"kN"', "[]", "[1]", '[["kN"]]'],
+    ['["lbf"]', '["cm", "mm"]', '["kN", "kN"]', '["kN", "s"]', '"kN"', "[]", "[1]", '[["kN"]]'],
 )
 def test_other_words_are_refused_in_one_message(tmp_path: Path, units: str) -> None:
     with pytest.raises(InputError) as caught:
@@ -130,3 +130,12 @@ def test_other_words_are_refused_in_one_message(tmp_path: Path, units: str) -> N
     assert caught.value.problems == [
         f"{tmp_path / 'case.toml'}: [run]: units: found {found}; {ACCEPTED}"
     ]
+
+
+def test_customary_units_are_told() -> None:
+    """1 kip is 1000 lbf of 4.4482216152605 N, an inch 25.4 mm."""
+    trade = Trade(True, ("kip", "in"))
+    assert trade.words(4448.2216152605, "N") == "1.00 kip"
+    assert trade.words(0.0254, "m") == "1.00 in"
+    assert trade.words(4448.2216152605, "N s") == "1.00 kip s"
+    assert trade.words(4448.2216152605 * 0.0254, "J") == "1.00 kip in"
