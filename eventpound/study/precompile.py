@@ -230,7 +230,7 @@ class _Job(NamedTuple):
 
 _JOBS = {
     "cvode, ida": _Job({"cvode": 35.0, "ida": 25.0}, _event_driven),
-    "fast, several bodies": _Job({"fast": 50.0}, _fast_of_several),
+    "fast, several bodies": _Job({"fast": 36.0}, _fast_of_several),
     "fast, one body": _Job({"fast": 15.0}, _fast_of_one),
     "moreau": _Job({"moreau": 10.0}, _several),
     "penalty": _Job({"penalty": 10.0}, _several),
