@@ -21,6 +21,10 @@ from eventpound.results.jsontext import canonical
 FORMAT = "eventpound-results/1"
 """Name and number of the form of the files."""
 
+WITHOUT_IMPACTS = (
+    "absolute acceleration in m/s^2, impacts left out; with them: Response.at(t, logger=interval)"
+)
+"""What the accelerations of a history are, where bodies can collide."""
 _PACKAGES = ("eventpound", "numpy", "scipy", "scikit-sundae")
 
 
@@ -53,6 +57,8 @@ def describe_run(
         "record": _record_file(case) | _samples(response.scene.motion),
         "versions": versions(),
         "machine": machine(),
+        # The header of history.csv has names only, and a spectrum of these would be far too low.
+        **({"columns": {"a.": WITHOUT_IMPACTS}} if response.scene.contacts else {}),
     }
 
 

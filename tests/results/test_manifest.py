@@ -56,6 +56,11 @@ def test_record_hash(run, tmp_path):
     }
 
 
+def test_accelerations_are_told_to_leave_impacts_out(run, tmp_path):
+    write(run, tmp_path)
+    assert "impacts left out" in read(tmp_path).manifest["columns"]["a."]
+
+
 def test_versions_and_machine(run, tmp_path):
     write(run, tmp_path)
     manifest = read(tmp_path).manifest
