@@ -129,7 +129,8 @@ class Source:
             text = self.content.decode("latin-1")
         while "\r\n" in text:
             text = text.replace("\r\n", "\n")
-        return text.replace("\r", "\n").split("\n")
+        # Ctrl-Z and zeros end files of DOS and of tapes.
+        return text.rstrip("\0\x1a\r\n ").replace("\r", "\n").split("\n")
 
     @cached_property
     def sha256(self) -> str:

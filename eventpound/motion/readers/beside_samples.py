@@ -91,9 +91,9 @@ def without_counts(rows: NumberRows) -> tuple[NumberRows, list[int]]:
 
 
 def _stands_apart(rows: NumberRows) -> bool:
-    """Whether the first row is of one or two numbers, and all others of another length."""
+    """Whether all rows after the first are of one length, which it is not."""
     widths = {len(row) for row in rows.rows[1:-1]}
-    return rows.width <= _LONGEST and len(widths) == 1 and rows.width not in widths
+    return len(widths) == 1 and rows.width not in widths
 
 
 def _stated_step(head: list[str], rest: NumberRows, given: float | None) -> float | None:
@@ -150,15 +150,19 @@ def _style(text: str) -> tuple[int, bool]:
 
 def _unknown_head(source: Source, rows: NumberRows, given: float | None) -> InputError:
     """First numbers that may be a count or a step and agree with nothing."""
-    line, found, step = rows.lines[0], " ".join(rows.rows[0]), rows.rows[0][-1]
+    line, found = rows.lines[0], " ".join(rows.rows[0])
+    steps = [text for text in rows.rows[0] if to_float(text) in STEP]
     samples = sum(map(len, rows.rows[1:]))
     what = f"found '{found}', unlike the {samples} numbers after it"
-    if given is None:
-        what += f'; if it states the time step, give time_step = "{step} s", else remove the line'
+    if given is None and len(steps) == 1:
+        what += (
+            f'; if it states the time step, give time_step = "{steps[0]} s", else remove the line'
+        )
         return UnstatedError(str(source.error(line, what)), ["time_step"])
+    agreed = "their number" if given is None else f"their number nor with time_step = {given!r} s"
     return source.error(
         line,
-        f"{what}; it agrees neither with their number nor with time_step = {given!r} s: "
+        f"{what}; it agrees {'not' if given is None else 'neither'} with {agreed}: "
         "give what it states, or remove the line",
     )
 

@@ -15,7 +15,7 @@ numbers are passed over.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -25,7 +25,7 @@ from eventpound.motion.parametric import require_positive
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
 from eventpound.motion.readers.beside_samples import body_of, counts, without_counts, without_head
 from eventpound.motion.readers.block import FOLLOWING_WORD
-from eventpound.motion.readers.header import Header, ask_for_missing, record_data, unit_factor
+from eventpound.motion.readers.header import Header, ask_for_missing, record_data
 from eventpound.motion.readers.numbers import to_float
 from eventpound.motion.readers.rows import (
     COMMENT,
@@ -34,6 +34,7 @@ from eventpound.motion.readers.rows import (
     read_rows,
     runs_along_lines,
 )
+from eventpound.motion.readers.stated import refuse_other_count, stated_before
 from eventpound.motion.readers.time_column import even_step, increases
 from eventpound.motion.readers.titles import Content, Title, titles_of
 from eventpound.numerics.arrays import Floats
@@ -73,6 +74,8 @@ class ColumnTable:
         """Columns of times: those that titles call so, else the first if it goes up."""
         width = self.rows.width
         titled = [i for i, title in enumerate(self.titles) if title.kind is Content.TIME]
+        # A later T is the transverse component.
+        titled = [i for i in titled if i == titled[0] or self.titles[i].text != "T"]
         if titled or width == 1 or self.titles[0].kind is not None:
             return titled if width > 1 else []
         untitled = width == 2 and not self.titles[0].text
@@ -161,11 +164,22 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     if not components:
         found = [f"'{t.text}' is {t.kind.value}" for t in table.titles if t.kind in _OTHERS]
         raise source.error(rows.lines[0] - 1, f"{', '.join(found)}; an acceleration is needed")
+    titled = rows.width > 1 and any(title.text for title in table.titles)
+    stated, count = stated_before(
+        source, _titles_line(source, rows) if titled else rows.lines[0], table.stated
+    )
+    refuse_other_count(source, count, len(rows.rows), rows.lines[-1])
+    table = replace(table, stated=stated)
     names = [table.titles[i].name or None if rows.width > 2 else None for i in components]
     return [
         Channel(name, partial(read_column, source, given, table, i, name), (table.titles[i].text,))
         for i, name in zip(components, names, strict=True)
     ]
+
+
+def _titles_line(source: Source, rows: NumberRows) -> int:
+    """The line of titles: the last before the rows that is not blank."""
+    return max(i for i in range(1, rows.lines[0]) if source.line(i).strip())
 
 
 COLUMNS = Reader("columns", _detect, _channels)
@@ -187,6 +201,7 @@ def _channels_along_lines(source: Source, given: Given) -> list[Channel]:
         if bad:
             raise InputError(source.unreadable(bad))
         rows, stated, notes = without_head(source, rows, given.time_step)
+        stated, count = stated_before(source, rows.lines[0], stated)
         rows.refuse_other_widths(source, all_but_last=True)
         rows, dropped = without_counts(rows)
         notes += _passed_over(rows)
@@ -195,6 +210,7 @@ def _channels_along_lines(source: Source, given: Given) -> list[Channel]:
             line, text = after[0][0], source.line(after[0][0]).strip()[:60]
             notes += (f"line {line}: text after the last sample passed over: '{text}'",)
         values = np.array([to_float(text) for row in rows.rows for text in row])
+        refuse_other_count(source, count, values.size, last)
         return record_data(source, OPENSEES.name, stated, values, given, notes)
 
     return [Channel(None, read)]
@@ -228,7 +244,7 @@ def read_column(
     rows, title, stated = table.rows, table.titles[column], table.stated
     ask_for_missing(
         source,
-        units=given.units is None and title.unit is None,
+        units=given.units is None and title.unit is None and stated.units is None,
         time_step=not table.times and stated.time_step is None and given.time_step is None,
         line=rows.lines[0],
     )
@@ -247,10 +263,9 @@ def read_column(
         assert given.time_step is not None
         require_positive("record", "time_step", given.time_step)
         _refuse_leading_constant(source, rows, column, values)
-    units = title.unit
-    if units is not None and unit_factor(units) != title.factor:
-        units = "g" if title.factor == unit_factor("g") else f"{title.factor!r} m/s2"
-    header = Header(units, rows.lines[0] - 1, step, line, component=name)
+    header = Header(stated.units, stated.units_line, step, line, component=name)
+    if title.units is not None:
+        header = replace(header, units=title.units, units_line=rows.lines[0] - 1)
     return record_data(source, COLUMNS.name, header, values, given, table.notes)
 
 
@@ -260,16 +275,20 @@ def _passed_over(rows: NumberRows) -> tuple[str, ...]:
     return (f"{count} lines before the numbers passed over",) if count else ()
 
 
+_NO_WORDS = re.compile(r"[\d\s.,;:eEdD+\-\"'TZ/]+")
+_WITH_COMMA = re.compile(r"[+-]?\d*(?:[.,]\d+)?(?:[eEdD][+-]?\d+)?")
+
+
 def _refuse_decimal_commas(source: Source) -> None:
     """Stop where commas stand in numbers, or may."""
     if b"," not in source.content:
         return
-    lines = [(i, x) for i, x in enumerate(source.lines, start=1) if not COMMENT.match(x)]
-    pointed = any(re.search(r"\d\.|\.\d", line) for _, line in lines)
-    if pointed and b";" not in source.content:
-        return
+    lines = [(i, x) for i, x in enumerate(source.lines, start=1) if _NO_WORDS.fullmatch(x)]
+    pointed = any("." in line for _, line in lines)
     for number, line in lines:
-        if re.search(r"\d,\d", line) and (";" in line or not pointed):
+        tokens = line.split()
+        alone = len(tokens) > 1 and all(map(_WITH_COMMA.fullmatch, tokens))
+        if re.search(r"\d,\d", line) and (";" in line or not pointed or alone):
             raise source.error(
                 number, f"found '{line.strip()}': decimal commas? decimal points are expected"
             )

@@ -10,6 +10,7 @@ from itertools import islice, takewhile
 from eventpound.motion.readers.base import Given, Source
 from eventpound.motion.readers.block import StatedCount, numbers_of_block
 from eventpound.motion.readers.extents import Extent, groups_of, word_pattern
+from eventpound.motion.readers.header import Header
 from eventpound.motion.readers.labelled import Dialect, Labelled, Series, refuse_other_times
 from eventpound.motion.readers.numbers import (
     NUMBER,
@@ -18,6 +19,7 @@ from eventpound.motion.readers.numbers import (
     to_float,
 )
 from eventpound.motion.readers.rows import SEPARATOR
+from eventpound.motion.readers.stated import count_in, stated_before, step_in
 
 # EarthScope and ObsPy, described in obspy.io.ascii: a line "TIMESERIES NET_STA_LOC_CHAN_Q,
 # 12 samples, 40 sps, 2003-05-29T02:13:22.043400, SLIST, INTEGER, Counts" before each series, whose
@@ -140,13 +142,6 @@ SAC_ALPHANUMERIC = Dialect(
 
 _LONGEST_HEAD = 8
 _LARGEST_STEP = 1.0
-_COUNT = word_pattern(
-    r"(?:\bNPTS?|\b(?:NUMBER|NO\.?) OF (?:\w+ )?(?:POINTS|SAMPLES|DATA|VALUES))\W*(\d+)"
-)
-_STEP = word_pattern(
-    rf"(?:\bDT|\bTIME[ _-]?STEP|\bTSTEP|\bDELTA[ _-]?T|\bSAMPLING (?:INTERVAL|PERIOD))\b"
-    rf"[^\d.\n]*({NUMBER})"
-)
 
 
 def _count_and_step(source: Source) -> Extent | None:
@@ -175,15 +170,19 @@ def _count_and_step(source: Source) -> Extent | None:
             found = counts[0]
         if found is not None:
             known = {"samples": (found, line), "step": (steps[0], line)}
+            numbers = Header(time_step=to_float(steps[0]), time_step_line=line)
+            words, _ = stated_before(source, line + 1, numbers)
+            if words.units is not None and words.units_line is not None:
+                known["units"] = (words.units, words.units_line)
             return Extent(1, line, line, known | ({"pairs": ("yes", line)} if pairs else {}))
     return None
 
 
 def _stated(head: list[str]) -> tuple[list[str], list[str], bool]:
     """What may be the number of samples and the time step, and whether words of a head say so."""
-    count, step = (like.search("\n".join(head)) for like in (_COUNT, _STEP))
-    if count and step:
-        return [count.group(1)], [step.group(1)], True
+    words = "\n".join(head)
+    if (count := count_in(words)) and (step := step_in(words)):
+        return [count], [repr(step)], True
     numbers = _leading(head[-1])
     if len(numbers) == 1 == len(_row(head[-1]) or ()) and len(head) > 1:
         numbers += _row(head[-2]) or []
@@ -238,7 +237,6 @@ COUNT_AND_STEP = Dialect(
     begins=(),
     also=lambda source: _count_and_step(source) is not None,
     extents=_count_and_step_extents,
-    patterns=(r"\bUNITS? *(?:OF|ARE|IN|:|=) *\(? *(?P<units>[A-Z]+(?:/[A-Z0-9/^*]+)?)",),
     count="samples",
     step="step",
     numbers=_count_and_step_numbers,

@@ -32,24 +32,24 @@ from eventpound.motion.readers.dialects import KNET
 from eventpound.motion.readers.header import Header
 from eventpound.motion.readers.numbers import split_token, to_float
 
-_RATE, _DURATION, _OFFSET = "SamplingFrequency(Hz)", "DurationTime(s)", "Offset"
+_RATE, _DURATION, _OFFSET = "samplingfrequency(hz)", "durationtime(s)", "offset"
 
 
 def _detect(source: Source) -> bool:
-    return source.line(1).strip().startswith("#K-NET CSV")
+    return source.line(1).strip().casefold().startswith("#k-net csv")
 
 
 def _header_of(source: Source) -> dict[str, tuple[str, int]]:
-    """Values by their titles, and the line of each; those of offsets by "Offset" and a title."""
+    """Values by titles in small letters, and their lines; "offset" before those of offsets."""
     found: dict[str, tuple[str, int]] = {}
     above = ["", ""]
     for number, line in enumerate(source.lines, start=1):
         if not line.startswith("#"):
             break
         cells = line.strip("# \r").split(",")
-        titles = above[-1].split(",")
+        titles = above[-1].casefold().split(",")
         if len(titles) == len(cells):
-            group = f"{_OFFSET} " if above[-2] == _OFFSET else ""
+            group = f"{_OFFSET} " if above[-2].casefold() == _OFFSET else ""
             for title, cell in zip(titles, cells, strict=True):
                 found.setdefault(group + title.strip(), (cell.strip(), number))
         above.append(line.strip("# \r"))
@@ -91,14 +91,14 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         name = KNET.renamed.get(title.name, title.name)
 
         def read() -> RecordData:
-            offset = number(f"{_OFFSET} {title.text}")
+            offset = number(f"{_OFFSET} {title.text.casefold()}")
             data = read_column(source, given, stating, column, name)
             return replace(
                 data,
                 acceleration=data.acceleration - offset * title.factor,
                 format=KNET_CSV.name,
-                event=header.get("OriginTime", (None,))[0],
-                station=header.get("Code", (None,))[0],
+                event=header.get("origintime", (None,))[0],
+                station=header.get("code", (None,))[0],
                 date=source.line(rows.lines[0]).partition(",")[0],
                 notes=(f"offset of {offset:g} {title.unit} taken off",),
             )

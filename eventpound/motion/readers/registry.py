@@ -45,8 +45,8 @@ _DIALECTS = (
     interchange.COUNT_AND_STEP,
 )
 _OF_TEXT = (
-    *(dialect.reader() for dialect in _DIALECTS),
     knet_csv.KNET_CSV,
+    *(dialect.reader() for dialect in _DIALECTS),
     columns.OPENSEES,
     columns.COLUMNS,
 )

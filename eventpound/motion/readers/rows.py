@@ -15,7 +15,7 @@ from eventpound.motion.readers.numbers import clean_numbers, split_token, to_flo
 from eventpound.motion.readers.time_column import increases
 from eventpound.numerics.arrays import Floats
 
-COMMENT = re.compile(r"\s*(#|%|!|//)")
+COMMENT = re.compile(r"^\s*(#|%|!|//)")
 SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
 _EMPTY = tuple(a + b for a in ",;\n" for b in ",;\n" if a + b != "\n\n")
 """What an empty field looks like without blanks."""
@@ -194,7 +194,7 @@ def runs_along_lines(rows: NumberRows) -> bool:
 def _numbers(line: str, commas: bool = True) -> tuple[list[str], str | None]:
     """The numbers of a line as printed, and its first token that is none."""
     numbers: list[str] = []
-    for token in SEPARATOR.split(line.strip()) if commas else line.split():
+    for token in SEPARATOR.split(line.strip().rstrip(",; ")) if commas else line.split():
         parts = split_token(token)
         if parts is None:
             return numbers, token

@@ -95,8 +95,12 @@ def even_step(
     if loose and steps.max() - steps.min() > 0.5 * width:
         # A few coarse times fit many steps, of which none is borne out.
         odd = np.flatnonzero(np.abs(steps - steps[0]) > 0.5 * width)
-    elif odd.size >= max(_SOME, _REGULAR * steps.size):
-        odd = odd[:0]
+    elif odd.size >= _SOME:
+        # Those that rounding makes are as far apart everywhere, but for one row.
+        apart, ends = np.diff(odd), max(int(odd[0]), steps.size - 1 - int(odd[-1]))
+        regular = np.ptp(apart) <= 1 and ends <= apart.max()
+        if regular or odd.size >= _REGULAR * steps.size:
+            odd = odd[:0]
     if odd.size:
         raise _uneven(source, texts, lines, times, width, int(odd[0]) + 1)
     low, high = found[0] * unit, found[1] * unit

@@ -62,9 +62,10 @@ _LENGTHS = {
     **dict.fromkeys(("in", "inch", "inches"), 0.0254),
     **dict.fromkeys(("ft", "foot", "feet"), 0.3048),
 }
-_BRACKETED = re.compile(r"(.*?)\s*[(\[{<]\s*([^()\[\]{}<>]*)[)\]}>]\s*")
-_PLACES = re.compile(r"[\s,;:_/-]+")
+_BRACKETED = re.compile(r"(.*?)\s*[(\[{<]\s*((?:[^()\[\]{}<>]|\([^()]*\)|\{[^{}]*\})*)[)\]}>]\s*")
+_PLACES = re.compile(r"[\s,;:_/]+")
 """Where a unit without brackets may begin."""
+_RAISED = str.maketrans("²⁻¹", "2-1")
 _BETWEEN_BLANKS = re.compile(r"\s+(?![(\[])(?![^(\[]*[)\]])")
 _OUTRIGHT = re.compile(r".*/.*|gals?|m?secs?|m?s|g")
 """Units that need no name."""
@@ -94,6 +95,13 @@ class Title:
     unit: str | None = None
     factor: float = 1.0
 
+    @property
+    def units(self) -> str | None:
+        """The unit of an acceleration as the unit of a record is written; None without one."""
+        if self.unit is None or unit_factor(self.unit) == self.factor:
+            return self.unit
+        return "g" if self.factor == STANDARD_GRAVITY else f"{self.factor!r} m/s2"
+
 
 def title_of(text: str) -> Title:
     """What a title says."""
@@ -111,7 +119,7 @@ def title_of(text: str) -> Title:
         named = _kind_of(name) if name else None
         sure = named is not None or _OUTRIGHT.fullmatch(unit.lower())
         # "a_g" is what the ground's acceleration is called.
-        ground = name.lower() in ("a", "u", "v") and unit.lower() == "g"
+        ground = re.fullmatch(r"[auv][\s_]+g", text.lower())
         if not unit or not sure or ground or (name and named is None and len(unit) < 2):
             continue
         if (found := _measured(unit, named)) is not None and named in (None, found[0]):
@@ -147,7 +155,7 @@ def titles_of(lines: list[str], width: int) -> list[Title] | None:
 
 def _fields(line: str, width: int) -> list[str] | None:
     """A line parted into so many titles, which may have blanks within; None where it has not."""
-    line = line.strip()
+    line = line.strip().rstrip(",; ")
     by_mark = (next(csv.reader([line], delimiter=mark), []) for mark in "\t,;")
     by_blanks = (pattern.split(line) for pattern in (re.compile(r"\s{2,}"), _BETWEEN_BLANKS))
     for parts in (*by_mark, *by_blanks, re.split(r"\s*[,;]\s*|\s+", line)):
@@ -167,7 +175,7 @@ def _kind_of(name: str) -> Content | None:
 
 def _measured(unit: str, named: Content | None) -> tuple[Content, float] | None:
     """What is measured in a unit, and its SI value; None for what is no unit."""
-    plain = re.sub(r"[\s*^.'’]", "", unit.lower()).replace("²", "2").replace("_", "/")
+    plain = re.sub(r"[\s*^.·'’(){}]", "", unit.lower()).translate(_RAISED).replace("_", "/")
     if plain in _SECONDS and named in (None, Content.TIME):
         return Content.TIME, _SECONDS[plain]
     if named is Content.FORCE:

@@ -42,6 +42,7 @@ MS = range(0, 10 * N, 10)
 CLOCK = [f"16:10:{9 + t:05.2f}" for t in T]
 MIDNIGHT = [f"{'23:59:59' if i < 50 else '00:00:00'}.{(50 + i) % 100:02d}" for i in range(N)]
 G, GIVEN = {"units": "g"}, {"units": "g", "time_step": 0.01}
+COMPONENT_L = {"units": "g", "component": "L"}
 
 
 @pytest.mark.parametrize(
@@ -92,6 +93,21 @@ G, GIVEN = {"units": "g"}, {"units": "g", "time_step": 0.01}
             {"component": "Acc NS"},
         ),
         ("Acc (g)\n" + FIXED, {"time_step": 0.01}),
+        ("t,Acc (%g)\n" + rows("{:.2f},{:.6f}", T, 100.0 * A), {}),
+        ("t,acc (m/(s^2))\n" + rows("{:.2f},{:.6f}", T, 9.80665 * A), {}),
+        ("t/s,a/g\n" + rows("{:.2f},{:.6f}", T, A), {}),
+        ("t,V,L,T\n" + rows("{:.2f},{:.6f},{:.6f},{:.6f}", T, OTHER, A, OTHER), COMPONENT_L),
+        ("Time (s),Acc (g),\n" + rows("{:.2f},{:.6f},", T, A), {}),
+        (TWO + "\x1a", G),
+        # Words before the samples.
+        ("# dt = 0.01 s\n# UNITS: g\n" + FIXED, {}),
+        ("# Sampling rate: 100 Hz\n" + FIXED, G),
+        ("DT (ms) = 10\n" + along(6), G),
+        ("% 100 sps\n% ACC IN UNITS OF G\n" + along(6), {}),
+        ("# PGA = 300 gal, PGV = 12 cm/s\n# dt 0.01\n" + FIXED, G),
+        ("# resampled from dt = 0.005 s\n# dt = 0.01 s\n" + FIXED, GIVEN),
+        ("# dt = 0.01\n" + TWO, G),
+        ("Motion, units: g\n60 0.01\n" + ONE, {}),
         # Clocks.
         (rows("{} {:.6f}", CLOCK, A), G),
         (rows("2024/01/01 {},{:.6f}", CLOCK, A), G),
@@ -117,7 +133,7 @@ def test_read_as_what_it_is(tmp_path: Path, text: str, arguments: dict[str, Any]
         ("0.01\n" + ONE, {"units": "g", "time_step": 0.005}, "line 1: found '0.01'.*0.005 s"),
         ("0.01\n" + SHORT, {"units": "g", "time_step": 0.005}, "line 1: found '0.01'.*0.005 s"),
         ("60 0.01\n" + ONE, {"units": "g", "time_step": 0.02}, "0.02 s was given.* of 0.01 s"),
-        ("61 0.01\n" + ONE, GIVEN, "line 1: found '61 0.01', unlike the 60 numbers after it"),
+        ("61 0.01\n" + ONE, GIVEN, "60 numbers found .* line 1 states samples = 61"),
         ("0.01\n" + along(6), G, "line 1: found '0.01', unlike the 60 numbers after it"),
         ("60 0.02\n" + TWO, G, "line 1: a time step of 0.02 s is stated, column 1 .* 0.01 s"),
         (rows("{} {:.6f}", range(N), A), G, "line 1: the first column counts"),
@@ -128,6 +144,22 @@ def test_read_as_what_it_is(tmp_path: Path, text: str, arguments: dict[str, Any]
             "line 1: units = 'g' were given, but the file states 'cm/s2'",
         ),
         ("Acc (gal)\n" + FIXED, GIVEN, "'g' were given, but the file states 'gal'"),
+        # Words before the samples.
+        ("# dt = 0.02\n" + FIXED, GIVEN, "line 1: time_step = 0.01 s was given.* of 0.02 s"),
+        ("# dt = 0.02\n" + TWO, G, "line 1: a time step of 0.02 s is stated"),
+        ("# Sampling rate: 50 Hz\n" + along(6), GIVEN, "line 1: time_step = 0.01 s was given"),
+        ("# dt = 0.02\n60 0.01\n" + along(6), G, "line 1: states 0.02 s, line 2 0.01 s"),
+        ("# Acceleration in cm/s2\n# EW\n" + FIXED, GIVEN, "line 1: units = 'g' were given"),
+        ("acc (cm/s2)\n60 0.01\n" + ONE, G, "line 1: units = 'g' were given"),
+        ("VELOCITY IN CM/S\n" + along(6), GIVEN, "line 1: states 'CM/S', the unit of a velocity"),
+        ("# NPTS = 61\n" + FIXED, GIVEN, "60 samples found .* line 1 states NPTS = 61"),
+        ("# NPTS = 61\n" + along(6), GIVEN, "60 samples found .* line 1 states NPTS = 61"),
+        # A head that agrees with nothing, and decimal commas beside points.
+        ("60 0.01 9.81\n" + ONE, GIVEN, "line 1: found '60 0.01 9.81', unlike the 60 numbers"),
+        ("60 0.01 9.81\n" + TWO, GIVEN, "line 1: found '60 0.01 9.81', unlike the 120 numbers"),
+        ("60 0\n" + ONE, G, "line 1: found '60 0', .* it agrees not with their number: give what"),
+        (rows("{:.2f}\t{}", T, [f"{x:.6f}".replace(".", ",") for x in A]), G, "decimal commas"),
+        ("acc_milli-g\n" + FIXED, {"time_step": 0.01}, "does not state its units"),
         ("t,Velocity (cm/s)\n" + rows("{:.2f},{:.6f}", T, A), G, "'Velocity .*' is a velocity"),
         ("time,DISP\n" + rows("{:.2f},{:.6f}", T, A), G, "'DISP' is a displacement"),
         ("Velocity (cm/s)\n" + FIXED, GIVEN, "line 1: 'Velocity .*' is a velocity"),

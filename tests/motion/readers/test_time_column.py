@@ -38,7 +38,9 @@ def test_512_hz_to_four_decimals_at_every_length() -> None:
 @pytest.mark.parametrize("written", [rounded, cut])
 @pytest.mark.parametrize("start", [0.0, 5.0, 0.0037])
 @pytest.mark.parametrize("decimals", [2, 3, 4, 5, 6])
-@pytest.mark.parametrize("h", [1 / 3, 3.0, 0.03, 0.005, 1 / 30, 1 / 128, 1 / 256, 0.00244, 0.01])
+@pytest.mark.parametrize(
+    "h", [1 / 3, 3.0, 0.03, 0.005, 1 / 30, 1 / 128, 1 / 256, 0.00244, 0.01, 1 / 1024]
+)
 def test_steps_of_rounded_and_cut_times(written, h, decimals, start) -> None:
     texts = written(h, 600, decimals, start)
     # Six hundred times fix the step to a unit of their last decimal in the sum.
