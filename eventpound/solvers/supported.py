@@ -8,20 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.supported import lowered, moving_supports, support_motion
 from eventpound.numerics.arrays import Floats
-from eventpound.scene.contact import BARRIER
+from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Energy, History, Recording, SupportHistory, Task
-from eventpound.tolerances import OF_SUPPORT
+from eventpound.tolerances import OF_ROWS, OF_SUPPORT
 
 LINES = 4
 """Lines of the history before that instant at which contacts are looked at."""
+SOON = 1e-5
+"""Part of the run after an instant in which supports that begin to move at it have a speed."""
 
 
 def with_supports(task: Task, solve: Callable[[Task], Recording]) -> Recording:
@@ -47,12 +50,12 @@ def with_supports(task: Task, solve: Callable[[Task], Recording]) -> Recording:
     except ComputationError as error:
         if error.recording is None:
             raise
-        closed = _closed_in(error.recording, scene)
+        closed = _closed_in(error.recording, task)
         error.recording = own_part(error.recording, scene)
         if closed is None:
             raise
         raise closed from error
-    closed = _closed_in(recording, scene)
+    closed = _closed_in(recording, task)
     if closed is not None:
         raise closed
     return own_part(recording, scene)
@@ -145,51 +148,61 @@ def _of_all_supports(energy: Energy | None, scene: Scene) -> Energy | None:
     return replace(energy, supports=works)
 
 
-def _held_row(recording: Recording, scene: Scene, rows: slice) -> list[str]:
-    """Contacts, closed at some lines of the history, by which bodies join different supports."""
-    gap = np.abs(recording.history.gap[rows])
-    if gap.shape[0] == 0:
-        return []
-    near = OF_SUPPORT * max(np.abs(recording.history.u).max(), np.finfo(float).tiny)
-    shut = [c for c, g in zip(scene.contacts, gap.min(axis=0), strict=True) if g <= near]
-    moving = {support.name for support in moving_supports(scene)}
-    fixed = moving | {BARRIER} | {support.name for support in scene.supports}
-    for start in sorted(fixed):
-        reached, row = {start}, list[str]()
-        for _ in shut:
-            for c in shut:
-                ends = {*c.ends}
-                grown = bool(ends & ({start} | (reached - fixed))) and c.name not in row
-                if grown:
-                    reached |= ends
-                    row.append(c.name)
-        if len(reached & fixed) > 1 and reached & moving:
-            return [c.name for c in shut if c.name in row]
-    return []
-
-
-def _closed_in(recording: Recording, scene: Scene) -> ComputationError | None:
+def _closed_in(recording: Recording, task: Task) -> ComputationError | None:
     """An error where a body between supports was left no motion, which moves what cannot be moved.
 
-    A support is then not where it should be, or an impact had no solution.
+    A support is then not where it should be, or an impact had no solution. A run that failed while
+    none approach each other has failed by something else.
     """
-    history, supports = recording.history, moving_supports(scene)
+    scene, history = task.scene, recording.history
+    supports = moving_supports(scene)
     if len(supports) == 0 or not scene.contacts or history.t.size == 0:
         return None
-    said = [support_motion(s, scene.motion, history.t)[1] for s in supports]
-    apart = np.abs(history.v[:, : len(supports)] - np.column_stack(said)).max(axis=1)
+    said = np.column_stack([support_motion(s, scene.motion, history.t)[1] for s in supports])
+    apart = np.abs(history.v[:, : len(supports)] - said).max(axis=1)
     largest = max(np.abs(history.v).max(), np.finfo(float).tiny)
     where = np.flatnonzero(~(apart <= OF_SUPPORT * largest))
-    first = int(where[0]) if where.size else history.t.size
-    t = float(history.t[first]) if where.size else recording.t
     if where.size == 0 and recording.success:
         return None
-    row = _held_row(recording, scene, slice(max(0, first - LINES), first + 1))
-    if not row:
-        return None
-    return ComputationError(
-        f"supports close in on what contacts hold between them ({', '.join(row)}) and leave it no "
-        "motion; give the contacts wider gaps, or put springs in their place",
-        t,
-        own_part(recording, scene),
-    )
+    first = int(where[0]) if where.size else history.t.size - 1
+    t = float(history.t[first]) if where.size else recording.t
+    # What begins to move at an instant has no speed there yet.
+    soon = t + np.array([0.0, SOON * (task.end - task.start)])
+    speed = {s.name: support_motion(s, scene.motion, soon)[1] for s in scene.supports}
+    speed[BARRIER] = np.zeros(soon.size)
+    fastest = max(np.abs(v).max() for v in (said[: first + 1], *speed.values()))
+    shut = _shut(recording, scene, slice(max(0, first - LINES), first + 1))
+    for left, right in permutations(speed, 2):
+        row = _row(left, right, shut, speed)
+        approach = (speed[left] - speed[right]).max() > OF_ROWS * fastest
+        if row and (approach or recording.success):
+            return ComputationError(
+                f"supports close in on what contacts hold between them ({', '.join(row)}) and "
+                "leave it no motion; give the contacts wider gaps, or put springs in their place",
+                t,
+                own_part(recording, scene),
+            )
+    return None
+
+
+def _shut(recording: Recording, scene: Scene, rows: slice) -> list[Contact]:
+    """Contacts that are closed at one of these lines of the history."""
+    gap = np.abs(recording.history.gap[rows]).min(axis=0)
+    near = OF_SUPPORT * max(np.abs(recording.history.u).max(), np.finfo(float).tiny)
+    return [c for c, g in zip(scene.contacts, gap, strict=True) if g <= near]
+
+
+def _row(left: str, right: str, shut: list[Contact], fixed: Collection[str]) -> list[str]:
+    """Contacts by which bodies are in a row from a support, or the barrier, to one on its right."""
+    pairs = [c.ends for c in shut]
+    onward = _reached(left, pairs, fixed)
+    back = _reached(right, [(b, a) for a, b in pairs], fixed)
+    return [c.name for c in shut if c.ends[0] in onward and c.ends[1] in back]
+
+
+def _reached(start: str, pairs: Collection[tuple[str, ...]], fixed: Collection[str]) -> set[str]:
+    """What pairs lead to from one end, over bodies alone, and that end."""
+    reached = {start}
+    for _ in pairs:
+        reached |= {b for a, b in pairs if a in reached and b not in fixed}
+    return reached

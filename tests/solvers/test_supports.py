@@ -599,6 +599,29 @@ def test_supports_that_close_in() -> None:
             run(scene, 2.0, solver, 1e-9)
 
 
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+@pytest.mark.parametrize("reverse", [False, True])
+def test_supports_close_in_only_where_they_approach(solver: str, reverse: bool) -> None:
+    scene = Scene(
+        (Body("a", 1.0), Body("b", 1.0, 0.1)),
+        (Spring("swing", (GROUND, "b"), Linear(400.0)),),
+        contacts=(
+            Contact("left", BARRIER, "a", 0.0, 0.5),
+            Contact("right", "a", "pier", 0.0, 0.5),
+        ),
+        motion=NoMotion(),
+        supports=(Support("pier", motion=Sine(1.0, 1.0, reverse=reverse, start=0.5)),),
+    )
+    # The joints are closed, but nothing moves them yet.
+    with pytest.raises(ComputationError, match="limit of 1 steps"):
+        simulate(scene, solver, 1e-6, duration=1.0, max_steps=1)
+    if not reverse:
+        assert simulate(scene, solver, 1e-6, duration=1.0).recording.success
+        return
+    with pytest.raises(ComputationError, match=r"t = 0\.5.*close in.*left, right"):
+        simulate(scene, solver, 1e-6, duration=1.0)
+
+
 def closed_beside(order: tuple[str, str], support: Support) -> Scene:
     """A deck on a pier, its joint with an abutment closed as a wavelet of 0.5 s comes at 3 s."""
     return Scene(
