@@ -8,7 +8,7 @@ from typing import TextIO
 
 
 class OptionWarning(UserWarning):
-    """An option of a case plays no part in what is computed of it."""
+    """An option of a case that plays no part in what is computed of it, or is hardly meant so."""
 
 
 def warn_caller(text: str, category: type[Warning]) -> None:

@@ -10,7 +10,6 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from eventpound.basics.given import checked
 from eventpound.basics.input_files import read_bytes
@@ -31,7 +30,7 @@ from eventpound.case.options import (
 )
 from eventpound.case.pi import OF_SCENE, read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
-from eventpound.case.record_scaling import large_scales, named_file
+from eventpound.case.record_scaling import large_scales
 from eventpound.case.spring_stiffness import masses_carried
 from eventpound.case.springs import read_springs
 from eventpound.case.suite import Suite, with_suite
@@ -89,20 +88,15 @@ def load_case(path: str | Path, suite: str | None = None) -> Case:
     if suite is not None:
         document = _with_suite(document, file, suite)
     case = read_case(document, file, source_hash)
-    text = large_scales(_factors(case.scene, document), case.largest_scale)
+    text = large_scales(_factors(case.scene), case.largest_scale)
     said = (f"{file}: [excitation]: {text}",) if text else ()
     return replace(case, warnings=(*said, *case.warnings))
 
 
-def _factors(scene: Scene, document: Mapping[str, Any]) -> list[tuple[str, float]]:
+def _factors(scene: Scene) -> list[tuple[str, float]]:
     """Factors on the records of the ground and of supports, by the names of their files."""
-    tables = [document["excitation"], *(s.get("excitation") for s in document.get("support", ()))]
     motions = [scene.motion, *(support.motion for support in scene.supports)]
-    return [
-        (named_file(table), motion.factor)
-        for table, motion in zip(tables, motions, strict=True)
-        if isinstance(motion, Record) and table
-    ]
+    return [(motion.called, motion.factor) for motion in motions if isinstance(motion, Record)]
 
 
 def read_document(path: str | Path) -> tuple[dict[str, object], Path, str]:

@@ -190,12 +190,6 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
     return None if wrong else RecordScaling(scale, pga, psa, period, damping, target, at, limit)
 
 
-def named_file(excitation: Mapping[str, Any]) -> str:
-    """What ``[excitation]`` calls its record, or those of a sequence, without their folders."""
-    file = excitation["file"]
-    return ", ".join(Path(each).name for each in ([file] if isinstance(file, str) else file))
-
-
 def large_scales(factors: Sequence[tuple[str, float]], limit: float) -> str:
     """A sentence on records that are scaled by more than a limit; empty where none is.
 

@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cached_property
+from pathlib import PurePath
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -143,6 +144,11 @@ class Record:
     def times(self) -> Floats:
         """Times of the samples, shape (n,) (s)."""
         return self.start + self.time_step * np.arange(self.samples.size, dtype=np.float64)
+
+    @property
+    def called(self) -> str:
+        """The file it was read from, or the files of a sequence, without their folders."""
+        return "the record" if self.source is None else PurePath(self.source.file).name
 
     @property
     def begins(self) -> Floats:

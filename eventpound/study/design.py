@@ -28,6 +28,7 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, Hysteretic
 from eventpound.simulation import simulate
 from eventpound.study.engines.local import engine_of
+from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import RECORD, Plan
 from eventpound.study.records import FAILED
 from eventpound.study.running import Progress, run_study
@@ -158,6 +159,7 @@ def design_numbers(
     """
     if isinstance(case, Scene) or (isinstance(case, Case) and case.suite is None):
         return made_of_run(case).table
+    warn_of_scales(case if isinstance(case, Case) else case.plan.bases)
     with TemporaryDirectory() as scratch:
         out = Path(scratch if folder is None else folder)
         if isinstance(case, Case):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
+from eventpound.basics.warned import OptionWarning, warn_caller
 from eventpound.case.case import Case
-from eventpound.case.record_scaling import large_scales, named_file
+from eventpound.case.record_scaling import large_scales
 from eventpound.errors import InputError
 from eventpound.motion.record import Record
 from eventpound.scene.parameters import motion_with, places_of
@@ -31,6 +31,12 @@ def large_scales_of(given: Case | Sequence[Base]) -> str:
     return large_scales([pair for base in given for pair in _factors(base)], limit)
 
 
+def warn_of_scales(given: Case | Sequence[Base]) -> None:
+    """Warn a call in Python of them, in one line."""
+    if text := large_scales_of(given):
+        warn_caller(text, OptionWarning)
+
+
 def _factors(base: Base) -> Iterator[tuple[str, float]]:
     """Factor on the record of each run, by its name; none on one that cannot be read."""
     for member in base.records:
@@ -41,10 +47,9 @@ def _factors(base: Base) -> Iterator[tuple[str, float]]:
         except InputError:
             # Its run says so.
             continue
-    if not base.records:
-        excitation: Any = base.case.understood.get("excitation", {})
-        name = named_file(excitation) if "file" in excitation else base.case.title
-        yield from ((name, f) for f in _over_axes(base))
+    motion = base.case.scene.motion
+    if not base.records and isinstance(motion, Record):
+        yield from ((motion.called, f) for f in _over_axes(base))
 
 
 def _over_axes(base: Base) -> Iterator[float]:

@@ -21,6 +21,7 @@ from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
 from eventpound.study.engines.local import Batch, Processes
+from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import RECORD, base_of, described, solver_of
 from eventpound.study.quantities import planned
 from eventpound.study.running import run_study
@@ -126,7 +127,13 @@ class Study:
         ------
         InputError
             Where the folder cannot be written to, or another program makes a study there.
+
+        Warns
+        -----
+        UserWarning
+            Where runs scale their record by more than ``largest_scale``.
         """
+        warn_of_scales(self.plan.bases)
         size = self.plan.size
         show = _shown if progress is True else progress or None
 

@@ -31,6 +31,7 @@ from eventpound.scene.at_rest import at_rest
 from eventpound.scene.periods import longest_period
 from eventpound.simulation import check_solver
 from eventpound.study.engines.local import Batch
+from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import OfSuite, Plan, base_of, described
 from eventpound.study.records import FAILED, columns_of
 from eventpound.study.running import run_study
@@ -101,8 +102,14 @@ def simulate_suite(
     ------
     InputError
         Where the case has no suite, no file matches, or an option is wrong.
+
+    Warns
+    -----
+    UserWarning
+        Where records are scaled by more than ``largest_scale``.
     """
     plan, case = plan_of(case, solver, rtol, error_estimate, intensities)
+    warn_of_scales(plan.bases)
     with TemporaryDirectory() as scratch:
         out = Path(scratch if folder is None else folder)
         run_suite(plan, case, out, progress, keep, workers)
