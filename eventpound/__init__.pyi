@@ -1,6 +1,5 @@
 """Public names, where they stand: type checkers read it, and `eventpound` when it is imported."""
 
-from eventpound.accuracy.judged import compare as compare
 from eventpound.accuracy.judged import simulate as simulate
 from eventpound.accuracy.verify import verify as verify
 from eventpound.case import Case as Case
@@ -20,6 +19,7 @@ from eventpound.motion import Sine as Sine
 from eventpound.motion import TypeC as TypeC
 from eventpound.motion import read_record as read_record
 from eventpound.quantities.batch_response import BatchResponse as BatchResponse
+from eventpound.report.compared import compare as compare
 from eventpound.report.run_figures import plot as plot
 from eventpound.response import Response as Response
 from eventpound.results import write as write

@@ -235,3 +235,9 @@ OPENSEES_NEVER = 1e30
 """Force (N) at which a gap material yields: none reaches it."""
 OPENSEES_LARGEST = 1e300
 """Largest number that OpenSees may be given."""
+
+# What `compare` asks for where nobody says it.
+COMPARED = (1e-4, 1e-6, 1e-8, 1e-10)
+"""Relative tolerances at which each solver runs."""
+REPEATS = 5
+"""Runs whose median time counts."""

@@ -23,8 +23,8 @@ from eventpound.scene.rigid import rigid
 from eventpound.score.difference import Difference
 from eventpound.simulation import check_case, check_solver, refuse_suite
 from eventpound.solvers import solver_named
+from eventpound.tolerances import REPEATS
 
-REPEATS = 5
 Chosen = tuple[str, Mapping[str, object]]
 """A solver's name and its settings."""
 

@@ -1,32 +1,24 @@
-"""`simulate` and `compare` as the package offers them: errors with every run."""
+"""`simulate` as the package offers it: errors with every run."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 from eventpound import simulation
 from eventpound.accuracy.estimate import estimate_of
-from eventpound.basics.given import Count, checked, number, positive
+from eventpound.basics.given import Count, checked
 from eventpound.basics.warned import warn_caller
 from eventpound.case.case import Case
 from eventpound.case.options import EQUILIBRIUM, INITIAL
-from eventpound.case.solver_words import solver_word
 from eventpound.errors import AccuracyWarning, InputError
 from eventpound.response import Response
 from eventpound.scene.check import check_scene
 from eventpound.scene.continuation import FinalState, continued
 from eventpound.scene.scene import Scene
 from eventpound.simulation import Progress
-from eventpound.solvers import name_of
 from eventpound.solvers.base import Solver
-from eventpound.units import Dimension
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @checked
@@ -155,60 +147,3 @@ def _started_scene(scene: Scene, start: FinalState | str, time: float) -> Scene:
 def _shown(t: float) -> None:
     """Show the time reached."""
     print(f"\r{t:.6g} s", end="", file=sys.stderr, flush=True)
-
-
-@checked
-def compare(
-    case: Case,
-    solvers: Sequence[str | Solver],
-    *,
-    rtol: Sequence[float | str] = (1e-4, 1e-6, 1e-8),
-    steps: Sequence[float | str] = (),
-    against: Sequence[str | Path] = (),
-    repeats: Count = 5,
-    restitution: float | str | None = None,
-) -> pd.DataFrame:
-    """Judge solvers, of your own too, by a reference that two methods agree on.
-
-    Parameters
-    ----------
-    case : Case
-        What they run.
-    solvers : sequence of str or Solver
-        Names, with settings as ``"cvode:events=sundials"``, or objects (page "your-solver").
-    rtol : sequence of float
-        Relative tolerances at which each is asked.
-    steps : sequence of float
-        Time steps (s) of those that take fixed ones.
-    against : sequence of str or Path
-        Histories of other programs (CSV).
-    repeats : int
-        Runs whose median time is taken.
-    restitution : float, optional
-        ε of the rigid law that runs are held against, too, where contacts have laws of their
-        own; without, what each law stands for.
-
-    Returns
-    -------
-    DataFrame
-        A row a run, columns as in ``comparison.csv`` (page "compare" of the docs).
-
-    Raises
-    ------
-    InputError
-        Where a solver cannot be asked this.
-    ComputationError
-        Where the reference fails.
-    """
-    from eventpound.accuracy.compare import compare as compared
-    from eventpound.accuracy.compare import entries
-    from eventpound.accuracy.comparison_tables import run_table
-    from eventpound.accuracy.work_precision import STEP
-
-    words = [solver_word(name_of(s), "solvers", {STEP: "steps"}) for s in solvers]
-    tolerances = [positive("rtol", value, Dimension.NUMBER) for value in rtol]
-    sizes = [positive("steps", value, Dimension.TIME) for value in steps]
-    asked = entries(words, tolerances, sizes)
-    e = None if restitution is None else number("restitution", restitution, Dimension.NUMBER)
-    paths = [Path(path) for path in against]
-    return run_table(compared(case, asked, paths, repeats=repeats, restitution=e))

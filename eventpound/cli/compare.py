@@ -36,13 +36,14 @@ from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.progress import Doing
 from eventpound.cli.talk import complain
 from eventpound.errors import InputError
+from eventpound.tolerances import COMPARED, REPEATS
 
 if TYPE_CHECKING:
     from eventpound.accuracy.compare import Comparison
     from eventpound.scene.scene import Scene
 
 _NO_SOLVER = "none"
-_DEFAULT_RTOL = "1e-4,1e-6,1e-8,1e-10"
+_DEFAULT_RTOL = ",".join(f"{size:.0e}".replace("e-0", "e-") for size in COMPARED)
 
 
 def add(commands: Commands) -> None:
@@ -59,7 +60,8 @@ def add(commands: Commands) -> None:
     compare.option(
         "--columns OURS=THEIRS,...", "what their columns are called, or their numbers", default=""
     )
-    compare.option("--repeats N", "the median of N counts (5)", arguments.count_argument, default=5)
+    count = arguments.count_argument
+    compare.option("--repeats N", f"the median of N counts ({REPEATS})", count, default=REPEATS)
     rigid = "of the rigid law beside contacts with laws of their own (what each stands for)"
     compare.option("--restitution E", rigid, arguments.restitution)
     compare.out("where the tables and the diagram go (CASE/comparison)")
@@ -123,15 +125,10 @@ def _compare(options: Options) -> int:
 
 def _write(comparison: Comparison, out: Path) -> None:
     """Write the tables and the diagram, and print the table of the runs."""
-    from eventpound.accuracy.comparison_tables import table_files, text_table
-    from eventpound.report.comparison_page import comparison_page
-    from eventpound.report.html import PAGE
-    from eventpound.report.work_precision import timed, work_precision_png
+    from eventpound.accuracy.comparison_tables import text_table
+    from eventpound.report.compared import comparison_files
     from eventpound.results import write_together
 
-    diagram = {"work-precision.png": work_precision_png(comparison)} if timed(comparison) else {}
-    tables = table_files(comparison)
-    page = {PAGE: comparison_page(comparison, tables)}
-    write_together(out, diagram | tables | page)
+    write_together(out, comparison_files(comparison))
     print(text_table(comparison), end="")
     print(f"\nresults   {out}")

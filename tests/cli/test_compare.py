@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from scipy.optimize import brentq
 
+import eventpound
+from eventpound import InputError
 from eventpound.accuracy import compare
 from eventpound.cli import main
 from tests.plugged import plug_in
@@ -421,3 +423,20 @@ def test_a_rigid_law_that_cannot_be_had_is_said(tmp_path, capsys):
     assert "rigid law: not to be had: " in out
     assert "joint" in out.split("not to be had: ")[1].splitlines()[0]
     assert "rigid_peak_error" not in (case / "comparison" / "comparison.csv").read_text()
+
+
+def test_python_writes_what_the_command_writes(case, history, tmp_path):
+    """The same tables, diagram and page, of the same runs, where none are named."""
+    words = ["--solvers", "fast", "--repeats", "1", "--against", str(history)]
+    assert main(["compare", str(case), *words, "--columns", COLUMNS]) == 0
+    out, columns = tmp_path / "python", dict(_pairs(COLUMNS))
+    asked = {"against": [history], "columns": columns, "repeats": 1, "out": out}
+    table = eventpound.compare(eventpound.load_case(case), ["fast"], **asked)
+    assert table["rtol"].dropna().tolist() == [1e-4, 1e-6, 1e-8, 1e-10]
+    theirs = case / "comparison"
+    assert {f.name for f in out.iterdir()} == {f.name for f in theirs.iterdir()}
+    assert (out / "work-precision.png").read_bytes()[:4] == b"\x89PNG"
+    for name in ("quantities.csv", "impacts.csv"):
+        assert (out / name).read_bytes() == (theirs / name).read_bytes()
+    with pytest.raises(InputError, match="cannot be written to"):
+        eventpound.compare(eventpound.load_case(case), ["fast"], out=history)
