@@ -74,7 +74,7 @@ _COMMENTS = word_pattern(r"\s*(\d+)\s+Comment line")
 _COSMOS_NUMBERS = word_pattern(
     rf"\s*(?P<pts>\d+)\s+(?P<kind>.*?)\W*\b(?:pts|points)\b"
     rf"(?:.*?approx\w*\W*(?P<length>{NUMBER})\s*sec)?"
-    r"(?:(?!approx).)*?units\s*[=:]?\s*(?P<units>[^,.(\s]+)"
+    r"(?:(?!approx).)*?units\s*[=:]?\s*(?P<units>[^,;.(\s]+)"
     r"(?:.*?Format\s*[=:]?\s*\(\s*\d*[FEGI](?P<width>\d+))?"
 )
 _AZIMUTH_AT, _UNKNOWN = 53, -999.0
@@ -150,7 +150,8 @@ COSMOS = Dialect(
     extents=_cosmos_extents,
     patterns=(
         r"\A.*\n(?P<event>.*)",
-        r"Sta Chan?:? *\S+?: *(?P<component>.*?) *(?:deg\w*)? *(?:\(|Location:|$)",
+        r"Sta Chan?:? *\S+?: *(?P<component>\d+(?= *deg)|.*?) *(?:deg\w*)? *"
+        r"(?:\(|Location:|$|(?<=deg ))",
         r"Location: *(?P<location>\S.*)",
         rf"(?<!Uncor )Max\s*=\s*(?P<peak>{NUMBER})\s*(?P<peak_units>cm/s\w*2|g)\b",
         r"Code:(?P<station>.*)",

@@ -14,7 +14,7 @@ _CLOCK = re.compile(
     rf"[\"']?(?:(?<!\d)(?P<date>{_DATE})[\"']?(?:[T_]|\s*[,;]\s*|\s+)[\"']?)?"
     r"(?P<hours>(?<!\d)\d\d?):(?P<minutes>[0-5]\d):(?P<seconds>[0-5]\d)"
     # A comma parts columns, unless a semicolon does.
-    r"(?P<decimals>\.\d*|:\d+|,\d+(?=\s*;))?(?:\s*(?:Z|UTC)\b|[+-]\d\d:?\d\d\b)?[\"']?"
+    r"(?P<decimals>\.\d*|:\d+|,\d+(?=\s*;))?(?:\s*(?:Z|UTC)\b|[+-]\d\d:?\d\d\b|\s+[+-]\d\d:?\d\d(?=[\"']?\s*[,;\t]))?[\"']?"
 )
 _BEFORE = re.compile(r"\s*(?:\d+[\s,;]+)?")
 """What may stand before: nothing, or the number of the row."""

@@ -115,12 +115,14 @@ USC = Dialect(
     numbers=_pairs,
 )
 
-# A line "CHAN  1: 360 DEG     Location: Abutment 1", or of one component "COMP S58W".
+# A line "CHAN  1: 360 DEG     Location: Abutment 1", or of one component "COMP S58W". What
+# follows degrees, up or down is a location without a word before it, too: "90 Deg Roof".
 _CSMIP_CHANNEL = r"^ *(?:(?P<channel>CHAN +\d+):|COMP\b)"
 _NAME = (
-    r" *(?P<component>\S.*?) *(?:DEG\w*)?[ ,]*"
-    r"(?:Loc\w*\.?: *(?P<location>.*?) *|FROM.*|\(.*| {3,}.*)?"
+    r" *(?P<component>(?P<sure>\d+(?= *(?:DEG|°))|(?:UP|DOWN)\b)|\S.*?) *(?:DEG\w*\.?|°)?[ ,]*"
+    r"(?:Loc\w*\.?: *(?P<location>.*?) *|FROM.*|\(.*| {3,}.*|(?(sure)(?P<place>\S.*?) *|(?!)))?"
 )
+_OTHER_NAMES = "channel", "location|place"
 
 # California Strong Motion Instrumentation Program (CSMIP, CDMG), uncorrected records of film, and
 # RENADIC (Universidad de Chile), in its layout: a head for each channel, "/&" after its pairs.
@@ -143,7 +145,7 @@ CDMG = Dialect(
     units=_UNITS,
     width=7,
     numbers=_pairs,
-    other_names=lambda head: (head.text("channel") or "", head.text("location") or ""),
+    other_names=lambda head: tuple(head.text(key) or "" for key in _OTHER_NAMES),
 )
 
 # Building and Housing Research Centre of Iran (BHRC, ISMN): Volume I of even samples, not pairs,
@@ -238,5 +240,5 @@ CSMIP = Dialect(
     units="units|peak units",
     width=10,
     ends_file=False,
-    other_names=lambda head: (head.text("channel") or "", head.text("location") or ""),
+    other_names=lambda head: tuple(head.text(key) or "" for key in _OTHER_NAMES),
 )

@@ -55,6 +55,15 @@ def test_cosmos_with_the_step_of_the_raw_record_alone(tmp_path: Path) -> None:
     assert read_record(written(tmp_path, text), component="70").time_step == STEP
 
 
+def test_cosmos_with_semicolons(tmp_path: Path) -> None:
+    text = writers.cosmos(MOTION, STEP, "pts, approx {0:4.0f} secs; units=cm/sec2;Format=(8F10.5)")
+    text = text.text.replace("0 deg (Rcrdr", "0 deg Roof (Rcrdr")
+    data = read_record(written(tmp_path, text), component="#1")
+    np.testing.assert_allclose(data.acceleration, MOTION, atol=1e-5)
+    assert data.component is not None
+    assert data.component.isdecimal()
+
+
 def test_cosmos_counts_are_no_accelerations(tmp_path: Path) -> None:
     data = "pts, approx {0:4.0f} secs, units=counts (50),Format=(8F10.5)"
     file = written(tmp_path, writers.cosmos(MOTION, STEP, data).text)
@@ -73,6 +82,31 @@ def test_a_channel_of_a_structure_is_named_without_its_location(tmp_path: Path) 
     with pytest.raises(InputError, match=r"'90' is the name of 2 .*: #1 90 \(CHAN  1, Abutment 1"):
         read_record(both, component="90")
     assert read_record(both, component="deck: center").component == "90"
+
+
+@pytest.mark.parametrize(
+    ("printed", "asked"),
+    [
+        ("90 DEG Roof", "90"),
+        ("90 Deg, Roof - East", "Roof - East"),
+        ("90 Deg.   Location:", "90"),
+        ("90 Deg Deck: Span 3", "Deck: Span 3"),
+        ("90 Deg    from", "90"),
+        ("Down Roof", "down"),
+        ("Ref. North  Location: pile", "Ref. North"),
+    ],
+)
+def test_names_and_locations_of_channels(tmp_path: Path, printed: str, asked: str) -> None:
+    text = writers.csmip_v2(MOTION, STEP).text.replace(":  90 DEG\r\n", f": {printed}\r\n")
+    assert printed in text
+    data = read_record(written(tmp_path, text), component=asked)
+    np.testing.assert_allclose(data.acceleration, MOTION, atol=1e-5)
+
+
+def test_a_response_spectrum_is_no_accelerogram(tmp_path: Path) -> None:
+    text = writers.esm(MOTION, STEP).text.replace("ACCELERATION", "ACCELERATION RESPONSE SPECTRUM")
+    with pytest.raises(InputError, match="an acceleration time series is needed"):
+        read_record(written(tmp_path, text))
 
 
 def test_pairs_at_uneven_times_need_a_time_step(tmp_path: Path) -> None:

@@ -112,6 +112,7 @@ COMPONENT_L = {"units": "g", "component": "L"}
         (rows("{} {:.6f}", CLOCK, A), G),
         (rows("2024/01/01 {},{:.6f}", CLOCK, A), G),
         (rows("2024-01-01T{}Z\t{:.6f}", CLOCK, A), G),
+        (rows("2024-01-01 {} +0900,{:.6f}", CLOCK, A), G),
         ("Date Time Acc_g\n" + rows("2024-01-01 {} {:.6f}", CLOCK, A), {}),
         (rows("{}\t{:.6f}", MIDNIGHT, A), G),
         (rows("2024-01-{:02d} {}\t{:.6f}", [1] * 50 + [2] * 10, MIDNIGHT, A), G),
