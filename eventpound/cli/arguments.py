@@ -189,7 +189,7 @@ def load(path: Path, suite: str | None = None) -> Case:
     if any(case.run.stated.named()):
         from eventpound.quantities.lookup import asked
 
-        with told_of(f"{_file_of(case)}[run]: "):
+        with told_of(f"{file_of(case)}[run]: "):
             asked([(scene, case.run.stated)])
     return case
 
@@ -248,7 +248,7 @@ def check_solver_of(case: Case, in_file: bool = True) -> None:
     if in_file and plain and case.suite is None:
         # It takes every scene, and its tolerance was checked; others take long to import.
         return
-    with told_of(_file_of(case) if in_file else ""):
+    with told_of(file_of(case) if in_file else ""):
         if case.suite is None:
             from eventpound.simulation import check_solver
 
@@ -259,7 +259,8 @@ def check_solver_of(case: Case, in_file: bool = True) -> None:
             plan_of(case, None, None, None, intensities=False)
 
 
-def _file_of(case: Case) -> str:
+def file_of(case: Case) -> str:
+    """What a message on the file of a case begins with."""
     from eventpound.case.loading import CASE_FILE
 
     return f"{case.directory / CASE_FILE}: "

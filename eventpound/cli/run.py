@@ -71,7 +71,9 @@ def _run(options: Options) -> int:
     if options.export is not None:
         return _export(options)
     case = _with_solver(arguments.load(options.case, options.suite), options)
-    arguments.check_solver_of(case, in_file=options.solver is None and options.rtol is None)
+    in_file = options.solver is None and options.rtol is None
+    if case.suite is None:
+        arguments.check_solver_of(case, in_file)
     out = options.results
     from eventpound import results
 
@@ -79,7 +81,7 @@ def _run(options: Options) -> int:
     if case.suite is not None:
         why = "is for a single run; this case has a suite of records"
         options.refuse(["--time-limit", "--max-steps"], why)
-        return run_suite(case, options, out)
+        return run_suite(case, options, out, arguments.file_of(case) if in_file else "")
     options.refuse(["--histories"], "is for a case with a suite of records")
     response, estimate = _compute(case, options, out)
     print("\n".join(_summary(response)))

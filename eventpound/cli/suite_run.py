@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from eventpound.cli.arguments import Options, warn_of_scales
 from eventpound.cli.progress import Counter
 from eventpound.cli.talk import complain, going_on, located
+from eventpound.errors import told_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,14 +23,18 @@ _HISTORIES = "records"
 """Folder of the results of every record, in that of the suite's."""
 
 
-def run_suite(case: Case, options: Options, out: Path) -> int:
-    """Run a scene under every record, write the table and the figures."""
+def run_suite(case: Case, options: Options, out: Path, told: str) -> int:
+    """Run a scene under every record, write the table and the figures.
+
+    Where it cannot be run the message begins as told.
+    """
     from eventpound.study import suite
     from eventpound.study.suite_statistics import INTENSITY_TABLE
     from eventpound.study.table import SUITE_TABLE, read_table
 
     estimate = True if options.error_estimate else None
-    plan, case = suite.plan_of(case, None, None, estimate, intensities=True)
+    with told_of(told):
+        plan, case = suite.plan_of(case, None, None, estimate, intensities=True)
     keep = _keeper(out / _HISTORIES) if options.histories else None
     with going_on(lambda: _kept(out, plan.size)), Counter("records") as progress:
         moved = suite.run_suite(plan, case, out, progress, keep)
