@@ -26,7 +26,7 @@ from eventpound.mechanics.supported import lowered, moving_supports, support_mot
 from eventpound.motion.readers.base import Source
 from eventpound.motion.readers.numbers import HALF_A_DIGIT
 from eventpound.motion.readers.time_column import even_step, resolution
-from eventpound.motion.readers.titles import Content, title_of
+from eventpound.motion.readers.titles import Content, title_of_kind
 from eventpound.numerics.arrays import Floats
 from eventpound.score.answer import Motion, columns_of, place_of, read_motion
 from eventpound.score.difference import Difference
@@ -120,7 +120,7 @@ def _in_si(path: Path, motion: Motion, called: Mapping[str, str], bodies: list[s
     """A motion in the units that the titles of mapped columns say, at even times if they are."""
 
     def factor(ours: str, kind: Content) -> float:
-        title = title_of(called.get(ours, ""))
+        title = title_of_kind(called.get(ours, ""), kind)
         if title.unit is not None and title.kind is not kind:
             raise InputError(f"{path}: column '{title.text}' is no {ours}, which is {kind.value}")
         return title.factor

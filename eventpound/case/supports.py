@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,10 +17,11 @@ from eventpound.errors import InputError
 from eventpound.motion import GroundMotion, NoMotion, Record
 from eventpound.motion.constant import Constant, PhasedSine
 from eventpound.motion.readers import Given
-from eventpound.motion.readers.base import load
-from eventpound.motion.readers.columns import table_of
-from eventpound.motion.readers.time_column import even_step
-from eventpound.motion.readers.titles import Content
+from eventpound.motion.readers.base import Source, load
+from eventpound.motion.readers.binary import binary_kind
+from eventpound.motion.readers.columns import refuse_decimal_commas, step_of, table_of
+from eventpound.motion.readers.rows import NumberRows
+from eventpound.motion.readers.titles import Content, Title, title_of_kind
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.force import Force, constant_force
 from eventpound.scene.support import Support
@@ -247,6 +249,9 @@ def read_force(path: Path) -> tuple[float, float, Floats]:
         Naming the file, the line and what is accepted.
     """
     source = load(path)
+    if kind := binary_kind(source.content, may_have_zeros=False):
+        raise source.error(None, f"found {kind}; times and forces are needed")
+    refuse_decimal_commas(source, whole=True)
     table = table_of(source, _SECONDS)
     rows, times = table.rows, table.times
     if rows.bad:
@@ -256,9 +261,30 @@ def read_force(path: Path) -> tuple[float, float, Floats]:
         accepted = "accepted: two, a time (s) and a force (N)"
         raise source.error(rows.lines[0], f"found {rows.width} columns; {accepted}")
     time, force = times[0], 1 - times[0]
-    title = table.titles[force]
+    title = _force_title(source, rows, table.titles[force].text)
     if title.kind not in (None, Content.FORCE):
         raise source.error(rows.lines[0] - 1, f"'{title.text}' is no force but {title.kind.value}")
-    unit = table.titles[time].factor
-    step = even_step(source, rows.column_texts(time), rows.lines, table.stated.time_step, unit)
-    return unit * float(rows.column(time)[0]), step, title.factor * rows.column(force)
+    step, _ = step_of(source, table)
+    assert step is not None
+    start = table.titles[time].factor * float(rows.column(time)[0])
+    return start, step, title.factor * rows.column(force)
+
+
+def _force_title(source: Source, rows: NumberRows, text: str) -> Title:
+    """The title of forces, with the unit that it or, without one, a comment states.
+
+    Raises
+    ------
+    InputError
+        For a unit in brackets that is none of a force.
+    """
+    title = title_of_kind(text, Content.FORCE)
+    if not text:
+        words = (re.sub(r"(?i)^\W*(units?\b)?", "force ", line) for line in rows.before)
+        said = (title_of_kind(line, Content.FORCE) for line in words)
+        return next((one for one in said if one.unit is not None), title)
+    if title.kind in (None, Content.FORCE) and title.unit is None and re.search(r"[(\[]", text):
+        raise source.error(
+            rows.lines[0] - 1, f"'{text}' states no unit of a force that is known, as (kN) does"
+        )
+    return title

@@ -27,6 +27,7 @@ U, V = np.sin(T), np.cos(T)
             "t [ms]\tx (mm)\tspeed (cm/s)\n{3!r}\t{4!r}\t{5!r}\n",
             {"t": "t [ms]", "u.deck": 2, "v.deck": 3},
         ),
+        ("t_ms,x_mm,speed_cm/s\n{3!r},{4!r},{5!r}\n", {"t": 1, "u.deck": 2, "v.deck": 3}),
         ("t,u.deck,v.deck\n{0:.4f},{1!r},{2!r}\n", {}),
         ("{0:.4f} {1!r} {2!r}\n", {"t": 1, "u.deck": 2, "v.deck": 3}),
     ],

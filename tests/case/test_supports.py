@@ -233,3 +233,30 @@ def test_titles_of_forces_say_their_units(tmp_path: Path) -> None:
     (tmp_path / "p.txt").write_text("t [ms]\ta [cm/s2]\n" + rows)
     with pytest.raises(InputError, match=r"'a \[cm/s2\]' is no force but an acceleration"):
         read_force(tmp_path / "p.txt")
+
+
+@pytest.mark.parametrize(
+    "title", ["t [s],Fx (kN)", "t,wind_kN", "Zeit,Kraft [kN]", "# force in kN", "# units: kN"]
+)
+def test_forces_of_any_name_have_their_unit(tmp_path: Path, title: str) -> None:
+    rows = "".join(f"{0.01 * i:.2f},{i % 7}\n" for i in range(100))
+    (tmp_path / "p.txt").write_text(f"{title}\n{rows}")
+    _, step, force = read_force(tmp_path / "p.txt")
+    assert step == 0.01
+    assert force[:3].tolist() == [0.0, 1000.0, 2000.0]
+
+
+@pytest.mark.parametrize(
+    ("before", "mark", "message"),
+    [
+        ("t,Moment [kNm]\n", ",", r"'Moment \[kNm\]' states no unit of a force"),
+        ("100 0.02\n", " ", "line 1: a time step of 0.02 s is stated, column 1 has one of 0.01 s"),
+        ("", "\t0,", "decimal commas"),
+        ("PK\x03\x04", ",", "a zip archive .*; times and forces are needed"),
+    ],
+)
+def test_forces_that_are_refused(tmp_path: Path, before: str, mark: str, message: str) -> None:
+    rows = "".join(f"{0.01 * i:.2f}{mark}{i % 7}\n" for i in range(100))
+    (tmp_path / "p.txt").write_text(before + rows)
+    with pytest.raises(InputError, match=message):
+        read_force(tmp_path / "p.txt")

@@ -148,7 +148,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         For decimal commas, tokens that are not numbers, rows of another length, no
         acceleration, or several columns of which none is a time, unless one is asked for.
     """
-    _refuse_decimal_commas(source)
+    refuse_decimal_commas(source)
     table = table_of(source, given)
     rows, components = table.rows, table.components
     if len(components) > 1 and rows.width > 2 and not table.times and given.component is None:
@@ -248,16 +248,7 @@ def read_column(
         time_step=not table.times and stated.time_step is None and given.time_step is None,
         line=rows.lines[0],
     )
-    step, line = stated.time_step, stated.time_step_line
-    for i in table.times:
-        known = given.time_step if step is None else step
-        unit = table.titles[i].factor
-        found = even_step(source, rows.column_texts(i), rows.lines, known, unit)
-        if step is not None and found != step:
-            raise source.error(
-                line, f"a time step of {step!r} s is stated, column {i + 1} has one of {found!r} s"
-            )
-        step, line = found, rows.lines[1]
+    step, line = step_of(source, table, given.time_step)
     values = rows.column(column)
     if step is None:
         assert given.time_step is not None
@@ -267,6 +258,28 @@ def read_column(
     if title.units is not None:
         header = replace(header, units=title.units, units_line=rows.lines[0] - 1)
     return record_data(source, COLUMNS.name, header, values, given, table.notes)
+
+
+def step_of(
+    source: Source, table: ColumnTable, given: float | None = None
+) -> tuple[float | None, int | None]:
+    """The step (s) of the times, or else stated before them, and its line.
+
+    Raises
+    ------
+    InputError
+        For uneven times, and where they have another step than is stated.
+    """
+    rows, step, line = table.rows, table.stated.time_step, table.stated.time_step_line
+    for i in table.times:
+        known = given if step is None else step
+        found = even_step(source, rows.column_texts(i), rows.lines, known, table.titles[i].factor)
+        if step is not None and found != step:
+            raise source.error(
+                line, f"a time step of {step!r} s is stated, column {i + 1} has one of {found!r} s"
+            )
+        step, line = found, rows.lines[1]
+    return step, line
 
 
 def _passed_over(rows: NumberRows) -> tuple[str, ...]:
@@ -279,12 +292,12 @@ _NO_WORDS = re.compile(r"[\d\s.,;:eEdD+\-\"'TZ/]+")
 _WITH_COMMA = re.compile(r"[+-]?\d*(?:[.,]\d+)?(?:[eEdD][+-]?\d+)?")
 
 
-def _refuse_decimal_commas(source: Source) -> None:
-    """Stop where commas stand in numbers, or may."""
+def refuse_decimal_commas(source: Source, *, whole: bool = False) -> None:
+    """Stop where commas stand in numbers; or may, unless all numbers may be whole."""
     if b"," not in source.content:
         return
     lines = [(i, x) for i, x in enumerate(source.lines, start=1) if _NO_WORDS.fullmatch(x)]
-    pointed = any("." in line for _, line in lines)
+    pointed = whole or any("." in line for _, line in lines)
     for number, line in lines:
         tokens = line.split()
         alone = len(tokens) > 1 and all(map(_WITH_COMMA.fullmatch, tokens))

@@ -127,6 +127,26 @@ def title_of(text: str) -> Title:
     return Title(text, text, _kind_of(text))
 
 
+_LAST_PART = re.compile(r".*(?=[\s_,/(\[{<])")
+_CALLED = {
+    Content.TIME: "time",
+    Content.DISPLACEMENT: "disp",
+    Content.VELOCITY: "vel",
+    Content.FORCE: "force",
+}
+
+
+def title_of_kind(text: str, kind: Content) -> Title:
+    """What a title says of a column that is known to hold this, whatever its name."""
+    title = title_of(text)
+    if title.unit is None:
+        before = _LAST_PART.match(text)
+        named = title_of(_CALLED[kind] + (text[before.end() :] if before else f" {text}"))
+        if named.unit is not None and named.kind is kind:
+            return replace(title, kind=kind, unit=named.unit, factor=named.factor)
+    return title
+
+
 def titles_of(lines: list[str], width: int) -> list[Title] | None:
     """Titles of so many columns, from the last of the lines before them; None where there are none.
 
