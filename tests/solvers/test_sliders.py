@@ -25,6 +25,7 @@ from eventpound.scene import (
     GROUND,
     Backfill,
     Body,
+    BoucWen,
     Contact,
     Dashpot,
     Force,
@@ -339,6 +340,44 @@ def test_two_sliders_side_by_side_are_one_of_both_forces(solver: str) -> None:
     moving = np.abs(np.interp(rows.t, among.t, among.v[:, 0])) > 1e-3
     expected = np.interp(rows.t, among.t, among.force[:, 0])
     np.testing.assert_allclose(total[moving], expected[moving], atol=2e-2 * expected.max())
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+def test_shares_of_a_load_are_told_as_not_unique(solver: str) -> None:
+    scene = Scene(
+        (Body("deck", 1000.0), Body("p", 1000.0), Body("q", 1000.0)),
+        (
+            Spring("one", (GROUND, "deck"), Slider(0.1, 1000.0)),
+            Spring("joint", ("p", "q"), Slider(0.1, 5000.0)),
+            Spring("bent", (GROUND, "p"), BoucWen(1e3, 100.0, 0.01)),
+            Spring("two", (GROUND, "deck"), Slider(0.1, 1000.0)),
+            Spring("back", (GROUND, "q"), Linear(2e3)),
+        ),
+        motion=Sine(0.1, 1.0),
+    )
+    recording = run(scene, 1.0, solver).recording
+    # The deck stands still on both; what holds q to p alone has one force.
+    assert recording.unique_z is not None
+    assert recording.unique_z.tolist() == [False, True, True, False]
+    joint = recording.history.force[:, 1]
+    assert np.abs(joint).max() < 500.0
+    with_q = 1000.0 * recording.history.a[:, 2] + recording.history.force[:, 4]
+    np.testing.assert_allclose(-joint, with_q, rtol=0.0, atol=1e-7)
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+def test_sticks_in_a_cycle_of_unlike_masses_move_as_in_another_program(solver: str) -> None:
+    sticks = (
+        Spring("s0", (GROUND, "b1"), Slider(0.03, 2e4)),
+        Spring("s1", ("b0", "b1"), Slider(0.03, 2e7, 3e8)),
+        Spring("s2", ("b2", GROUND), Slider(0.2, 1e5, 4e6)),
+        Spring("s3", ("b1", "b2"), Slider(0.03, 1e7)),
+    )
+    bodies = Body("b0", 6.3e7), Body("b1", 1.05e5), Body("b2", 300.0)
+    scene = Scene(bodies, sticks, motion=Sine(2.0, 0.5))
+    # By the program in SciPy, in 25 s.
+    answer = [-0.0784845, -0.0784845, -0.07057117]
+    np.testing.assert_allclose(run(scene, 0.9, solver).recording.u, answer, rtol=0.0, atol=1e-8)
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
