@@ -18,6 +18,7 @@ OTHERS = {
     "mechanics/series.py",
     "motion/mavroeidis_papageorgiou.py",
     "motion/pulse_fit.py",
+    "motion/readers/beside_samples.py",
     "motion/readers/header.py",
     "numerics/polynomial.py",
     "report/fragility_figure.py",
@@ -27,7 +28,8 @@ OTHERS = {
     "study/fragility.py",
     "study/suite_statistics.py",
 }
-MOST, MOST_IN_SOLVERS = 23, 8
+# Of the yardstick two, since it stands in modules; scene/at_rest has every law's tangent.
+MOST, MOST_IN_SOLVERS = 26, 8
 KINDS = {"BOUC_WEN", "BACKFILL", "YIELDING_SOIL", "SLIDER", "DEGRADING", "ITS_ENERGY"}
 
 

@@ -67,7 +67,8 @@ def test_the_threshold_is_the_stated_one(response: Response) -> None:
 def test_terms_and_scales_stand_in_the_summary(response: Response) -> None:
     scales = response.scene.motion.scales()
     assert scales is not None
-    largest = max(response.summary[f"peaks.{b.name}.abs_max"] for b in response.scene.bodies)
+    first, *_ = response.scene.bodies
+    largest = response.summary[f"peaks.{first.name}.abs_max"]
     assert response.summary["pi_um"] == pytest.approx(largest / scales.length, rel=1e-14)
     assert response.summary["scales.L_e"] == scales.length
 
@@ -180,7 +181,13 @@ def test_no_number_of_an_impact_without_one() -> None:
 
 def test_summary_json_holds_every_number_of_the_list(response: Response) -> None:
     stored = summarise(response)
+    first = f"pi_um.{response.scene.bodies[0].name}"
     for name, value in response.summary.items():
+        if str(name).startswith("pi_um"):
+            # Π-terms have a table of their own there.
+            key = "um" if name in ("pi_um", first) else str(name).removeprefix("pi_")
+            assert stored["pi"][key] == value
+            continue
         found = find(response.scene, str(name))
         assert found is not None
         before, _, after = found.quantity.path.partition(f"<{found.quantity.owner}>")

@@ -17,7 +17,7 @@ from eventpound.motion.readers.extents import (
     while_like,
     word_pattern,
 )
-from eventpound.motion.readers.labelled import Dialect, Labelled, Series, plain_numbers
+from eventpound.motion.readers.labelled import Dialect, Labelled, Trace, plain_numbers
 from eventpound.motion.readers.numbers import NUMBER, numbers_of_line, to_count, to_float
 
 # PEER (AT2). Five headers are in use. Four end with "NPTS= 4000, DT= .0100 SEC" (NGA-West2, with
@@ -224,7 +224,7 @@ CWB = Dialect(
 _SCALE = word_pattern(rf"({NUMBER})\s*\((gal)\)\s*/\s*({NUMBER})")
 
 
-def _knet_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Series:
+def _knet_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Trace:
     """Counts as gal, less their mean."""
     text = head.text("Scale Factor")
     scale = _SCALE.search(text or "")
@@ -236,7 +236,7 @@ def _knet_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: 
     counts, notes, _ = plain_numbers(dialect, head, stated, given)
     values = counts * (to_float(scale.group(1)) / to_float(scale.group(3)))
     mean = float(np.mean(values))
-    return Series(values - mean, (f"mean of {mean:.6g} gal removed", *notes))
+    return Trace(values - mean, (f"mean of {mean:.6g} gal removed", *notes))
 
 
 KNET = Dialect(
@@ -282,7 +282,7 @@ def _two_lines(source: Source) -> list[Extent]:
     return [Extent(1, 2, 2, groups_of(first, 1) | groups_of(second, 2))]
 
 
-def _filled_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Series:
+def _filled_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Trace:
     """The stated number of numbers, and a note on what fills up the last lines."""
     source, first = head.source, head.extent.end + 1
     a_line, width = head.count("a line").count, to_count(head.text("width") or "")
@@ -302,7 +302,7 @@ def _filled_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given
             f"{fill.size} numbers after the {stated.count} {stated.name} that line "
             f"{stated.line} states passed over; the largest is {np.max(np.abs(fill)):g}",
         )
-    return Series(values, notes)
+    return Trace(values, notes)
 
 
 ITSAK_FIXED = Dialect(

@@ -11,7 +11,7 @@ from eventpound.motion.readers.base import Given, Source
 from eventpound.motion.readers.block import StatedCount, numbers_of_block
 from eventpound.motion.readers.extents import Extent, groups_of, word_pattern
 from eventpound.motion.readers.header import Header
-from eventpound.motion.readers.labelled import Dialect, Labelled, Series, refuse_other_times
+from eventpound.motion.readers.labelled import Dialect, Labelled, Trace, refuse_other_times
 from eventpound.motion.readers.numbers import (
     NUMBER,
     numbers_of_line,
@@ -49,7 +49,7 @@ def _timeseries_extents(source: Source) -> Iterator[Extent]:
 
 def _timeseries_numbers(
     dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
-) -> Series:
+) -> Trace:
     """Samples up to the line that begins the next series, which must be as many as stated."""
     source, first = head.source, head.extent.end + 1
     rest = enumerate(source.lines[first - 1 :], start=first)
@@ -58,7 +58,7 @@ def _timeseries_numbers(
     if (head.text("layout") or "").upper() == "TSPAIR":
         rate, _ = head.number("rate", positive=True)
         own = _without_times(own, first, rate)
-    return Series(*numbers_of_block(own, first, stated))
+    return Trace(*numbers_of_block(own, first, stated))
 
 
 def _without_times(source: Source, first: int, rate: float) -> Source:
@@ -210,19 +210,19 @@ def _row(line: str) -> list[str] | None:
 
 def _count_and_step_numbers(
     dialect: Dialect, head: Labelled, stated: StatedCount, given: Given
-) -> Series:
+) -> Trace:
     """Samples, or those of pairs (t, a) whose times must be as stated."""
     source, first = head.source, head.extent.end + 1
     commas = Source(source.file, re.sub(rb"[,;]", b" ", source.content))
     if "pairs" not in head:
-        return Series(*numbers_of_block(commas, first, stated))
+        return Trace(*numbers_of_block(commas, first, stated))
     pairs = StatedCount(2 * stated.count, stated.line, f"twice the {stated.name}")
     numbers, notes = numbers_of_block(commas, first, pairs)
     after = enumerate(commas.lines[first - 1 :], start=first)
     rows = list(islice(((i, x.split()[0]) for i, x in after if x.strip()), stated.count))
     times, lines = [time for _, time in rows], [i for i, _ in rows]
     refuse_other_times(source, times, lines, *head.number("step"))
-    return Series(numbers[1::2], notes)
+    return Trace(numbers[1::2], notes)
 
 
 def _count_and_step_extents(source: Source) -> list[Extent]:

@@ -98,7 +98,7 @@ class Labelled:
         return StatedCount(int(value), line, label)
 
 
-class Series(NamedTuple):
+class Trace(NamedTuple):
     """Numbers in the header's unit, notes on what was done, and a time step (s) they imply."""
 
     values: Floats
@@ -106,14 +106,14 @@ class Series(NamedTuple):
     time_step: float | None = None
 
 
-Numbers = Callable[["Dialect", Labelled, StatedCount, Given], Series]
+Numbers = Callable[["Dialect", Labelled, StatedCount, Given], Trace]
 
 
-def plain_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Series:
+def plain_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Trace:
     """The block that follows a header, as it is."""
     width = to_count(head.text("width") or "") or dialect.width
     first = head.extent.end + 1
-    return Series(*numbers_of_block(head.source, first, stated, width, ends_file=dialect.ends_file))
+    return Trace(*numbers_of_block(head.source, first, stated, width, ends_file=dialect.ends_file))
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ class Dialect:
     ends_file : bool
         Whether nothing but text may follow the block.
     numbers : callable
-        The `Series` of a component.
+        The `Trace` of a component.
     other_names : callable
         What else a component may be asked for by.
     """

@@ -19,7 +19,7 @@ from eventpound.errors import InputError
 from eventpound.motion.readers.base import Given, Source, UnstatedError
 from eventpound.motion.readers.block import END_OF_CHANNEL, StatedCount, numbers_of_block
 from eventpound.motion.readers.extents import Extent, Extents, groups_of, line_like, word_pattern
-from eventpound.motion.readers.labelled import Dialect, Labelled, Series
+from eventpound.motion.readers.labelled import Dialect, Labelled, Trace
 from eventpound.motion.readers.numbers import NUMBER, to_float
 from eventpound.motion.readers.time_column import even_step
 from eventpound.numerics.arrays import Floats
@@ -57,7 +57,7 @@ def _heads(first: str) -> Extents:
     return extents
 
 
-def _pairs(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Series:
+def _pairs(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Trace:
     """Values at even times of the straight lines between pairs (t, a), and a note on it."""
     source, time_step, first = head.source, given.time_step, head.extent.end + 1
     pairs = StatedCount(2 * stated.count, stated.line, f"twice the {stated.name}")
@@ -70,7 +70,7 @@ def _pairs(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) 
             None, f"time goes from {t[i]:g} to {t[i + 1]:g} s at pair {i + 2} from line {first}"
         )
     if step := _even(source, t, first):
-        return Series(a, notes, step)
+        return Trace(a, notes, step)
     if time_step is None:
         raise UnstatedError(
             f"{source.file}: its {t.size} samples are {steps.min():.3g} to {steps.max():.3g} s "
@@ -87,7 +87,7 @@ def _pairs(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) 
         f"{t.size} samples at uneven times, straight lines between them taken every "
         f"{time_step:g} s; peak {np.max(np.abs(a)):g}, of those taken {np.max(np.abs(values)):.6g}"
     )
-    return Series(values, (*notes, note))
+    return Trace(values, (*notes, note))
 
 
 def _even(source: Source, t: Floats, line: int) -> float | None:
