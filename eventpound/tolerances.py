@@ -109,6 +109,8 @@ square of the distance. Reversals that are as near to each other or to an end ar
 SAME_SAMPLE = 1e-9
 """Part of a step, of a record's time step or of a run that is no step of its own: times that are
 sums of steps miss each other by rounding."""
+SOON = 1e-5
+"""Part of the run after an instant in which supports that begin to move at it have a speed."""
 
 # When a cascade of impacts is over.
 LAST_SPEED = 1e-15

@@ -19,12 +19,10 @@ from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Energy, History, Recording, SupportHistory, Task
-from eventpound.tolerances import OF_ROWS, OF_SUPPORT
+from eventpound.tolerances import OF_ROWS, OF_SUPPORT, SOON
 
 LINES = 4
 """Lines of the history before that instant at which contacts are looked at."""
-SOON = 1e-5
-"""Part of the run after an instant in which supports that begin to move at it have a speed."""
 
 
 def with_supports(task: Task, solve: Callable[[Task], Recording]) -> Recording:

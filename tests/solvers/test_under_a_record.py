@@ -87,7 +87,9 @@ def solved(scene: Scene, end: float, solver: str, rtol: float) -> Recording:
 @pytest.mark.parametrize("seed", range(10))
 def test_as_cvode(seed: int) -> None:
     scene, end = row(seed, 2 + seed % 6) if seed < 9 else row(seed, 20, 3.0)
-    found, true = solved(scene, end, "fast", RTOL), solved(scene, end, "cvode", 0.1 * RTOL)
+    # In seed 6 bodies touch: cvode tells when to the square root of its tolerance, and is 6e-6 of
+    # the motion off at 1e-11, 1e-7 at 1e-13, where fast is 5e-9 off at 1e-10.
+    found, true = solved(scene, end, "fast", RTOL), solved(scene, end, "cvode", 1e-3 * RTOL)
     assert [e[1:4:2] for e in found.events] == [e[1:4:2] for e in true.events]
     assert true.events
     for name in ("displacement", "acceleration", "base_shear"):

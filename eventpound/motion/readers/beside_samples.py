@@ -169,7 +169,7 @@ def _unknown_head(source: Source, rows: NumberRows, given: float | None) -> Inpu
 
 def counts(rows: NumberRows, index: int) -> bool:
     """Whether numbers at one end of all rows count these, or the samples in them."""
-    if len(rows.rows) < 3 or min(map(len, rows.rows)) < 2:
+    if len(rows.rows) < 3 or min(map(len, rows.rows)) < max(2, index + 1):
         return False
     texts = [row[index] for row in rows.rows]
     if not all(text.isdecimal() for text in texts):
