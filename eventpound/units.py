@@ -160,8 +160,11 @@ def _factor(unit: str, dimension: Dimension, found: str) -> float:
 
 def _of_force(unit: str, dimension: Dimension) -> str:
     """What to write where a mass stands in the place of a force; empty elsewhere."""
-    weight = registry().Quantity(1.0, unit) * registry().Quantity(1.0, "standard_gravity")
-    if not weight.is_compatible_with(dimension.unit):
+    found, gravity, wanted = (
+        registry().Quantity(1.0, word).dimensionality
+        for word in (unit, "standard_gravity", dimension.unit)
+    )
+    if found * gravity != wanted:
         return ""
     return ", it has a mass for a force: write kN, or tf (the weight of 1 t, 9.80665 kN) or kgf"
 

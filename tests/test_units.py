@@ -113,3 +113,15 @@ def test_every_example_is_accepted() -> None:
         example = dimension.value[2]
         assert example in dimension.accepted
         assert math.isfinite(quantity(example, dimension))
+
+
+@pytest.mark.parametrize("unit", ["degC", "t", "kg/m"])
+def test_a_unit_of_another_kind_is_refused(unit: str) -> None:
+    with pytest.raises(InputError, match="is no unit of time"):
+        quantity(f"5 {unit}", Dimension.TIME)
+
+
+def test_a_mass_for_a_force_is_answered() -> None:
+    for text, dimension in (("500 t", Dimension.FORCE), ("500 t/m", Dimension.STIFFNESS)):
+        with pytest.raises(InputError, match="a mass for a force: write kN, or tf"):
+            quantity(text, dimension)

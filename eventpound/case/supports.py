@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from eventpound.case.suite import Suite
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.motion import GroundMotion, NoMotion, Record
+from eventpound.motion.base import LARGEST
 from eventpound.motion.constant import Constant, PhasedSine
 from eventpound.motion.readers import Given
 from eventpound.motion.readers.base import Source, load
@@ -170,11 +172,12 @@ def _amount(table: Table, key: str) -> tuple[float, bool]:
     if not table.has(key):
         table.report_missing(key, _AMOUNT)
         return math.nan, False
-    try:
-        return constant_force(table.data[key])
-    except InputError:
-        table.reject(key, _AMOUNT)
-        return math.nan, False
+    with suppress(InputError):
+        value, per_mass = constant_force(table.data[key])
+        if abs(value) <= LARGEST:
+            return value, per_mass
+    table.reject(key, _AMOUNT)
+    return math.nan, False
 
 
 def _with_unit(value: float, per_mass: bool) -> object:

@@ -40,6 +40,9 @@ def warn_of_scales(given: Case | Sequence[Base]) -> None:
 def _factors(base: Base) -> Iterator[tuple[str, float]]:
     """Factor on the record of each run, by its name; none on one that cannot be read."""
     for member in base.records:
+        if member.synthetic is not None:
+            # It has no size of its own to be scaled from, and takes long to make.
+            continue
         try:
             yield from ((member.name, f) for f in _over_axes(base.under(member)))
             for name, own in member.supports:

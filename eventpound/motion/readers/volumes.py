@@ -106,8 +106,8 @@ USC = Dialect(
     extents=_heads(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b"),
     patterns=(
         r"NO\. OF POINTS\s*=\s*(?P<NO_OF_POINTS>\d+)",
-        r"\A.*\n(?P<event>.*?)( {3,}\d+.*)?\n(?P<date>.*?)( {3,}\d+.*)?\n",
-        r"\A(.*\n){5}(?P<station>.*?)( {3,}\d+.*)?\n(COMP)?(?P<component>.*?)( {3,}\d+.*)?\n",
+        r"\A.*\n(?P<event>.*?)( {3,}\d.*)?\n(?P<date>.*?)( {3,}\d.*)?\n",
+        r"\A(.*\n){5}(?P<station>.*?)( {3,}\d.*)?\n(COMP)?(?P<component>.*?)( {3,}\d.*)?\n",
     ),
     needs=(_UNITS,),
     count="NO OF POINTS",

@@ -337,3 +337,11 @@ def test_smc_of_uneven_times_is_named(tmp_path: Path) -> None:
 )
 def test_units_as_headers_spell_them(units: str, factor: float) -> None:
     assert unit_factor(units) == factor
+
+
+def test_a_line_of_digits_without_end_is_read_past(tmp_path: Path) -> None:
+    # Each digit was tried as the end of what stands behind a name, for minutes.
+    digits = "EVENT   " + "9" * 3000 + "   " + "9" * 3000
+    head = "FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:"
+    with pytest.raises(InputError, match="the header has no line"):
+        read_record(written(tmp_path, f"{head}\n{digits}\n{digits}"))
