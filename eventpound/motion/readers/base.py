@@ -18,6 +18,8 @@ from eventpound.basics.input_files import read_bytes
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 
+SAME_STEP = 1e-9
+"""Relative difference of two time steps, stated, given or read off times, that are one."""
 _MESSAGES = 5
 """Unreadable tokens that are named one by one."""
 

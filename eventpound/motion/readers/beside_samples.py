@@ -13,7 +13,7 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.motion.plausible import STEP
-from eventpound.motion.readers.base import Source, UnstatedError
+from eventpound.motion.readers.base import SAME_STEP, Source, UnstatedError
 from eventpound.motion.readers.header import Header
 from eventpound.motion.readers.numbers import to_float
 from eventpound.motion.readers.rows import NumberRows
@@ -25,8 +25,6 @@ _JUMP = 3.0
 """A number this far from the next, in the largest of the steps after it, is no sample."""
 _COMPARED = 20
 """Samples with which the first number is compared."""
-_SAME = 1e-9
-"""Relative difference of two times that are one."""
 
 
 def without_head(
@@ -118,7 +116,7 @@ def _stated_step(head: list[str], rest: NumberRows, given: float | None) -> floa
 
 
 def _same(step: float, given: float | None) -> bool:
-    return given is not None and math.isclose(step, given, rel_tol=_SAME)
+    return given is not None and math.isclose(step, given, rel_tol=SAME_STEP)
 
 
 def _may_be_step(rows: NumberRows) -> bool:

@@ -10,7 +10,7 @@ from decimal import Decimal
 import numpy as np
 
 from eventpound.motion.base import LARGEST, SMALLEST
-from eventpound.motion.readers.base import Given, RecordData, Source, UnstatedError
+from eventpound.motion.readers.base import SAME_STEP, Given, RecordData, Source, UnstatedError
 from eventpound.motion.readers.numbers import HALF_A_DIGIT, NUMBER, to_float
 from eventpound.numerics.arrays import Floats
 from eventpound.units import STANDARD_GRAVITY
@@ -202,7 +202,7 @@ def _agreed_time_step(source: Source, header: Header, given: Given) -> float:
         raise source.error(
             line, f"time step {stated!r} s; {SMALLEST:g} to {LARGEST:g} s can be computed with"
         )
-    if other is not None and not math.isclose(other, stated, rel_tol=1e-9):
+    if other is not None and not math.isclose(other, stated, rel_tol=SAME_STEP):
         raise source.error(
             line, f"time_step = {other!r} s was given, but the file has a time step of {stated!r} s"
         )

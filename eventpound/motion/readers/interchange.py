@@ -19,7 +19,7 @@ from eventpound.motion.readers.numbers import (
     to_float,
 )
 from eventpound.motion.readers.rows import SEPARATOR
-from eventpound.motion.readers.stated import count_in, stated_before, step_in
+from eventpound.motion.readers.stated import LARGEST_STEP, count_in, stated_before, step_in
 
 # EarthScope and ObsPy, described in obspy.io.ascii: a line "TIMESERIES NET_STA_LOC_CHAN_Q,
 # 12 samples, 40 sps, 2003-05-29T02:13:22.043400, SLIST, INTEGER, Counts" before each series, whose
@@ -141,7 +141,6 @@ SAC_ALPHANUMERIC = Dialect(
 # SHAKE), one on each of two lines, or "NPTS: 2000, DT: 0.01". Nothing need state units.
 
 _LONGEST_HEAD = 8
-_LARGEST_STEP = 1.0
 
 
 def _count_and_step(source: Source) -> Extent | None:
@@ -157,7 +156,7 @@ def _count_and_step(source: Source) -> Extent | None:
         if not first or not second:
             continue
         counts, steps, told = _stated([text for _, text in texts[:cut]])
-        if len(steps) != 1 or not 0.0 < to_float(steps[0]) <= _LARGEST_STEP:
+        if len(steps) != 1 or not 0.0 < to_float(steps[0]) <= LARGEST_STEP:
             continue
         line, head = texts[cut - 1]
         pairs = len(first) == len(second) == 2

@@ -16,7 +16,7 @@ from functools import partial
 from typing import NamedTuple
 
 from eventpound.errors import InputError
-from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
+from eventpound.motion.readers.base import SAME_STEP, Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import StatedCount, miscounted, numbers_of_block
 from eventpound.motion.readers.extents import Extent, Extents, groups_of, word_pattern
 from eventpound.motion.readers.header import Header, Peak, record_data
@@ -353,7 +353,7 @@ def refuse_other_times(
 ) -> None:
     """Stop where times beside the samples are not those of the step that a line states (s)."""
     step = even_step(source, times, lines, time_step)
-    if time_step is None or abs(step - time_step) > 1e-9 * step:
+    if time_step is None or abs(step - time_step) > SAME_STEP * step:
         raise source.error(
             line, f"a time step of {time_step!r} s is stated, its times are {step!r} s apart"
         )

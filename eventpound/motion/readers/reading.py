@@ -12,7 +12,15 @@ import numpy as np
 
 from eventpound.basics.given import checked, number
 from eventpound.errors import InputError
-from eventpound.motion.readers.base import Channel, Given, RecordData, Source, UnstatedError, load
+from eventpound.motion.readers.base import (
+    SAME_STEP,
+    Channel,
+    Given,
+    RecordData,
+    Source,
+    UnstatedError,
+    load,
+)
 from eventpound.motion.readers.components import chosen, component_names
 from eventpound.motion.readers.header import unit_factor
 from eventpound.motion.readers.registry import reader_of
@@ -160,7 +168,8 @@ def _answering(
 def _noting_others(data: RecordData, given: Given) -> RecordData:
     """The record with a note where the file says otherwise than what was given."""
     notes = list(data.notes)
-    if given.time_step is not None and not isclose(given.time_step, data.time_step, rel_tol=1e-9):
+    step = given.time_step
+    if step is not None and not isclose(step, data.time_step, rel_tol=SAME_STEP):
         found, other = data.time_step, given.time_step
         notes.append(f"time step {found:g} s of the file, not the {other:g} s given")
     if given.units is not None and unit_factor(given.units) != unit_factor(data.units):

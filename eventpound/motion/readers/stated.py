@@ -34,8 +34,8 @@ _UNIT = word_pattern(
     r"\bUNITS? *(?:OF|ARE|IN|:|=) *[(\[]? *([%A-Z]+(?:/[A-Z0-9/^*]+)?)|"
     r"(?<![\d.])(?<![\d.] )(?<![\w/])((?:[cm]?m|ft|in)/s(?:ec)?(?:\W{0,2}2|²|/s(?:ec)?)|gals?)\b"
 )
-_LARGEST_STEP = 1.0
-"""(s)"""
+LARGEST_STEP = 1.0
+"""What is longer (s) is no time step, whatever words or places say."""
 
 
 def step_in(text: str) -> float | None:
@@ -48,7 +48,7 @@ def step_in(text: str) -> float | None:
         step = 1.0 / rate if rate > 0.0 else 0.0
     else:
         return None
-    return step if 0.0 < step <= _LARGEST_STEP else None
+    return step if 0.0 < step <= LARGEST_STEP else None
 
 
 def count_in(text: str) -> str | None:

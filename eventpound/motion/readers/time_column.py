@@ -19,7 +19,7 @@ import re
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.motion.readers.base import Source
+from eventpound.motion.readers.base import SAME_STEP, Source
 from eventpound.motion.readers.numbers import HALF_A_DIGIT, clean_numbers, to_count, to_float
 from eventpound.numerics.arrays import Floats
 
@@ -33,8 +33,6 @@ _REGULAR, _SOME = 0.1, 3
 """Share and number of steps that repeat or skip a time, at least, where rounding does it."""
 _LOOSE = 0.25
 """Range of the steps that fit, in steps, above which one is no more than a guess."""
-_SAME = 1e-9
-"""Relative difference of two steps that are one."""
 _LARGEST_POWER = 308
 """Of ten, that a double can hold."""
 
@@ -105,7 +103,7 @@ def even_step(
         raise _uneven(source, texts, lines, times, width, int(odd[0]) + 1)
     low, high = found[0] * unit, found[1] * unit
     step = _roundest(low, high)
-    if stated is None or not low * (1.0 - _SAME) <= stated <= high * (1.0 + _SAME) or loose:
+    if stated is None or not low * (1.0 - SAME_STEP) <= stated <= high * (1.0 + SAME_STEP) or loose:
         return step
     return stated
 
