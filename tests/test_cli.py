@@ -157,7 +157,7 @@ def test_commands_stand_by_their_tasks(capsys: pytest.CaptureFixture[str]) -> No
     # Every command stands there once, with its line of help; those of two words below their first.
     names = cli._parser()._subparsers._group_actions[0].choices  # type: ignore[union-attr]
     commands = [name for name in names if " " not in name]
-    assert len(commands) == 13
+    assert len(commands) == 12
     for command in commands:
         assert out.count(f"\n  {command} ") == 1, command
 

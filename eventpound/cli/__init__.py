@@ -10,7 +10,7 @@ Examples
   eventpound check pulse         read it and say what was understood or is wrong
   eventpound run pulse           compute it; results and figures go to pulse/results/
   eventpound run pulse --rtol 1e-11 --out fine
-  eventpound plot pulse          draw the figures again from pulse/results/
+  eventpound report pulse        separation, seats, forces, ductility: two pages to hand in
   eventpound verify pulse        certify it: an error bound for every number
   eventpound compare pulse       speed against error of solvers and other programs
 
@@ -39,7 +39,7 @@ from eventpound.errors import ComputationError, InputError, InterruptionError
 from eventpound.numerics.compiling import watched
 
 _TASKS = {
-    "one case": ("new", "check", "run", "design", "plot", "floor_spectrum", "report"),
+    "one case": ("new", "check", "run", "report", "plot", "floor_spectrum"),
     "many runs": ("study",),
     "records and motions": ("records",),
     "how sure, how fast": ("verify", "compare", "problems"),

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
+from eventpound.cli.folder import is_folder
 from eventpound.cli.plot_folder import plot_folder
 from eventpound.cli.talk import complain
 from eventpound.errors import InputError
@@ -48,7 +49,7 @@ def _plot(options: Options) -> int:
     from eventpound.study.table import SUITE_TABLE, TABLE
 
     out = options.results
-    if _is_folder(options.case):
+    if is_folder(options.case):
         options.refuse_others("--out", "is for a single case, and this is a folder of cases")
         return plot_folder(options.case, options.out or Path("figures"))
     paper = options.paper()
@@ -71,13 +72,6 @@ def _plot(options: Options) -> int:
     for path in drawn:
         print(path)
     return 0
-
-
-def _is_folder(path: Path) -> bool:
-    """Whether it is a folder of cases and none itself."""
-    from eventpound.case.loading import CASE_FILE
-
-    return not (path / CASE_FILE).is_file() and any(path.glob(f"*/{CASE_FILE}"))
 
 
 def _has(directory: Path, table: str) -> bool:

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.cli.folder import of_each, worst_code
 from eventpound.cli.progress import StudyProgress
-from eventpound.cli.talk import complain
-from eventpound.errors import ComputationError, EventpoundError, InputError, InterruptionError
+from eventpound.errors import InputError
 
 if TYPE_CHECKING:
     from eventpound.report.gallery import GalleryEntry
@@ -21,29 +21,23 @@ def plot_folder(folder: Path, out: Path) -> int:
     from eventpound.results.files import check_writable, write_together
 
     check_writable(out)
-    entries: list[GalleryEntry] = []
-    left_out: dict[str, EventpoundError] = {}
-    for file in sorted(folder.glob("*/case.toml")):
+
+    def one(directory: Path) -> GalleryEntry | None:
         started = time.monotonic()
-        try:
-            make = _maker(file.parent)
-            entry = make and make(file.parent, out)
-        except (ComputationError, InputError) as error:
-            if isinstance(error, InterruptionError):
-                raise
-            complain(f"left out {file.parent.name}: {error}")
-            left_out[file.parent.name] = error
-            continue
+        make = _maker(directory)
+        entry = make and make(directory, out)
         if entry is not None:
-            entries.append(entry)
             seconds = time.monotonic() - started
             print(f"{entry.name:<22} {entry.runs:>7} runs {seconds:>7.1f} s", flush=True)
+        return entry
+
+    entries, left_out = of_each(folder, one)
     if not entries and not left_out:
         raise InputError(f"{folder}: no case with a [figure] in this folder")
     said = {name: str(error) for name, error in left_out.items()}
-    write_together(out, {"index.html": index_page("Figures", entries, said)})
+    write_together(out, {"index.html": index_page("Figures", list(entries.values()), said)})
     print(out / "index.html")
-    return max((error.exit_code for error in left_out.values()), default=0)
+    return worst_code(left_out)
 
 
 def _maker(directory: Path) -> Callable[[Path, Path], GalleryEntry] | None:

@@ -1,46 +1,200 @@
-"""Write one self-contained page of a run, a suite or a study."""
+"""Report what is decided by a case: separations, seats, forces, ductility, on two pages.
+
+Of a run, a suite, a study, or each case of a folder. For each joint the gap with which nothing
+touches anywhere ("separation needed"), then contacts, springs, storeys and bodies. Of a suite the
+50 and 84 % fractiles over the records, the largest, and its record. What each row is: the page
+"design" of the documentation.
+
+Files, in CASE/results/report: report.pdf, two pages of A4 (of a study one); report.html, these
+pages and an appendix with all figures, tables and quantities; report.csv, a row a demand (of a
+study: for each combination of its axes), which a spreadsheet opens; beside it all that the runs
+gave. Further runs are made for it: one without contact, and one for each contact. A suite or a
+study that was stopped goes on. Records alone and a study in Π-terms have the appendix only.
+
+Of a folder of cases: a report each, in FOLDER/reports, and a page with links to them.
+
+Examples
+--------
+  eventpound report bridge
+  eventpound report bridge --suite "records/*.AT2"
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, Options, add_command, case_of_results, write
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
+from eventpound.cli.folder import is_folder, of_each, worst_code
+from eventpound.cli.progress import Counter, Progress, StudyProgress, Watch
+from eventpound.cli.talk import complain, going_on, say
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    import pandas as pd
+
+    from eventpound.case import Case
+    from eventpound.report.html import Section
+    from eventpound.report.sheets import Sheet
+    from eventpound.study.design import DesignRuns
+    from eventpound.study.reading import StudyCase
+
+_FOLDER, _FOLDERS, PRINTED = "report", "reports", "report.pdf"
 
 
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
     report = add_command(commands, "report", _report, __doc__)
-    report.case()
-    report.out("where the results are and the page goes (CASE/results)")
+    help_text = "directory of the case, or of cases"
+    report.add_argument("case", metavar="CASE|FOLDER", type=Path, help=help_text)
+    report.option("--suite FILES", 'other records: "folder/*.AT2", in quotes, or a list of files')
+    report.option("--no-pages", "write the table only")
+    report.out("where table, pages and runs go (CASE/results/report)")
 
 
 def _report(options: Options) -> int:
+    if not is_folder(options.case):
+        _one(options, options.out or options.results / _FOLDER)
+        return 0
+    options.refuse_others("--out", "is for a single case, and this is a folder of cases")
+    from eventpound.report.gallery import links_page
     from eventpound.report.html import PAGE
 
-    out = options.results
-    write(out, {PAGE: _page(options, out)})
-    return 0
+    out, case = options.out or options.case / _FOLDERS, options.case
+
+    def one(directory: Path) -> str:
+        options.case = directory
+        return _one(options, out / directory.name)
+
+    titles, left_out = of_each(case, one)
+    arguments.write(out, {"index.html": links_page("Reports", titles, PAGE, left_out)})
+    return worst_code(left_out)
 
 
-def _page(options: Options, out: Path) -> bytes:
-    """The page of what is in the folder."""
-    from eventpound.report.page import report_page
-    from eventpound.report.study_page import study_page
-    from eventpound.report.suite_page import suite_page
+def _one(options: Options, out: Path) -> str:
+    """Make the report of one case; its title."""
+    from eventpound.case.loading import read_document
+    from eventpound.report.html import PAGE
+    from eventpound.report.sheets import as_html, as_pdf
+    from eventpound.results.tables import table_csv
+    from eventpound.study.design import DESIGN_TABLE
+
+    if "study" in read_document(options.case)[0]:
+        options.refuse(["--suite"], "is for a case without a [study]")
+        study = arguments.load_study(options.case)
+        title, table, parts = study.study.title, *_of_study(study, options, out)
+    else:
+        case = arguments.load(options.case, options.suite)
+        arguments.check_solver_of(case)
+        made = _of_run(case, out) if case.suite is None else _of_suite(case, out)
+        print("\n".join(_lines(case, made.table)))
+        title, table = case.title, made.table
+        parts = () if options.no_pages else (_sheets(made), _appendix(made, options, out))
+    files = {DESIGN_TABLE: table_csv(table)} if len(table) else {}
+    if parts:
+        say("draw the report")
+        sheets, sections = parts
+        files |= {PAGE: as_html(title, sheets, sections)}
+        files |= {PRINTED: as_pdf(title, sheets)} if sheets else {}
+    arguments.write(out, files)
+    return title
+
+
+def _sheets(made: DesignRuns) -> list[Sheet]:
+    """The two sheets; of a suite with the motion under the governing record."""
+    from eventpound.report.design_report import Told, design_sheets, governing_record, motion_under
+
+    case, response, record = made.case, made.response, ""
+    assert case is not None
+    if made.table.empty:
+        return []
+    if response is None:
+        record = governing_record(case.scene, made.table)
+        response = motion_under(case, record)
+    return design_sheets(Told(case, made.table, made.runs, response, record))
+
+
+def _appendix(made: DesignRuns, options: Options, out: Path) -> list[Section]:
+    """What stands behind the sheets of a run or a suite."""
+    from eventpound.report.run_appendix import run_sections
+    from eventpound.report.suite_appendix import suite_sections
     from eventpound.results import read
-    from eventpound.study.reading import load_finished
-    from eventpound.study.table import SUITE_TABLE, TABLE, read_suite, read_table
+    from eventpound.study.table import read_suite
 
-    if (out / SUITE_TABLE).is_file():
-        table, manifest = read_suite(out)
-        return suite_page(case_of_results(manifest, out, options), table, manifest)
-    if (out / TABLE).is_file():
-        # Of the very state of its case.
-        study, _, found = load_finished(options.case, out)
-        return study_page(study, read_table(out), found)
-    results = read(out)
-    case = case_of_results(results.manifest, out, options)
-    return report_page(case, results, out, options.case / "comparison")
+    assert made.case is not None
+    if made.runs is not None:
+        return suite_sections(made.case, *read_suite(out))
+    directory = options.results if options.out is None else out
+    return run_sections(made.case, read(out), directory, options.case / "comparison")
+
+
+def _of_run(case: Case, out: Path) -> DesignRuns:
+    """Run a case, and what its design numbers need."""
+    from eventpound import results
+    from eventpound.study.design import made_of_run
+
+    results.check_writable(out)
+    with Progress(case) as progress, Watch(None, progress) as watch:
+        made = made_of_run(case, watch, lambda: progress.begins("again, without contacts"))
+    assert made.response is not None
+    results.write(made.response, out, case=case)
+    return made
+
+
+def _of_suite(case: Case, out: Path) -> DesignRuns:
+    """Run a case under every record; those that failed are named."""
+    from eventpound.study.design import made_of_suite
+
+    with going_on(), Counter("records") as progress:
+        made = made_of_suite(case, out, progress)
+    assert made.runs is not None
+    arguments.warn_of_scales(case)
+    for record, why in zip(made.runs["record"], made.runs["failed"], strict=True):
+        if why:
+            complain(f"{record} failed, and is left out: {why}")
+    return made
+
+
+def _of_study(
+    case: StudyCase, options: Options, out: Path
+) -> tuple[pd.DataFrame, tuple[list[Sheet], list[Section]] | tuple[()]]:
+    """Make the runs of a study; its design numbers, its sheets and what stands behind them."""
+    from eventpound.report.design_study import study_cells, study_sheet
+    from eventpound.report.study_appendix import study_sections
+    from eventpound.results.cells import lines_of
+    from eventpound.results.trade import trade_of
+    from eventpound.study.design import made_of_study, plan_asking
+    from eventpound.study.table import read_manifest
+
+    plan = plan_asking(case.study)
+    # Where nothing is asked for beyond it, the table of the study is taken.
+    runs = options.results if plan == case.study else out
+    with going_on(), StudyProgress(plan.size) as progress:
+        made = made_of_study(plan, runs, progress)
+    assert made.runs is not None
+    arguments.warn_of_scales(plan.bases)
+    if failed := int((~made.runs["success"]).sum()):
+        complain(f"{failed} of {len(made.runs)} runs failed, and are left out")
+    first = case.study.bases[0].at_first().case
+    trade = trade_of(first.scene, first.run.stated)
+    if len(made.table):
+        print("\n".join(lines_of(study_cells(plan, made.table, trade))))
+    if options.no_pages:
+        return made.table, ()
+    sheets = [study_sheet(plan, made.table, trade)] if len(made.table) else []
+    sections = study_sections(case, made.runs, read_manifest(runs) or {})
+    return made.table, (sheets, sections)
+
+
+def _lines(case: Case, table: pd.DataFrame) -> Iterator[str]:
+    """What an engineer asks, to be read: a table a part, in units of the trade."""
+    from eventpound.report.design_tables import design_cells, scaling_words
+    from eventpound.results.cells import lines_of
+    from eventpound.results.trade import trade_of
+
+    trade = trade_of(case.scene, case.run.stated)
+    if scaling := scaling_words(case, trade):
+        yield f"scaling   {scaling}"
+    for heading, cells in design_cells(case.scene, table, trade) if len(table) else ():
+        yield from ("", heading, *lines_of(cells))

@@ -234,4 +234,4 @@ def _demands(response: Response) -> Iterator[str]:
     shown = list(parts.items())[:_MOST_DEMANDS]
     yield from (f"{owner:<16} {', '.join(texts)}" for owner, texts in shown)
     if len(parts) > len(shown):
-        yield f"{'':<16} and {len(parts) - len(shown)} more; `eventpound design` has all"
+        yield f"{'':<16} and {len(parts) - len(shown)} more; `eventpound report` has all"

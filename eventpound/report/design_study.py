@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -25,6 +26,12 @@ _WIDE, _HIGH, _TALL = 7.4, 2.6, 66.0
 """Inches of the figure, and its height on the sheet (mm)."""
 
 
+def study_cells(study: Plan, design: pd.DataFrame, trade: Trade) -> Cells:
+    """The largest demands of all contacts, springs or bodies, a row a point of the study."""
+    values, called = _largest(study, design)
+    return _table(values, _axes(study), called, trade)
+
+
 def study_sheet(study: Plan, design: pd.DataFrame, trade: Trade) -> Sheet:
     """The sheet of a study.
 
@@ -40,25 +47,34 @@ def study_sheet(study: Plan, design: pd.DataFrame, trade: Trade) -> Sheet:
     return list(_blocks(study, design, trade))
 
 
-def _blocks(study: Plan, design: pd.DataFrame, trade: Trade) -> Iterator[Block]:
-    axes = [name for name in study.columns if name != RECORD]
-    yield Head(study.title, title=True)
-    records, (_, high) = int(design["records"].max()), FRACTILES
-    column = f"{high:g} %"
-    under = f"the {column} fractile over {records} records" if records > 1 else "one motion"
-    said = f"Each number is the largest of all contacts, springs or bodies, under {under}."
-    yield Words((said, *filter(None, [large_scales_of(study.bases)])))
+def _axes(study: Plan) -> list[str]:
+    return [name for name in study.columns if name != RECORD]
+
+
+def _largest(study: Plan, design: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, pd.Series]]:
+    """Largest demands at each combination of the axes, by last words, and a row of each."""
+    column = f"{FRACTILES[1]:g} %"
     suffix = design["quantity"].map(lambda name: str(name).rpartition(".")[2])
     found = {word: design[suffix == word] for word in _SHOWN if (suffix == word).any()}
     if not found:
         found = {"abs_max": design[design["quantity"].str.startswith("peaks.")]}
-    values = pd.DataFrame(
-        {
-            word: rows.groupby(axes, sort=False, dropna=False)[column].max()
-            for word, rows in found.items()
-        }
-    ).reset_index()
-    called = {word: rows.iloc[0] for word, rows in found.items()}
+    # Records alone are one point.
+    at: Any = _axes(study) or (lambda _: 0)
+    values = {
+        word: rows.groupby(at, sort=False, dropna=False)[column].max()
+        for word, rows in found.items()
+    }
+    return pd.DataFrame(values).reset_index(), {word: rows.iloc[0] for word, rows in found.items()}
+
+
+def _blocks(study: Plan, design: pd.DataFrame, trade: Trade) -> Iterator[Block]:
+    axes = _axes(study)
+    yield Head(study.title, title=True)
+    records, (_, high) = int(design["records"].max()), FRACTILES
+    under = f"the {high:g} % fractile over {records} records" if records > 1 else "one motion"
+    said = f"Each number is the largest of all contacts, springs or bodies, under {under}."
+    yield Words((said, *filter(None, [large_scales_of(study.bases)])))
+    values, called = _largest(study, design)
     numeric = [axis for axis in axes if values[axis].dtype.kind == "f"]
     if numeric:
         yield Head("Demand over the axes")

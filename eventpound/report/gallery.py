@@ -74,10 +74,37 @@ def index_page(
     left_out : mapping of str to str, optional
         Names of cases that are not on it, with the reason.
     """
-    lines = [f"<li>{escape(name)}: {escape(why)}</li>\n" for name, why in (left_out or {}).items()]
-    before = [f"<p>Left out:</p>\n<ul>\n{''.join(lines)}</ul>\n"] if lines else []
     sections = [(entry.title, _parts(entry), entry.name) for entry in entries]
-    return page(title, sections, before)
+    return page(title, sections, _left_out(left_out or {}))
+
+
+def links_page(
+    title: str, titles: Mapping[str, str], file: str, left_out: Mapping[str, object]
+) -> bytes:
+    """Page of links to a file in the folder of each case, HTML.
+
+    Parameters
+    ----------
+    title : str
+        Of the page.
+    titles : mapping of str to str
+        What the cases are called, by their folders.
+    file : str
+        In each of them.
+    left_out : mapping
+        Names of cases that are not on it, with the reason.
+    """
+    links = (
+        f'<li><a href="{escape(name)}/{file}">{escape(name)}</a>: {escape(text)}</li>\n'
+        for name, text in titles.items()
+    )
+    return page(title, [], [f"<ul>\n{''.join(links)}</ul>\n", *_left_out(left_out)])
+
+
+def _left_out(why: Mapping[str, object]) -> list[Part]:
+    """A list of what was left out, with the reasons."""
+    lines = [f"<li>{escape(name)}: {escape(str(text))}</li>\n" for name, text in why.items()]
+    return [f"<p>Left out:</p>\n<ul>\n{''.join(lines)}</ul>\n"] if lines else []
 
 
 def _symbols(text: str) -> str:

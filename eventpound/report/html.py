@@ -1,7 +1,7 @@
 """One page generator: a page is a title and sections, and a section is a list of parts.
 
 Parts are figures, tables, lists, texts, what was understood of a case, and what was run. The
-pages of a run, a suite, a study, a comparison and of a gallery are these parts in another order.
+appendix of a report, the pages of a comparison and of a gallery are these parts in another order.
 Pictures are SVG within the page (a click makes one larger), nothing is loaded from elsewhere
 and no script runs, so that a page can be kept and sent as it is; the pictures of a gallery are
 the files beside it.
@@ -65,6 +65,11 @@ def page(title: str, sections: Iterable[Section], before: Iterable[Part] = ()) -
     bytes
         HTML, UTF-8.
     """
+    return document(title, ["page.css"], [chapter(title, sections, before)])
+
+
+def chapter(title: str, sections: Iterable[Section], before: Iterable[Part] = ()) -> Part:
+    """A heading with links to its sections, of which empty ones are left out, then these."""
     links, body = [], []
     for name, parts, *anchors in sections:
         if content := "".join(parts):
@@ -72,12 +77,12 @@ def page(title: str, sections: Iterable[Section], before: Iterable[Part] = ()) -
             links.append(f'<a href="#{anchor}">{escape(name)}</a>')
             body.append(f'<h2 id="{anchor}">{escape(name)}</h2>\n{content}')
     head = f"<h1>{escape(title)}</h1>\n<nav>{''.join(links)}</nav>\n"
-    return document(title, "page.css", [head, *before, *body])
+    return "".join([head, *before, *body])
 
 
-def document(title: str, style: str, body: Iterable[Part]) -> bytes:
-    """A file of HTML, UTF-8, with one of the style sheets of this package in it."""
-    css = (files("eventpound.report") / style).read_text(encoding="utf-8")
+def document(title: str, styles: Iterable[str], body: Iterable[Part]) -> bytes:
+    """A file of HTML, UTF-8, with style sheets of this package in it."""
+    css = "".join((files("eventpound.report") / s).read_text(encoding="utf-8") for s in styles)
     return _DOCUMENT.format(title=escape(title), css=css, body="".join(body)).encode()
 
 
@@ -93,9 +98,11 @@ def model_of(case: Case) -> Iterator[Part]:
 
 def origin_of(manifest: Mapping[str, Any]) -> Part:
     """What was run, by what, and the hashes that say so, as far as a manifest has them."""
-    named = {"started": "started", "case": "case_sha256", "study": "study_sha256"}
+    named = {"case": "case_sha256", "study": "study_sha256"}
     lines = {word: manifest.get(key) for word, key in named.items()}
-    lines |= {**manifest["versions"], **manifest["files"]}
+    # What a run took stands in its summary, which differs from run to run.
+    tables = {name: value for name, value in manifest["files"].items() if name.endswith(".csv")}
+    lines |= {**manifest["versions"], **tables}
     record = manifest.get("record") or {}
     lines |= {key: record.get(key) for key in ("file", "file_sha256")}
     lines["machine"] = ", ".join(map(str, manifest.get("machine", {}).values()))

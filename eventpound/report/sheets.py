@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
@@ -19,7 +19,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.image import imread
 from matplotlib.textpath import TextPath
 
-from eventpound.report.html import document, table_of
+from eventpound.report.html import Section, chapter, document, table_of
 from eventpound.report.style import literal, png, styled, svg
 from eventpound.results.cells import Cells
 
@@ -78,14 +78,20 @@ Block = Head | Words | Cells | Picture | Columns
 Sheet = Sequence[Block]
 
 
-def as_html(title: str, sheets: Sequence[Sheet]) -> bytes:
-    """The sheets as one page in itself, which a browser prints on as many of A4."""
+def as_html(title: str, sheets: Sequence[Sheet], appendix: Iterable[Section] = ()) -> bytes:
+    """The sheets as one page in itself, which a browser prints on as many of A4, and what follows.
+
+    Without sheets the appendix has the title.
+    """
     body = []
     for sheet in sheets:
         share = share_of(sheet)
         blocks = "".join(_html(block, WIDTH, share) for block in sheet)
         body.append(f'<section class="sheet">\n{blocks}</section>\n')
-    return document(title, "sheets.css", body)
+    if sections := list(appendix):
+        inner = chapter("Appendix" if sheets else title, sections)
+        body.append(f'<section class="appendix">\n{inner}</section>\n')
+    return document(title, ["page.css", "sheets.css"], body)
 
 
 def _html(block: Block, width: float, share: float) -> str:

@@ -39,7 +39,7 @@ from eventpound.study.table import SUCCESS, SUITE_TABLE, read_table
 if TYPE_CHECKING:
     import pandas as pd
 
-DESIGN_TABLE = "design.csv"
+DESIGN_TABLE = "report.csv"
 """What the table is called."""
 FRACTILES = (50.0, 84.0)
 """Per cent."""
@@ -101,16 +101,7 @@ def _says_something(scene: Scene, named: Named) -> bool:
 
 
 def asking(case: Case) -> Case:
-    """The case with its design numbers among the quantities that ``[run]`` asks for.
-
-    Raises
-    ------
-    InputError
-        Where nothing moves.
-    """
-    if not case.scene.bodies:
-        file = case.directory / CASE_FILE
-        raise InputError(f"{file}: [[body]]: missing; design numbers are of bodies that move")
+    """The case with its design numbers among the quantities that ``[run]`` asks for."""
     stated = case.run.stated
     names = [named.name for named in demands_of(case.scene, stated)]
     stated = replace(stated, quantities=tuple(dict.fromkeys((*stated.quantities, *names))))
@@ -118,10 +109,17 @@ def asking(case: Case) -> Case:
 
 
 def plan_asking(plan: Plan) -> Plan:
-    """The plan of a study that tabulates design numbers, too."""
-    firsts = [base.at_first().case for base in plan.bases]
-    names = [n.name for case in firsts for n in demands_of(case.scene, case.run.stated)]
-    return replace(plan, quantities=tuple(dict.fromkeys((*plan.quantities, *names))))
+    """The plan of a study that tabulates design numbers, too; of one in Π-terms there are none."""
+    return replace(plan, quantities=tuple(dict.fromkeys((*plan.quantities, *_told(plan)))))
+
+
+def _told(plan: Plan) -> dict[str, tuple[Case, Named]]:
+    """Design numbers of the scenes of a study that are not in Π-terms, each with its case."""
+    found: dict[str, tuple[Case, Named]] = {}
+    for case in (base.at_first().case for base in plan.bases if base.case.pi is None):
+        for named in demands_of(case.scene, case.run.stated):
+            found.setdefault(named.name, (case, named))
+    return found
 
 
 @checked
@@ -132,7 +130,7 @@ def design_numbers(
     workers: Count | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> pd.DataFrame:
-    """Give the design numbers of a run, a suite or a study, as ``eventpound design`` does.
+    """Give the design numbers of a run, a suite or a study, as ``eventpound report`` does.
 
     Parameters
     ----------
@@ -148,7 +146,7 @@ def design_numbers(
     Returns
     -------
     DataFrame
-        Columns as in ``design.csv`` (page "design" of the docs), SI.
+        Columns as in ``report.csv`` (page "design" of the docs), SI.
 
     Raises
     ------
@@ -157,6 +155,9 @@ def design_numbers(
     ComputationError
         Where a single run fails, or all records of a suite; one that failed is left out.
     """
+    if isinstance(case, Case) and not case.scene.bodies:
+        file = case.directory / CASE_FILE
+        raise InputError(f"{file}: [[body]]: missing; design numbers are of bodies that move")
     if isinstance(case, Scene) or (isinstance(case, Case) and case.suite is None):
         return made_of_run(case).table
     warn_of_scales(case if isinstance(case, Case) else case.plan.bases)
@@ -269,12 +270,7 @@ def design_of_study(table: pd.DataFrame, plan: Plan) -> pd.DataFrame:
     import pandas as pd
 
     axes = [name for name in plan.columns if name != RECORD]
-    demands: dict[str, tuple[Case, Named]] = {}
-    for base in plan.bases:
-        case = base.at_first().case
-        for named in demands_of(case.scene, case.run.stated):
-            demands.setdefault(named.name, (case, named))
-    done, rows = table[table[SUCCESS]], []
+    demands, done, rows = _told(plan), table[table[SUCCESS]], []
     groups = done.groupby(axes, sort=False, dropna=False) if axes else [((), done)]
     for values, group in groups:
         at = dict(zip(axes, values, strict=True))

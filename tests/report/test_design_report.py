@@ -24,6 +24,7 @@ from tests.report.test_page import CHROMIUM, Balanced
 from tests.study.test_suite import time_series
 
 CASES = Path(__file__).parents[2] / "cases"
+APPENDIX = '<section class="appendix">'
 HEAD = """\
 title = "Three-span bridge on two piers"
 [excitation]
@@ -77,8 +78,8 @@ def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name, amplitude in (("a", 0.2), ("b", 0.5), ("c", 0.8)):
         (folder / f"{name}.txt").write_text(time_series(amplitude))
     (folder / "case.toml").write_text(bridge())
-    assert main(["design", str(folder)]) == 0
-    return folder / "results" / "design"
+    assert main(["report", str(folder)]) == 0
+    return folder / "results" / "report"
 
 
 def told(case: Case) -> Told:
@@ -108,18 +109,19 @@ def printed(folder: Path, html: bytes) -> int:
 
 
 def test_the_command_writes_two_sheets_without_a_browser(suite: Path) -> None:
-    assert pages((suite / "design.pdf").read_bytes()) == 2
-    text = (suite / "design.html").read_text(encoding="utf-8")
+    assert pages((suite / "report.pdf").read_bytes()) == 2
+    text = (suite / "report.html").read_text(encoding="utf-8")
     parser = Balanced()
     parser.feed(text)
     assert parser.open == []
-    assert parser.links == []
+    assert parser.links == [f"#{name}" for name in parser.ids]
     assert all(source.startswith(("data:", "#")) for source in parser.sources)
     assert text.count('<section class="sheet">') == 2
 
 
 def test_a_browser_prints_two_pages_of_it(suite: Path, tmp_path: Path) -> None:
-    assert printed(tmp_path, (suite / "design.html").read_bytes()) == 2
+    sheets, *_ = (suite / "report.html").read_text(encoding="utf-8").partition(APPENDIX)
+    assert printed(tmp_path, sheets.encode()) == 2
 
 
 @pytest.mark.parametrize("name", ["adjacent-buildings", "pair", "floor-to-column"])
@@ -135,8 +137,9 @@ def test_a_scene_without_contacts_has_a_report() -> None:
 
 
 def test_it_speaks_as_the_trade_does(suite: Path) -> None:
-    text = (suite / "design.html").read_text(encoding="utf-8")
-    plain = re.sub(r"<svg.*?</svg>|<style.*?</style>", "", text, flags=re.DOTALL)
+    text = (suite / "report.html").read_text(encoding="utf-8")
+    sheets, *_ = text.partition(APPENDIX)
+    plain = re.sub(r"<svg.*?</svg>|<style.*?</style>", "", sheets, flags=re.DOTALL)
     numbers = re.findall(r"<td>([^<]+)</td>", plain)
     assert len(numbers) > 100
     for number in numbers:
@@ -153,8 +156,8 @@ def test_it_says_what_is_left_out(suite: Path, tmp_path: Path) -> None:
     for file in suite.parents[1].glob("*.t*"):
         shutil.copy(file, tmp_path)
     (tmp_path / "d.txt").write_text("0.1\nNaN\n")
-    assert main(["design", str(tmp_path)]) == 0
-    text = (tmp_path / "results" / "design" / "design.html").read_text(encoding="utf-8")
+    assert main(["report", str(tmp_path)]) == 0
+    text = (tmp_path / "results" / "report" / "report.html").read_text(encoding="utf-8")
     assert "Left out, because it failed: d.txt: " in text
 
 
@@ -181,8 +184,8 @@ def test_the_sources_of_numbers_stand_in_the_model(tmp_path: Path) -> None:
     for each in (case, one, read_case(one.understood, tmp_path / "case.toml")):
         sources = [contact.get("source") for contact in inputs_of(each)["contacts"]]
         assert sources == ["drawing B-12", None, None, None]
-    assert main(["design", str(tmp_path)]) == 0
-    page = (tmp_path / "results" / "design" / "design.html").read_text(encoding="utf-8")
+    assert main(["report", str(tmp_path)]) == 0
+    page = (tmp_path / "results" / "report" / "report.html").read_text(encoding="utf-8")
     assert "drawing B-12" in page
     (tmp_path / "case.toml").write_text(text.replace('"drawing B-12"', "12"))
     with pytest.raises(InputError, match="source: found 12; accepted: where its numbers are from"):

@@ -79,9 +79,9 @@ def test_the_report_and_the_screen_are_in_the_units_of_the_case(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = written(tmp_path, 'units = ["MN", "cm", "m/s^2"]')
-    assert main(["design", str(folder)]) == 0
+    assert main(["report", str(folder)]) == 0
     printed = capsys.readouterr().out
-    report = (folder / "results" / "design" / "design.html").read_text(encoding="utf-8")
+    report = (folder / "results" / "report" / "report.html").read_text(encoding="utf-8")
     told = re.sub(r"<style.*?</style>|<[^>]*>|data:[^\"]*", " ", report, flags=re.DOTALL)
     assert "gap 1.27 cm" in printed
     assert "largest impulse, MN s" in printed
@@ -96,19 +96,19 @@ def test_the_report_and_the_screen_are_in_the_units_of_the_case(
 def test_files_of_numbers_stay_in_si(tmp_path: Path) -> None:
     tables = []
     for units in ("", 'units = ["MN", "cm", "m/s^2"]'):
-        assert main(["design", str(written(tmp_path, units)), "--no-report"]) == 0
-        tables.append(pd.read_csv(tmp_path / "results" / "design" / "design.csv"))
+        assert main(["report", str(written(tmp_path, units)), "--no-pages"]) == 0
+        tables.append(pd.read_csv(tmp_path / "results" / "report" / "report.csv"))
     pd.testing.assert_frame_equal(*tables)
 
 
 def test_a_suite_in_other_units_is_not_run_again(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    results = tmp_path / "results" / "design"
+    results = tmp_path / "results" / "report"
     for units in ("cm", "mm"):
         case = written(tmp_path, f'units = ["{units}"]') / "case.toml"
         case.write_text(case.read_text().replace("file = ", "suite = "))
-        assert main(["design", str(tmp_path), "--no-report"]) == 0
+        assert main(["report", str(tmp_path), "--no-pages"]) == 0
         assert f"opening, {units}" in capsys.readouterr().out
     assert not list(results.glob("earlier-*"))
 

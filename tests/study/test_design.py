@@ -163,18 +163,18 @@ def test_every_demand_is_a_quantity() -> None:
 def test_the_command_prints_tables_and_writes_one(
     suite: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["design", str(suite)]) == 0
+    assert main(["report", str(suite)]) == 0
     out, err = capsys.readouterr()
     assert "Contact joint: deck | barrier, gap 12.7 mm, struck under 3 of 4 records" in out
     assert "e.txt failed, and is left out" in err
-    file = suite / "results" / "design" / "design.csv"
+    file = suite / "results" / "report" / "report.csv"
     written = file.read_bytes()
     table = by_name(pd.read_csv(file))
     shown = three_digits(1e3 * table.loc[JOINT + "seat_used", "84 %"])
     (line,) = [line for line in out.splitlines() if line.startswith("seat width used, mm")]
     assert line.split()[-3:] == [shown, shown_largest(table), "d.txt"]
     # Given again, nothing is run, and nothing changes.
-    assert main(["design", str(suite)]) == 0
+    assert main(["report", str(suite)]) == 0
     assert file.read_bytes() == written
 
 
@@ -185,24 +185,24 @@ def shown_largest(table: pd.DataFrame) -> str:
 def test_the_command_takes_a_run_and_a_study(
     suite: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["design", str(suite), "--suite", str(suite / "d.txt")]) == 0
+    assert main(["report", str(suite), "--suite", str(suite / "d.txt")]) == 0
     text = (suite / "case.toml").read_text()
     one = text.replace("suite = ", "file = ").replace("?", "d")
     (suite / "case.toml").write_text(one)
-    assert main(["design", str(suite)]) == 0
+    assert main(["report", str(suite)]) == 0
     assert "seat width used, mm" in capsys.readouterr().out
     axis = '[study]\n[[study.axis]]\nkey = "contact.joint.gap"\nvalues = ["1 cm", "2 cm"]\n'
     (suite / "case.toml").write_text(one + axis)
-    assert main(["design", str(suite)]) == 0
-    table = pd.read_csv(suite / "results" / "design" / "design.csv")
+    assert main(["report", str(suite)]) == 0
+    table = pd.read_csv(suite / "results" / "report" / "report.csv")
     assert sorted(set(table["contact.joint.gap"])) == [0.01, 0.02]
-    page = (suite / "results" / "design" / "design.html").read_text(encoding="utf-8")
+    page = (suite / "results" / "report" / "report.html").read_text(encoding="utf-8")
     needed = table[table["quantity"] == JOINT + "max_impulse"]["84 %"]
     for gap, impulse in zip(("1", "2"), needed, strict=True):
         row = page.partition(f">{gap}</td>")[2].partition("</tr>")[0]
         assert f">{Trade().number(impulse, 'N s')}</td>" in row
-    assert (suite / "results" / "design" / "design.pdf").read_bytes().startswith(b"%PDF")
-    assert main(["design", str(suite), "--suite", "d.txt"]) == 2
+    assert (suite / "results" / "report" / "report.pdf").read_bytes().startswith(b"%PDF")
+    assert main(["report", str(suite), "--suite", "d.txt"]) == 2
     assert "--suite: is for a case without a [study]" in capsys.readouterr().err
 
 
@@ -249,13 +249,16 @@ def test_records_without_bodies_and_suites_that_all_fail_are_no_design(
     suite: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (suite / "f.txt").write_text("0.1\nNaN\n")
-    assert main(["design", str(suite), "--suite", str(suite / "[ef].txt")]) == 1
+    assert main(["report", str(suite), "--suite", str(suite / "[ef].txt")]) == 1
     assert "all 2 records failed, the first because of: line 2" in capsys.readouterr().err
     text = (suite / "case.toml").read_text()
     figure = '[figure]\nkind = "record-scales"\n'
     (suite / "case.toml").write_text(text[: text.index("[[body]]")] + figure)
-    assert main(["design", str(suite)]) == 2
-    assert "[[body]]: missing; design numbers are of bodies" in capsys.readouterr().err
+    with pytest.raises(InputError, match=r"\[\[body\]\]: missing; design numbers are of bodies"):
+        design_numbers(load_case(suite))
+    # Of records alone the report is its appendix.
+    assert main(["report", str(suite)]) == 0
+    assert "Spectra of 4 records" in (suite / "results" / "report" / "report.html").read_text()
 
 
 def two_buildings(record: Record, gap: float = 0.02) -> Scene:

@@ -1,4 +1,4 @@
-"""The page of a run: the scene, inputs, motion, response, accuracy, origin."""
+"""The appendix of a run: the scene, inputs, motion, response, accuracy, origin."""
 
 from __future__ import annotations
 
@@ -36,8 +36,10 @@ _MOST_OWNERS = 8
 """Bodies, springs or contacts beside one another in a table."""
 
 
-def report_page(case: Case, results: StoredResults, directory: Path, comparison: Path) -> bytes:
-    """The page of a run.
+def run_sections(
+    case: Case, results: StoredResults, directory: Path, comparison: Path
+) -> list[html.Section]:
+    """What stands behind the report of a run.
 
     Parameters
     ----------
@@ -52,12 +54,12 @@ def report_page(case: Case, results: StoredResults, directory: Path, comparison:
 
     Returns
     -------
-    bytes
-        HTML, UTF-8.
+    list of Section
+        Empty ones have nothing to say.
     """
     drawn = figures(results, pi=case.pi is not None)
     certificate = _certificate(directory, results)
-    sections = [
+    return [
         ("Summary", [_summary(results, certificate)]),
         ("Model", html.model_of(case)),
         ("Ground motion", _motion(case)),
@@ -67,7 +69,6 @@ def report_page(case: Case, results: StoredResults, directory: Path, comparison:
         ("Accuracy", _accuracy(results, certificate, comparison / "work-precision.png")),
         ("Origin", [html.origin_of(results.manifest)]),
     ]
-    return html.page(case.title, sections)
 
 
 def _summary(results: StoredResults, certificate: str) -> html.Part:

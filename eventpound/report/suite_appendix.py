@@ -1,4 +1,4 @@
-"""The page of a suite: the scene, its motions, what they did, origin."""
+"""The appendix of a suite: the scene, its motions, what they did, origin."""
 
 from __future__ import annotations
 
@@ -29,8 +29,10 @@ _GROUPS = 4
 _SPECTRUM = PERIODS[::3]
 
 
-def suite_page(case: Case, table: pd.DataFrame, manifest: Mapping[str, Any]) -> bytes:
-    """The page of a suite.
+def suite_sections(
+    case: Case, table: pd.DataFrame, manifest: Mapping[str, Any]
+) -> list[html.Section]:
+    """What stands behind the report of a suite.
 
     Parameters
     ----------
@@ -43,8 +45,8 @@ def suite_page(case: Case, table: pd.DataFrame, manifest: Mapping[str, Any]) -> 
 
     Returns
     -------
-    bytes
-        HTML, UTF-8.
+    list of Section
+        Empty ones have nothing to say.
     """
     done = table[table["failed"] == ""]
     # Times of extremes say nothing over many runs.
@@ -54,7 +56,7 @@ def suite_page(case: Case, table: pd.DataFrame, manifest: Mapping[str, Any]) -> 
         for name in done.select_dtypes("number").columns
         if name.partition(".")[0] in listed and not name.rpartition(".")[2].startswith("t_")
     ]
-    sections = [
+    return [
         ("Summary", [_summary(case, table, done)]),
         ("Model", html.model_of(case) if case.scene.bodies else ()),
         ("Ground motions", _motions(case, list(done["record"]))),
@@ -63,7 +65,6 @@ def suite_page(case: Case, table: pd.DataFrame, manifest: Mapping[str, Any]) -> 
         ("Records", [_records(case, table)]),
         ("Origin", [html.origin_of(manifest)]),
     ]
-    return html.page(case.title, sections)
 
 
 def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> html.Part:

@@ -1,4 +1,4 @@
-"""The page of a study: its axes, its figures, its quantities, origin."""
+"""The appendix of a study: its axes, its figures, its quantities, origin."""
 
 from __future__ import annotations
 
@@ -20,8 +20,10 @@ _MOST_FAILED, _LISTED = 50, 8
 """Runs that are listed; values of an axis, beyond which only the ends of numbers are."""
 
 
-def study_page(case: StudyCase, table: pd.DataFrame, manifest: Mapping[str, Any]) -> bytes:
-    """The page of a study.
+def study_sections(
+    case: StudyCase, table: pd.DataFrame, manifest: Mapping[str, Any]
+) -> list[html.Section]:
+    """What stands behind the report of a study.
 
     Parameters
     ----------
@@ -34,8 +36,8 @@ def study_page(case: StudyCase, table: pd.DataFrame, manifest: Mapping[str, Any]
 
     Returns
     -------
-    bytes
-        HTML, UTF-8.
+    list of Section
+        Empty ones have nothing to say.
     """
     study = case.study
     done = table[table[SUCCESS]]
@@ -48,7 +50,7 @@ def study_page(case: StudyCase, table: pd.DataFrame, manifest: Mapping[str, Any]
     summary = {"runs": f"{len(done)} of {len(table)}", "in all runs": same}
     summary |= {"parts": "; ".join(parts)} if parts else {}
     first = study.bases[0].at_first().case
-    sections = [
+    return [
         ("Summary", [html.list_of(summary | struck(done))]),
         ("Axes", [_axes(study.columns, table)]),
         ("Figures", [html.figure_of(figure, said) for _, figure, said in figures_of(case, table)]),
@@ -57,7 +59,6 @@ def study_page(case: StudyCase, table: pd.DataFrame, manifest: Mapping[str, Any]
         ("Model", [html.text_part("The scene of the first run."), *html.model_of(first)]),
         ("Origin", [html.origin_of(manifest)]),
     ]
-    return html.page(study.title, sections)
 
 
 def _axes(axes: Sequence[str], table: pd.DataFrame) -> html.Part:
