@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eventpound.basics.given import checked, number, positive
-from eventpound.case.case import DEFAULTS, Stated
+from eventpound.case.run_options import DEFAULTS, Stated
 from eventpound.errors import EventpoundError, InputError
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from eventpound.basics.given import positive
-from eventpound.case.case import LARGEST_RTOL as LARGEST_RTOL
-from eventpound.case.case import SMALLEST_RTOL as SMALLEST_RTOL
-from eventpound.case.case import Case, RunOptions, SolverOptions, Stated
-from eventpound.case.defaults import default_duration, default_output_step
-from eventpound.case.options import event_problems, run_problems, settings_in_si
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions, Stated, with_given
+from eventpound.case.solver_options import LARGEST_RTOL as LARGEST_RTOL
+from eventpound.case.solver_options import SMALLEST_RTOL as SMALLEST_RTOL
+from eventpound.case.solver_options import SolverOptions, rtol_problems, settings_in_si
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
@@ -56,9 +56,9 @@ def simulate(
 ) -> Response:
     """Compute how a scene moves; `eventpound.simulate` without an estimate of the errors."""
     check_case(case)
-    length = positive("duration", duration, Dimension.TIME)
-    step = positive("output_step", output_step, Dimension.TIME)
-    run, options = options_of(case, length, step, energy, events)
+    run, options = options_of(
+        case, duration=duration, output_step=output_step, energy=energy, events=events
+    )
     ready = made_ready(case, run, options, solver, rtol, settings, **of_task)
     return ready.run({}, ready.task)
 
@@ -197,33 +197,12 @@ def check_case(case: Case | Scene) -> None:
     check_scene(scene, start)
 
 
-def options_of(
-    case: Case | Scene,
-    duration: float | None,
-    output_step: float | None,
-    energy: bool | None,
-    events: Sequence[str] | None = None,
-) -> tuple[RunOptions, SolverOptions]:
-    """Options of a checked case, or defaults for a scene, with what was given instead."""
+def options_of(case: Case | Scene, **given: object) -> tuple[RunOptions, SolverOptions]:
+    """Options of a checked case, or defaults for a scene, with what a call gives instead."""
     if isinstance(case, Case):
         refuse_suite(case)
-        given = {"duration": duration, "output_step": output_step, "energy": energy}
-        changes: dict[str, Any] = {key: v for key, v in given.items() if v is not None}
-        run = replace(case.run, **changes)
-        solver = case.solver
-    else:
-        length = duration or default_duration(case, 0.0)
-        step = output_step or default_output_step(case.motion, length)
-        run = RunOptions(0.0, length, step, bool(energy))
-        solver = SolverOptions()
-    problems = [*run_problems(run.start_time, run.duration, run.output_step)]
-    if events is not None:
-        run = replace(run, stated=replace(run.stated, events=tuple(events)))
-        scene = case.scene if isinstance(case, Case) else case
-        problems += [("events", problem) for problem in event_problems(events, scene)]
-    if found := [f"{key}: {problem}" for key, problem in problems]:
-        raise InputError(found)
-    return run, solver
+        return with_given(case.run, given, case.scene), case.solver
+    return with_given(RunOptions(), given, case), SolverOptions()
 
 
 _AT_LEAST = 1.0
@@ -265,10 +244,7 @@ def check_solver(
             problems = problems or _own_problems(solver, "check_task", task)
     except InputError as error:
         problems += [f"[solver]: {problem}" for problem in error.problems]
-    if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
-        problems.append(
-            f"[solver]: rtol = {options.rtol:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}"
-        )
+    problems += [f"[solver]: {problem}" for problem in rtol_problems(options.rtol)]
     if problems:
         raise InputError(problems)
 

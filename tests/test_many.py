@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from eventpound import BatchResponse, load_case, simulate, simulate_many
-from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion import Cosine, Harmonic, Record, Sine
 from eventpound.numerics.arrays import Floats

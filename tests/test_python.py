@@ -163,7 +163,7 @@ def test_a_name_that_is_taken() -> None:
         ({"rtol": "1e-6 m"}, "rtol: found '1e-6 m'"),
         ({"rtol": [1e-6]}, "rtol: found [1e-06]"),
         ({"duration": "12 kN"}, "duration: found '12 kN'"),
-        ({"duration": -1.0}, "duration: found -1.0; accepted: a positive number"),
+        ({"duration": -1.0}, "duration: found -1.0; accepted: a positive time (s)"),
         ({"output_step": None, "duration": True}, "duration: found True"),
     ],
 )

@@ -15,9 +15,9 @@ from eventpound.accuracy.foreign_history import judge_history, read_foreign
 from eventpound.accuracy.quantities import errors_of
 from eventpound.accuracy.reference import Reference, reference_of, stated_bounds
 from eventpound.accuracy.work_precision import Judged, SolverChoice, is_stepped, judge
-from eventpound.case.case import Case, RunOptions
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions, Way, warn_left_out
 from eventpound.errors import ComputationError, InputError
-from eventpound.quantities.ways import Way, warn_left_out
 from eventpound.scene.check import check_scene
 from eventpound.scene.rigid import rigid
 from eventpound.score.difference import Difference
@@ -152,7 +152,7 @@ def compare(
     check_case(case)
     if not asked and not against:
         raise InputError("compare: found nothing to judge; accepted: a solver, or a history")
-    warn_left_out(case, Way.COMPARE)
+    warn_left_out(case.run, Way.COMPARE)
     _check_restitution(case, restitution)
     for entry in asked:
         entry.task(case)

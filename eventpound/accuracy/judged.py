@@ -11,7 +11,7 @@ from eventpound.accuracy.estimate import estimate_of
 from eventpound.basics.given import Count, checked
 from eventpound.basics.warned import warn_caller
 from eventpound.case.case import Case
-from eventpound.case.options import EQUILIBRIUM, INITIAL
+from eventpound.case.run_options import EQUILIBRIUM, INITIAL
 from eventpound.errors import AccuracyWarning, InputError
 from eventpound.response import Response
 from eventpound.scene.check import check_scene

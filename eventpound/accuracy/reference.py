@@ -17,7 +17,9 @@ from pathlib import Path
 from typing import Any
 
 from eventpound.accuracy.quantities import errors_of, truth_of, values_of
-from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.results.jsontext import read_json

@@ -28,11 +28,12 @@ from eventpound.accuracy.routes import (
 from eventpound.accuracy.sequences import instead_of
 from eventpound.basics.given import checked, number, positive
 from eventpound.case.case import Case
+from eventpound.case.run_options import Way, warn_left_out
+from eventpound.case.solver_options import rtol_problems
 from eventpound.errors import ComputationError, InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.ways import Way, warn_left_out
 from eventpound.scene.scene import Scene
-from eventpound.simulation import LARGEST_RTOL, SMALLEST_RTOL, check_case, options_of, task_with
+from eventpound.simulation import check_case, options_of, task_with
 from eventpound.solvers.base import Recording, Task
 from eventpound.units import Dimension
 
@@ -103,13 +104,14 @@ def verify(
         After Ctrl-C, where a route was done by then.
     """
     tolerance = number("rtol", rtol, Dimension.NUMBER)
-    if not SMALLEST_RTOL <= tolerance <= LARGEST_RTOL:
-        raise InputError(f"rtol = {tolerance:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}")
+    if problems := rtol_problems(tolerance):
+        raise InputError(problems)
     patience = positive("patience", patience, Dimension.TIME)
     check_case(case)
     say = report or (lambda _: None)
-    warn_left_out(case, Way.VERIFY)
-    task = _task(case, positive("duration", duration, Dimension.TIME))
+    if isinstance(case, Case):
+        warn_left_out(case.run, Way.VERIFY)
+    task = _task(case, duration)
     times = [number("moments", t, Dimension.TIME) for t in moments]
     if outside := [t for t in times if not task.start <= t <= task.end]:
         raise InputError(
@@ -165,8 +167,8 @@ def _reported(task: Task, runs: Sequence[RouteRun | RouteFailure]) -> tuple[Rout
     return tuple(reports)
 
 
-def _task(case: Case | Scene, duration: float | None) -> Task:
-    run, options = options_of(case, duration, None, False)
+def _task(case: Case | Scene, duration: float | str | None) -> Task:
+    run, options = options_of(case, duration=duration, energy=False)
     scene = case.scene if isinstance(case, Case) else case
     run = replace(run, output_step=run.duration / SAMPLES)
     return task_with(scene, run, replace(options, name="cvode", settings={}, atol={}), None)

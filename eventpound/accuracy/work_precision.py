@@ -18,7 +18,8 @@ import numpy as np
 
 from eventpound.accuracy.quantities import errors_of
 from eventpound.accuracy.reference import Reference
-from eventpound.case.case import Case, SolverOptions
+from eventpound.case.case import Case
+from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.score.difference import Difference
 from eventpound.simulation import solved, task_with

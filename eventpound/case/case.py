@@ -2,123 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from eventpound.case.figure import Figure
 from eventpound.case.record_scaling import LARGEST_SCALE
+from eventpound.case.run_options import DEFAULTS, RunOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.case.suite import Suite
 from eventpound.motion.readers.base import RecordData
 from eventpound.scene.pi_structure import PiStructure
 from eventpound.scene.scene import Scene
-
-
-@dataclass(frozen=True, slots=True)
-class Stated:
-    """What ``[run]`` says of quantities: which are wanted, and numbers that some are about.
-
-    Parameters
-    ----------
-    threshold_speed : float
-        Impacts that close faster are counted (m/s).
-    contact_stiffness : float, optional
-        With it the forces of impacts are estimated (N/m).
-    quantities : tuple of str
-        What is computed besides, by name or by path (page "quantities" of the docs).
-    without_contact : bool
-        Whether to run the scene without contact, too, for `amplification` and its peaks.
-    avoiding_gap : bool
-        Whether to find the gaps that would have avoided contact.
-    units : tuple of str
-        In which design numbers are told (`eventpound.units.TOLD`); of others the usual.
-    events : tuple of str
-        Which events of springs are written (`eventpound.case.options.LISTED`).
-    """
-
-    threshold_speed: float = 0.01
-    contact_stiffness: float | None = None
-    quantities: tuple[str, ...] = ()
-    without_contact: bool = False
-    avoiding_gap: bool = False
-    units: tuple[str, ...] = ()
-    events: tuple[str, ...] = ()
-
-    def named(self) -> Iterator[tuple[str, str]]:
-        """Names and paths of all quantities that are wanted, each after the option that says so."""
-        yield from (("quantities", name) for name in self.quantities)
-        if self.without_contact:
-            yield "without_contact", "amplification.<body>"
-            yield "without_contact", "free.peaks.<body>.*"
-        if self.contact_stiffness is not None:
-            yield "contact_stiffness", "contacts.<contact>.estimated_force"
-        if self.threshold_speed != DEFAULTS.threshold_speed:
-            yield "threshold_speed", "contacts.<contact>.impacts_faster"
-        if self.avoiding_gap:
-            for word in ("separation_needed", "avoiding_gap", "avoiding_gap_alone"):
-                yield "avoiding_gap", f"contacts.<contact>.{word}"
-
-
-DEFAULTS = Stated()
-"""Where a case does not say."""
-
-
-@dataclass(frozen=True, slots=True)
-class RunOptions:
-    """What is to be computed.
-
-    Parameters
-    ----------
-    start_time : float
-        When the run starts (s).
-    duration : float
-        How long it lasts (s); NaN where each record of a suite sets it.
-    output_step : float
-        Distance of the rows of the history (s); NaN as above.
-    energy : bool
-        Whether to keep the energy ledger.
-    error_estimate : bool, optional
-        Whether to estimate the errors of peaks and final values; None where nothing is said.
-    stated : Stated
-        What is said of quantities.
-    in_equilibrium : bool
-        Whether the scene was put where its forces hold it.
-    """
-
-    start_time: float
-    duration: float
-    output_step: float
-    energy: bool = False
-    error_estimate: bool | None = None
-    stated: Stated = DEFAULTS
-    in_equilibrium: bool = False
-
-
-LARGEST_RTOL, SMALLEST_RTOL = 1e-2, 1e-14
-"""Relative tolerances that a solver is given; beyond, they mean nothing in doubles."""
-
-
-@dataclass(frozen=True, slots=True)
-class SolverOptions:
-    """What computes it, and how accurately.
-
-    Parameters
-    ----------
-    name : str
-        The solver.
-    rtol : float
-        Relative tolerance.
-    atol : mapping of str to float
-        Absolute tolerances by ``"displacement"`` (m), ``"velocity"`` (m/s) and
-        ``"z"``, where they were given.
-    settings : mapping
-        Keys of the solver's own (SI).
-    """
-
-    name: str = "cvode"
-    rtol: float = 1.0e-9
-    atol: Mapping[str, float] = field(default_factory=dict)
-    settings: Mapping[str, object] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,23 +14,17 @@ from pathlib import Path
 from eventpound.basics.given import checked
 from eventpound.basics.input_files import read_bytes
 from eventpound.case.building import with_buildings
-from eventpound.case.case import Case, RunOptions
+from eventpound.case.case import Case
 from eventpound.case.damping import read_damping
 from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, bare_accelerations, for_scene, read_excitation
 from eventpound.case.figure import Figure, read_figure
-from eventpound.case.options import (
-    EQUILIBRIUM,
-    INITIAL,
-    default_solver,
-    read_run,
-    read_solver,
-    to_be_placed,
-)
 from eventpound.case.pi import OF_SCENE, read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.record_scaling import large_scales
+from eventpound.case.run_options import EQUILIBRIUM, INITIAL, RunOptions, read_run, to_be_placed
+from eventpound.case.solver_options import default_solver, read_solver
 from eventpound.case.spring_stiffness import masses_carried
 from eventpound.case.springs import read_springs
 from eventpound.case.suite import Suite, with_suite

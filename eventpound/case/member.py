@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import Any
 
 from eventpound.case.case import Case
-from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.suite import Member
 from eventpound.case.understood import sources_of, understood_case
 from eventpound.motion import RecordData
@@ -42,11 +40,7 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
         Where the record cannot be used, or sets no duration.
     """
     scene = replace(member.on(case.scene), motion=member.options.motion(data))
-    run = case.run
-    if math.isnan(run.duration):
-        run = replace(run, duration=default_duration(scene, run.start_time))
-    if math.isnan(run.output_step):
-        run = replace(run, output_step=default_output_step(scene.motion, run.duration))
+    run = case.run.completed(scene)
     read = member.options.of_file(member.file, data)
     sources = sources_of(case.understood)
     understood = understood_case(case.title, read, scene, run, case.solver, sources)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from eventpound.case.case import SolverOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import InputError
 
 _WORDS = {"true": True, "false": False}
@@ -83,7 +83,7 @@ def solver_word(
 
 def _checked(where: str, name: str, settings: dict[str, object]) -> Mapping[str, object]:
     """Settings in SI, read as those of a case are."""
-    from eventpound.case.options import read_solver
+    from eventpound.case.solver_options import read_solver
     from eventpound.case.table import CaseProblem, Table
 
     problems: list[CaseProblem] = []

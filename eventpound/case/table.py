@@ -147,11 +147,13 @@ class Table:
 
     def require(self, key: str, condition: bool, accepted: str) -> None:
         """Note a problem with a given value that does not satisfy a condition."""
-        if not condition and not any(
-            problem.where == self.where and problem.key == self._prefix + key
-            for problem in self._problems
-        ):
+        if not condition and not self.noted(key):
             self.reject(key, accepted)
+
+    def noted(self, key: str) -> bool:
+        """Whether a problem with a key is noted."""
+        at = self.where, self._prefix + key
+        return any((problem.where, problem.key) == at for problem in self._problems)
 
     def text(self, key: str, accepted: str, default: str | None = None) -> str:
         """A text; empty where it is wrong or, without a default, missing."""

@@ -7,7 +7,8 @@ from dataclasses import asdict
 from types import MappingProxyType
 from typing import Any
 
-from eventpound.case.case import DEFAULTS, RunOptions, SolverOptions
+from eventpound.case.run_options import DEFAULTS, RunOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.scene.contact import Contact, written
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import law_keys

@@ -242,7 +242,7 @@ def check_solver_of(case: Case, in_file: bool = True) -> None:
     InputError
         Where there is no such solver, setting or tolerance, or the solver cannot take the scene.
     """
-    from eventpound.case.options import REFERENCE
+    from eventpound.case.solver_options import REFERENCE
 
     plain = case.solver.name == REFERENCE and not case.solver.settings
     if in_file and plain and case.suite is None:

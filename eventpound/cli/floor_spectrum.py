@@ -33,7 +33,7 @@ def add(commands: Commands) -> None:
 
 
 def _floor_spectrum(options: Options) -> int:
-    from eventpound.quantities.ways import Way, warn_left_out
+    from eventpound.case.run_options import Way, warn_left_out
     from eventpound.report.spectrum_figure import floor_figure
     from eventpound.report.style import on_paper
     from eventpound.results import check_writable
@@ -44,7 +44,7 @@ def _floor_spectrum(options: Options) -> int:
     case = arguments.load(options.case)
     refuse_suite(case)
     arguments.check_solver_of(case)
-    warn_left_out(case, Way.FLOOR)
+    warn_left_out(case.run, Way.FLOOR)
     out = options.results
     check_writable(out)
     response = simulate(case)

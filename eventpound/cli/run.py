@@ -173,7 +173,7 @@ def _keep_partial(case: Case, error: BaseException, response: Response | None, o
         complain("nothing was computed that could be kept")
         return
     from eventpound import results
-    from eventpound.case.case import DEFAULTS
+    from eventpound.case.run_options import DEFAULTS
     from eventpound.response import Response
     from eventpound.simulation import task_of
 

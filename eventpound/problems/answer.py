@@ -17,7 +17,7 @@ import numpy as np
 
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
 from eventpound.accuracy.verify import PATIENCE, Report, verify
-from eventpound.case.case import RunOptions
+from eventpound.case.run_options import RunOptions
 from eventpound.mechanics.model import assemble
 from eventpound.problems.collection import Collection, ProblemFolder
 from eventpound.score.levels import LISTED

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eventpound.case.case import Stated
+from eventpound.case.run_options import RunOptions, Stated
 from eventpound.case.table import suggestion
-from eventpound.errors import InputError
+from eventpound.errors import InputError, told_of
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import FROM_FURTHER, FROM_ONE, Quantity, TakenFrom, parts_of
 from eventpound.quantities.listed import LISTED
@@ -128,6 +128,31 @@ def asked(parts: Iterable[tuple[Scene, Stated]]) -> list[str]:
     if problems:
         raise InputError(problems)
     return list(names)
+
+
+def quantities_asked(parts: Iterable[tuple[Scene, RunOptions]]) -> list[str]:
+    """Names of the quantities that ``[run]`` asks for where many runs are tabulated.
+
+    Parameters
+    ----------
+    parts : iterable of (Scene, RunOptions)
+        Scenes and the options of each; where there are several, one that has it is enough.
+
+    Raises
+    ------
+    InputError
+        Naming every option that no scene has anything for.
+    """
+    parts = list(parts)
+    with told_of("[run]: "):
+        names = asked((scene, run.stated) for scene, run in parts)
+    ledger = [
+        name
+        for scene, run in parts
+        if run.energy or needs_energy(names)
+        for name in ledger_of(scene)
+    ]
+    return list(dict.fromkeys([*ledger, *names]))
 
 
 def chosen(scene: Scene, wanted: Sequence[str], stated: Stated | None = None) -> list[str]:

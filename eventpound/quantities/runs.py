@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eventpound.case.case import DEFAULTS, Stated
+from eventpound.case.run_options import DEFAULTS, Stated
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.scene import Scene

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.case.options import LISTED
+from eventpound.case.run_options import LISTED
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.values import motion_of_spring
 from eventpound.scene.scene import Scene
@@ -83,7 +83,7 @@ def spring_events(
     run : Recording
         Of a solver that says ``lists_springs``.
     words : collection of str
-        Keys of `eventpound.case.options.LISTED`.
+        Keys of `eventpound.case.run_options.LISTED`.
     """
     laws = {LISTED[word] for word in words}
     found: list[SpringEvent] = []

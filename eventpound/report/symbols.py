@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from eventpound.case.run_options import options
 from eventpound.quantities.base import parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.report.style import Unit, force_unit, length_unit, literal
@@ -55,9 +56,11 @@ _OF_RUN: dict[tuple[str, str], _Called] = {
     ("u_y", ""): ("$u_y$", Dimension.LENGTH),
     ("delta", ""): (r"$\delta$", Dimension.LENGTH),
     ("u_max", ""): ("$u_{max}$", Dimension.LENGTH),
-    ("run", "duration"): ("duration", Dimension.TIME),
-    ("run", "start_time"): ("start of the run", Dimension.TIME),
-    ("run", "output_step"): ("output step", Dimension.TIME),
+    **{
+        ("run", name): (key.called or name.replace("_", " "), key.dimension)
+        for name, key in options()
+        if key.dimension
+    },
     ("pi", "periods"): ("length of the run in periods", Dimension.NUMBER),
 }
 """By kind and quantity, with those of a suite, of a dimensional spectrum and of keys of a case."""

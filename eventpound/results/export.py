@@ -20,11 +20,11 @@ from typing import get_args
 import numpy as np
 
 from eventpound.case.case import Case
+from eventpound.case.run_options import Way, warn_left_out
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import support_motion
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.ways import Way, warn_left_out
 from eventpound.results.description import describe_scene, describe_spring
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
@@ -90,7 +90,7 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
     InputError
         Where the directory cannot be written to.
     """
-    warn_left_out(case, Way.EXPORT)
+    warn_left_out(case.run, Way.EXPORT)
     start, end = case.run.start_time, case.run.start_time + case.run.duration
     scene_json = {"title": case.title, "start": start, "end": end} | _scene(case.scene, start)
     columns = _motion_columns(case.scene, start, end)

@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.case.case import Case, RunOptions
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions
 from eventpound.case.suite import Suite
 from eventpound.case.understood import contact_law, sources_of
 from eventpound.errors import InputError

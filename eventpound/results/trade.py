@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from eventpound.case.case import Stated
+from eventpound.case.run_options import Stated
 from eventpound.quantities.lookup import is_whole
 from eventpound.scene.scene import Scene
 from eventpound.units import TOLD, USUAL, Dimension

@@ -7,7 +7,7 @@ from functools import cache
 from pkgutil import resolve_name
 
 from eventpound.basics.plugins import Plugins
-from eventpound.case.options import LISTED
+from eventpound.case.run_options import LISTED
 from eventpound.errors import InputError
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import LawName

@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.basics.given import Count, checked
-from eventpound.case.case import Case, Stated
+from eventpound.case.case import Case
 from eventpound.case.loading import CASE_FILE
+from eventpound.case.run_options import Stated
 from eventpound.errors import ComputationError, InputError
 from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.lookup import Named, all_of, unstated

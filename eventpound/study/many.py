@@ -10,11 +10,11 @@ import numpy as np
 
 from eventpound.basics.given import Count, checked, positive
 from eventpound.case.case import Case
+from eventpound.case.run_options import Way, refuse_options
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.batch_response import BatchResponse
-from eventpound.quantities.lookup import chosen, values_of
-from eventpound.quantities.ways import Way, quantities_asked, refuse_options
+from eventpound.quantities.lookup import chosen, quantities_asked, values_of
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
@@ -82,7 +82,7 @@ def simulate_many(
         Where a key, a value or an option cannot be used; then nothing is run.
     """
     if isinstance(case, Case):
-        refuse_options(case, Way.MANY, parameters)
+        refuse_options(case.run, Way.MANY, parameters)
         asked = quantities_asked([(case.scene, case.run)])
     else:
         asked = []

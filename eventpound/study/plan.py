@@ -10,8 +10,9 @@ from functools import cached_property
 from pathlib import Path
 
 from eventpound.basics.given import positive
-from eventpound.case.case import Case, RunOptions, SolverOptions
-from eventpound.case.options import FAST, default_solver
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions
+from eventpound.case.solver_options import FAST, SolverOptions, default_solver
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member
 from eventpound.case.understood import understood_case
@@ -138,7 +139,7 @@ def base_of(
         run = RunOptions(0.0, length, length)
         if own or not records:
             step = length if own else None
-            run, _ = options_of(given, step, step, None)
+            run, _ = options_of(given, duration=step, output_step=step)
         case = Case("", given, run, solver, Path(), "", None, (), {})
     else:
         if not records:

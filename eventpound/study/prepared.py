@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from eventpound.basics.given import checked, positive
-from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.basics.given import checked
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions, Way, refuse_options
+from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import InputError
-from eventpound.quantities.ways import Way, refuse_options
 from eventpound.response import Response
 from eventpound.scene.check import motion_problems
 from eventpound.scene.parameters import motion_with, places_of
@@ -33,7 +34,6 @@ from eventpound.study.variants import (
     rows_with,
     unknown_axes,
 )
-from eventpound.units import Dimension
 
 
 @checked
@@ -80,14 +80,14 @@ def prepare(
         Where the scene or an option cannot be run.
     """
     check_case(case)
-    length = positive("duration", duration, Dimension.TIME)
-    step = positive("output_step", output_step, Dimension.TIME)
-    run, options = options_of(case, length, step, energy)
-    if step is None:
+    run, options = options_of(case, duration=duration, output_step=output_step, energy=energy)
+    length = float("nan") if duration is None else run.duration
+    step = float("nan") if output_step is None else run.output_step
+    if output_step is None:
         run = replace(run, output_step=run.duration)
     ready = made_ready(case, run, options, solver, rtol, settings)
-    base = base_of(case, (), (), SolverOptions(), float("nan") if length is None else length)
-    return Prepared(base, ready, replace(run, output_step=step or float("nan")))
+    base = base_of(case, (), (), SolverOptions(), length)
+    return Prepared(base, ready, replace(run, output_step=step))
 
 
 class Prepared:
@@ -163,7 +163,7 @@ class Prepared:
         else:
             return found, None
         if values and self._base.case.run.in_equilibrium:
-            refuse_options(self._base.case, Way.MANY, values)
+            refuse_options(self._base.case.run, Way.MANY, values)
         base = replace(self._base, axes=given_axes("values", {k: [v] for k, v in values.items()}))
         if unknown := [f"values: {key}: {text}" for key, text in unknown_axes(base)]:
             raise InputError(unknown)

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from eventpound.case.case import SolverOptions
+from eventpound.case.run_options import Way, refuse_options
+from eventpound.case.solver_options import SolverOptions
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
-from eventpound.quantities.lookup import chosen, names_of, unstated
-from eventpound.quantities.ways import Way, quantities_asked, refuse_options
+from eventpound.quantities.lookup import chosen, names_of, quantities_asked, unstated
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_solver
@@ -51,7 +51,7 @@ def planned(
         for base in bases:
             case = base.case
             check_solver(replace(case.solver, name=by.name, rtol=by.rtol), case.scene, case.run)
-            refuse_options(base.case, Way.STUDY, [axis.key for axis in base.axes])
+            refuse_options(base.case.run, Way.STUDY, [axis.key for axis in base.axes])
         first = [base.at_first() for base in bases]
         asked = quantities_asked((base.case.scene, base.case.run) for base in first)
     except InputError as error:

@@ -21,11 +21,11 @@ from itertools import product
 from pathlib import Path
 
 from eventpound.case.loading import read_case, read_document
-from eventpound.case.options import default_solver, read_solver
+from eventpound.case.run_options import Way, without_effect, without_part
+from eventpound.case.solver_options import default_solver, read_solver
 from eventpound.case.suite import RECORDS, with_suite
 from eventpound.case.table import CaseProblem, Table
 from eventpound.errors import InputError
-from eventpound.quantities.ways import Way, without_effect, without_part
 from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
 from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities

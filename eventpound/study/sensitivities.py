@@ -22,8 +22,9 @@ import numpy as np
 from eventpound.accuracy.sequences import SOFT
 from eventpound.basics.given import Count, checked, positive
 from eventpound.basics.warned import warn_caller
-from eventpound.case.case import LARGEST_RTOL, Case, SolverOptions, Stated
-from eventpound.case.options import default_solver
+from eventpound.case.case import Case
+from eventpound.case.run_options import Stated
+from eventpound.case.solver_options import LARGEST_RTOL, SolverOptions, default_solver
 from eventpound.case.table import suggestion
 from eventpound.errors import AccuracyWarning, ComputationError, InputError
 from eventpound.numerics.arrays import Floats

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from eventpound.basics.given import Count, checked, positive
 from eventpound.case.case import Case
-from eventpound.case.options import FAST
 from eventpound.case.record_options import RecordOptions
+from eventpound.case.solver_options import FAST
 from eventpound.case.suite import Member, Suite
 from eventpound.errors import InputError
 from eventpound.scene.scene import Scene

@@ -15,15 +15,15 @@ from eventpound.accuracy.judge import KEEPING
 from eventpound.basics.given import Count, checked, positive
 from eventpound.case.case import Case
 from eventpound.case.member import member_case
-from eventpound.case.options import FAST
+from eventpound.case.run_options import Way, refuse_options
+from eventpound.case.solver_options import FAST
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member
 from eventpound.errors import InputError
 from eventpound.motion.record import Record
 from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.listed import LISTED
-from eventpound.quantities.lookup import all_of
-from eventpound.quantities.ways import Way, quantities_asked, refuse_options
+from eventpound.quantities.lookup import all_of, quantities_asked
 from eventpound.response import Response
 from eventpound.results.manifest import machine, told_of, versions
 from eventpound.results.tables import table_csv
@@ -169,7 +169,7 @@ def plan_of(
     if scene.bodies:
         # Options that no run can have are an error of the whole, not of every record.
         check_solver(options, scene, case.run)
-        refuse_options(case, Way.SUITE)
+        refuse_options(case.run, Way.SUITE)
         if errors and options.name not in KEEPING:
             raise InputError(
                 f"error_estimate: the solver {options.name!r} does not keep a tolerance, by "

@@ -19,7 +19,7 @@ import numpy as np
 
 from eventpound.case.case import Case
 from eventpound.case.defaults import default_output_step
-from eventpound.case.options import FAST
+from eventpound.case.solver_options import FAST
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.numerics.arrays import Floats, Ints
@@ -287,7 +287,8 @@ def _motions_of(rows: Rows, shaking: Mapping[Place, Floats]) -> tuple[list[Groun
 
 
 def _task(case: Case, wanted: Wanted, length: float) -> Task:
-    run, options = options_of(case, length, length, needs_energy(wanted.quantities) or None)
+    energy = needs_energy(wanted.quantities) or None
+    run, options = options_of(case, duration=length, output_step=length, energy=energy)
     options = replace(options, name=wanted.solver, rtol=wanted.rtol)
     return task_with(case.scene, run, options, None)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from eventpound.case import load_case, read_case, write_template
-from eventpound.case.case import SolverOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import InputError
 from eventpound.scene import BARRIER, BoucWen
 

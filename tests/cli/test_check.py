@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from eventpound.case.options import OWN_SOLVERS
+from eventpound.case.solver_options import OWN_SOLVERS
 from eventpound.cli import main
 from eventpound.errors import ComputationError
 from eventpound.solvers import available, solver_named

@@ -11,7 +11,9 @@ import pandas as pd
 import pytest
 
 from eventpound import load_case, simulate
-from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Cosine, Record, Sine

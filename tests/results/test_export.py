@@ -11,7 +11,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
-from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.motion import Cosine, Record, Sine
 from eventpound.motion.base import Family, Piece, Scales
 from eventpound.motion.constant import PhasedSine

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.motion.readers.base import RecordData
 from eventpound.results import read, write
 

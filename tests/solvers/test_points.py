@@ -12,7 +12,9 @@ import pytest
 from scipy.linalg import expm, null_space
 
 from eventpound.accuracy.reference import reference_of
-from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.case.case import Case
+from eventpound.case.run_options import RunOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.mechanics.model import assemble
 from eventpound.motion import NoMotion, Ricker
 from eventpound.motion.constant import Constant

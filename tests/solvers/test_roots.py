@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from eventpound.accuracy.estimate import estimate_errors
-from eventpound.case.case import SolverOptions
+from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.pulses import Sine

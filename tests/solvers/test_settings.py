@@ -37,7 +37,7 @@ def _with(case, **changes):
         ),
         ({"settings": {"events": "foo"}}, "events = 'foo'; accepted: own or sundials"),
         ({"settings": {"theta": 0.5}}, "theta is not a setting of cvode; accepted: method"),
-        ({"rtol": 0.5}, "rtol = 0.5; accepted: 1e-14 to 0.01"),
+        ({"rtol": 0.5}, "rtol: found 0.5; accepted: a number from 1e-14 to 0.01"),
         ({"name": "euler"}, "solver = 'euler' is not known; accepted: cvode"),
     ],
 )

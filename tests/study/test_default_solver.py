@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from eventpound import Case, Study, load_case, simulate, simulate_many, simulate_suite
-from eventpound.case.options import FAST, default_solver
+from eventpound.case.solver_options import FAST, default_solver
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.solvers import knows_scene, solver_named

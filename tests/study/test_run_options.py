@@ -23,9 +23,9 @@ from eventpound import (
     verify,
 )
 from eventpound.basics.warned import OptionWarning
+from eventpound.case.run_options import Way, options
 from eventpound.cli import main
 from eventpound.errors import InputError
-from eventpound.quantities.ways import HOLDS, REFUSED, Way
 from eventpound.results import export
 from eventpound.study.fragility import fragility_table
 from eventpound.study.reading import load_study
@@ -151,18 +151,6 @@ CELLS = cells()
 def with_word(word: str, options: Iterable[str]) -> list[tuple[str, Ran]]:
     pairs = [pair for pair, said in CELLS.items() if said == word and pair[0] in options]
     return [(option, way) for option, name in pairs for way in WAYS[name]]
-
-
-def test_the_page_has_every_option_and_says_what_the_table_of_ways_says() -> None:
-    page = (ROOT / "docs" / "case-format.md").read_text()
-    section = page.partition("## `[run]`")[2].partition("What each does")[0]
-    assert set(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE)) == set(HOLDS)
-    assert {option for option, _ in CELLS} == set(HOLDS)
-    ways = dict(zip(WAYS, (Way.RUN, Way.SUITE, Way.STUDY, Way.RUN, Way.MANY), strict=True))
-    for (option, name), word in CELLS.items():
-        refused = option in REFUSED and ways[name] in REFUSED[option][0]
-        held = "same" if ways[name] in HOLDS[option] else "none"
-        assert word == ("refused" if refused else held), (option, name)
 
 
 @pytest.mark.parametrize(("option", "way"), with_word("same", OPTIONS))
@@ -301,7 +289,7 @@ def test_what_other_commands_leave_out_is_said(tmp_path: Path, way: Way, option:
     }
     with pytest.raises(OptionWarning, match=rf"\[run\]: {option}: no part of {way}"):
         calls[way]()
-    assert way not in HOLDS[option]
+    assert way not in dict(options())[option].holds
 
 
 @pytest.mark.parametrize("option", ["contact_stiffness", "avoiding_gap", "threshold_speed"])

@@ -24,7 +24,7 @@ from threading import Thread
 
 from eventpound.basics.interruption import Deferred
 from eventpound.basics.warned import show_warning
-from eventpound.case.options import FAST
+from eventpound.case.solver_options import FAST
 from eventpound.errors import ComputationError
 from eventpound.study.engines.base import Engine
 from eventpound.study.plan import Chunk, Plan

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from eventpound.case.loading import load_case
-from eventpound.case.options import HERTZIAN
+from eventpound.case.solver_options import HERTZIAN
 from eventpound.errors import InputError
 from eventpound.motion.pulses import Sine
 from eventpound.motion.record import Record
