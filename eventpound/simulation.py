@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.basics.given import positive
+from eventpound.basics.progress import Reached
 from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions, Stated, with_given
 from eventpound.case.solver_options import LARGEST_RTOL as LARGEST_RTOL
@@ -38,8 +39,6 @@ from eventpound.solvers import (
 )
 from eventpound.solvers.base import ReadyTask, Recording, Solver, Task
 from eventpound.units import Dimension
-
-Progress = Callable[[float], None]
 
 
 def simulate(
@@ -70,7 +69,7 @@ def made_ready(
     solver: str | Solver | None,
     rtol: float | str | None,
     settings: Mapping[str, object] | None,
-    progress: Progress | None = None,
+    progress: Reached | None = None,
     max_steps: int | None = None,
 ) -> ReadyScene:
     """A checked scene with its options of a run (`options_of`) and of `simulate`."""
@@ -301,7 +300,7 @@ def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
 
 
 def task_with(
-    scene: Scene, run: RunOptions, options: SolverOptions, progress: Progress | None
+    scene: Scene, run: RunOptions, options: SolverOptions, progress: Reached | None
 ) -> Task:
     """The task of a scene with these options, which are checked."""
     check_solver(options, scene, run)

@@ -308,10 +308,12 @@ def test_table_has_the_names_of_the_summary():
 
 def test_progress_counts_to_the_end():
     scene, duration, parameters = SCENES["strength"]
-    told: list[int] = []
-    simulate_many(scene, parameters, duration=duration, progress=told.append)
+    told: list[tuple[int, int]] = []
+    simulate_many(
+        scene, parameters, duration=duration, progress=lambda *counts: told.append(counts)
+    )
     assert told == sorted(told)
-    assert told[-1] == 40
+    assert told[-1] == (40, 40)
 
 
 @pytest.mark.parametrize(

@@ -18,13 +18,13 @@ import numpy as np
 from eventpound.accuracy.judge import INDEPENDENT, judge_of, task_of_judge
 from eventpound.accuracy.quantities import own_scale, quantities_of, scales_of_task, values_of
 from eventpound.accuracy.sequences import KINDS, instead_of, parted, weights_for
+from eventpound.basics.progress import Reached
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
 from eventpound.score.difference import Truth, difference
 from eventpound.score.levels import UNIT_OF_TIME
 from eventpound.score.pairing import Paired
-from eventpound.simulation import Progress
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind
 from eventpound.solvers.events.recorder import resting_times
@@ -36,7 +36,7 @@ DIGITLESS = 0.1
 
 
 def estimate_of(
-    response: Response, *, asked: bool | None, progress: Progress | None = None
+    response: Response, *, asked: bool | None, progress: Reached | None = None
 ) -> dict[str, Any] | None:
     """What is said of the errors of a single run.
 
@@ -68,7 +68,7 @@ def estimate_of(
 
 
 def estimate_errors(
-    response: Response, judge: str = INDEPENDENT, progress: Progress | None = None
+    response: Response, judge: str = INDEPENDENT, progress: Reached | None = None
 ) -> dict[str, Any]:
     """Estimated errors of the peaks and final values of a run.
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from eventpound import simulation
 from eventpound.accuracy.estimate import estimate_of
 from eventpound.basics.given import Count, checked
+from eventpound.basics.progress import Reached
 from eventpound.basics.warned import warn_caller
 from eventpound.case.case import Case
 from eventpound.case.run_options import EQUILIBRIUM, INITIAL
@@ -17,7 +18,6 @@ from eventpound.response import Response
 from eventpound.scene.check import check_scene
 from eventpound.scene.continuation import FinalState, continued
 from eventpound.scene.scene import Scene
-from eventpound.simulation import Progress
 from eventpound.solvers.base import Solver
 
 
@@ -32,7 +32,7 @@ def simulate(
     energy: bool | None = None,
     events: Sequence[str] | None = None,
     settings: Mapping[str, object] | None = None,
-    progress: Progress | bool | None = None,
+    progress: Reached | bool | None = None,
     max_steps: Count | None = None,
     error_estimate: bool | None = None,
     start: FinalState | str | None = None,

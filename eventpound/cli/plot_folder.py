@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.cli.folder import of_each, worst_code
-from eventpound.cli.progress import StudyProgress
+from eventpound.cli.progress import Counter
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def _study_entry(directory: Path, out: Path) -> GalleryEntry:
 
     case = load_study(directory)
     results = out / directory.name
-    with StudyProgress(case.study.size) as progress:
+    with Counter("runs") as progress:
         run_study(case.study, results, engine_of(case.study.solver), progress)
     files = [results / TABLE, *draw(case, results)]
     return GalleryEntry(

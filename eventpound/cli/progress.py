@@ -121,15 +121,25 @@ class Progress(_Line):
 
 
 class Counter(_Line):
-    """How many of a number of things are done."""
+    """How many of a number of things are done, their rate and the time left."""
 
-    def __init__(self, what: str, total: int = 0) -> None:
+    def __init__(self, what: str) -> None:
         super().__init__()
-        self._what, self._total = what, total
+        self._what, self._before, self._began = what, 0, -math.inf
 
-    def __call__(self, done: int, total: int = 0) -> None:
-        """Show that so many are done."""
-        self._show(lambda: f"{done} of {total or self._total} {self._what} ")
+    def __call__(self, done: int, total: int) -> None:
+        """Show that so many are done; what is at first was there before."""
+        if self._began == -math.inf:
+            self._before, self._began = done, time.monotonic()
+        self._show(lambda: self._line(done, total))
+
+    def _line(self, done: int, total: int) -> str:
+        line = f"{done / total:5.0%}  {done} of {total} {self._what}"
+        passed = time.monotonic() - self._began
+        if done == self._before or passed <= 0.0:
+            return line
+        rate = (done - self._before) / passed
+        return f"{line}, {rate:.3g} a second, {duration_text((total - done) / rate)} left"
 
 
 class Doing(_Line):
@@ -140,31 +150,6 @@ class Doing(_Line):
         say(what)
         self._last = -math.inf
         self._show(lambda: what)
-
-
-class StudyProgress(_Line):
-    """Runs of a study that are done, their rate and the time left.
-
-    Parameters
-    ----------
-    size : int
-        Number of runs.
-    """
-
-    def __init__(self, size: int) -> None:
-        super().__init__()
-        self._size, self._began = size, time.monotonic()
-
-    def __call__(self, done: int, before: int) -> None:
-        """Show that `done` runs were made after the `before` that were there."""
-        self._show(lambda: self._line(done, before + done))
-
-    def _line(self, done: int, total: int) -> str:
-        line = f"{total / self._size:5.0%}  {total} of {self._size} runs"
-        if not done:
-            return line
-        rate = done / (time.monotonic() - self._began)
-        return f"{line}, {rate:.3g} a second, {duration_text((self._size - total) / rate)} left"
 
 
 class Forecast:

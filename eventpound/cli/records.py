@@ -156,7 +156,7 @@ def _read_folder(
     files = _files(options)
     records: list[Characteristics] = []
     unread: dict[str, str] = {}
-    with Counter("files", len(files)) as progress:
+    with Counter("files") as progress:
         for file, found in read_each(files, progress):
             if isinstance(found, InputError):
                 unread[str(file.path)] = found.problems[0]

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.folder import is_folder, of_each, worst_code
-from eventpound.cli.progress import Counter, Progress, StudyProgress, Watch
+from eventpound.cli.progress import Counter, Progress, Watch
 from eventpound.cli.talk import complain, going_on, say
 
 if TYPE_CHECKING:
@@ -170,7 +170,7 @@ def _of_study(
     plan = plan_asking(case.study)
     # Where nothing is asked for beyond it, the table of the study is taken.
     runs = options.results if plan == case.study else out
-    with going_on(), StudyProgress(plan.size) as progress:
+    with going_on(), Counter("runs") as progress:
         made = made_of_study(plan, runs, progress)
     assert made.runs is not None
     arguments.warn_of_scales(plan.bases)

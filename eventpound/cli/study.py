@@ -45,7 +45,7 @@ from typing import TYPE_CHECKING, Any
 
 from eventpound.cli import arguments, finished
 from eventpound.cli.arguments import Commands, Options, add_command
-from eventpound.cli.progress import Counter, StudyProgress
+from eventpound.cli.progress import Counter
 from eventpound.cli.talk import going_on
 from eventpound.errors import InputError
 
@@ -145,7 +145,7 @@ def _make_runs(options: Options, out: Path) -> None:
 
     case = arguments.load_study(options.case)
     engine = _engine(options, case.study.solver)
-    with going_on(), StudyProgress(case.study.size) as progress:
+    with going_on(), Counter("runs") as progress:
         moved = run_study(case.study, out, engine, progress)
     if moved is not None:
         print(f"moved     what was in {out} before is in {moved}")

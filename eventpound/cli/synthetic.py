@@ -35,10 +35,10 @@ def _synthetic(options: Options) -> int:
 
     check_writable(options.directory)
     motions = []
-    with Counter("synthetic motions", options.count) as progress:
+    with Counter("synthetic motions") as progress:
         for number in range(1, options.count + 1):
             motions.append(synthetic_motion(options.seed, number))
-            progress(number)
+            progress(number, options.count)
     files = {motion.name: motion.content for motion in motions}
     table = parameter_table(motions)
     write_together(options.directory, files | {"parameters.csv": table})

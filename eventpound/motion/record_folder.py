@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from eventpound.basics.progress import Counted
 from eventpound.errors import InputError
 from eventpound.motion.readers import RecordData, read_components, read_record
 from eventpound.motion.record_list import read_list
@@ -98,7 +99,7 @@ def listed_files(table: Path) -> list[RecordFile]:
 
 
 def read_each(
-    files: list[RecordFile], progress: Callable[[int], None] | None = None
+    files: list[RecordFile], progress: Counted | None = None
 ) -> Iterator[tuple[RecordFile, list[RecordData] | InputError]]:
     """Records of each file, or why there are none.
 
@@ -107,11 +108,11 @@ def read_each(
     files : list of RecordFile
         The files.
     progress : callable, optional
-        Told how many files are done.
+        Told how many files are done, and of how many.
     """
     for done, file in enumerate(files):
         if progress is not None:
-            progress(done)
+            progress(done, len(files))
         try:
             yield file, file.read()
         except InputError as error:

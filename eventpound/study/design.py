@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.basics.given import Count, checked
+from eventpound.basics.progress import Counted, Reached
 from eventpound.case.case import Case
 from eventpound.case.loading import CASE_FILE
 from eventpound.case.run_options import Stated
@@ -32,7 +33,7 @@ from eventpound.study.engines.local import engine_of
 from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import RECORD, Plan
 from eventpound.study.records import FAILED
-from eventpound.study.running import Progress, run_study
+from eventpound.study.running import run_study
 from eventpound.study.study import Study
 from eventpound.study.suite import plan_of, run_suite
 from eventpound.study.table import SUCCESS, SUITE_TABLE, read_table
@@ -129,7 +130,7 @@ def design_numbers(
     *,
     folder: str | Path | None = None,
     workers: Count | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Counted | None = None,
 ) -> pd.DataFrame:
     """Give the design numbers of a run, a suite or a study, as ``eventpound report`` does.
 
@@ -166,13 +167,7 @@ def design_numbers(
         out = Path(scratch if folder is None else folder)
         if isinstance(case, Case):
             return made_of_suite(case, out, progress, workers).table
-        size = case.plan.size
-
-        def told(done: int, before: int) -> None:
-            if progress is not None:
-                progress(before + done, size)
-
-        return made_of_study(case.plan, out, told).table
+        return made_of_study(case.plan, out, progress).table
 
 
 @dataclass(frozen=True)
@@ -199,7 +194,7 @@ class DesignRuns:
 
 def made_of_run(
     case: Case | Scene,
-    progress: Callable[[float], None] | None = None,
+    progress: Reached | None = None,
     again: Callable[[], None] | None = None,
 ) -> DesignRuns:
     """Run a case once, then what its design numbers need; `again` is called in between."""
@@ -214,7 +209,7 @@ def made_of_run(
 def made_of_suite(
     case: Case,
     out: Path,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Counted | None = None,
     workers: int | None = None,
 ) -> DesignRuns:
     """Run a case under every record, with what its design numbers need."""
@@ -224,7 +219,7 @@ def made_of_suite(
     return DesignRuns(design_of_suite(runs, own), own, runs=runs)
 
 
-def made_of_study(plan: Plan, out: Path, progress: Progress | None = None) -> DesignRuns:
+def made_of_study(plan: Plan, out: Path, progress: Counted | None = None) -> DesignRuns:
     """Make the runs of a study, with what its design numbers need."""
     plan = plan_asking(plan)
     run_study(plan, out, engine_of(plan.solver, None), progress)

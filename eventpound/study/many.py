@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from eventpound.basics.given import Count, checked, positive
+from eventpound.basics.progress import Counted
 from eventpound.case.case import Case
 from eventpound.case.run_options import Way, refuse_options
 from eventpound.errors import InputError
@@ -35,7 +36,7 @@ def simulate_many(
     accelerations: bool = False,
     quantities: Sequence[str] = (),
     workers: Count | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Counted | None = None,
 ) -> BatchResponse:
     """Compute how variants of one scene move.
 
@@ -68,7 +69,7 @@ def simulate_many(
     workers : int, optional
         Number of threads; as many as there are cores to use.
     progress : callable, optional
-        Called with the number of variants done as the work goes on.
+        Called with the numbers of variants done and of all.
 
     Returns
     -------

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
+from eventpound.basics.progress import Counted
 from eventpound.results.files import check_writable, only_one
 from eventpound.study.engines.base import Engine
 from eventpound.study.parquet import PARQUET, write_parquet
@@ -14,15 +14,13 @@ from eventpound.study.table import header
 
 AT_WORK = ".study-at-work"
 """File that is in a directory while a study is made there."""
-Progress = Callable[[int, int], None]
-"""Called with the runs done in this call and those that were there before."""
 
 
 def run_study(
     study: Plan,
     directory: Path,
     engine: Engine,
-    progress: Progress | None = None,
+    progress: Counted | None = None,
     details: Details | None = None,
     *,
     again: bool = False,
@@ -38,7 +36,7 @@ def run_study(
     engine : Engine
         What computes it; it changes nothing in the table.
     progress : callable, optional
-        Called after every chunk.
+        Called at first and after every chunk.
     details : callable, optional
         Gives what is written beside the table of a suite. If that is stopped, the rows that are
         done are written.
@@ -77,15 +75,14 @@ def run_study(
     return moved
 
 
-def _compute_missing(study: Plan, store: Store, engine: Engine, progress: Progress | None) -> None:
+def _compute_missing(study: Plan, store: Store, engine: Engine, progress: Counted | None) -> None:
     there = store.stored()
-    before = sum(c.high - c.low for c in study.chunks() if c.number in there)
+    done = sum(c.high - c.low for c in study.chunks() if c.number in there)
     missing = (chunk for chunk in study.chunks() if chunk.number not in there)
-    done = 0
     if progress is not None:
-        progress(0, before)
+        progress(done, study.size)
     for chunk, rows in engine.run(study, missing):
         store.put(chunk.number, rows)
         done += chunk.high - chunk.low
         if progress is not None:
-            progress(done, before)
+            progress(done, study.size)

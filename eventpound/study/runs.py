@@ -5,12 +5,13 @@ Either by `Sweep` or not at all: rows that cannot be run say why, and stop no ot
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 
+from eventpound.basics.progress import Counted
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
@@ -129,7 +130,7 @@ def results_of(
     rows: Rows,
     wanted: Wanted,
     workers: int = 1,
-    progress: Callable[[int], None] | None = None,
+    progress: Counted | None = None,
 ) -> Results:
     """Run rows, and those without contact that quantities need.
 
@@ -142,7 +143,7 @@ def results_of(
     workers : int
         Threads of the fast solver.
     progress : callable, optional
-        Called with the number of rows done as the work goes on.
+        Called with the numbers of rows done and of all.
 
     Raises
     ------

@@ -13,7 +13,7 @@ count: they are the last of a contact that comes to rest.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,7 @@ import numpy as np
 
 from eventpound.accuracy.sequences import SOFT
 from eventpound.basics.given import Count, checked, positive
+from eventpound.basics.progress import Counted
 from eventpound.basics.warned import warn_caller
 from eventpound.case.case import Case
 from eventpound.case.run_options import Stated
@@ -74,7 +75,7 @@ def sensitivities(
     rtol: float | str = _RTOL,
     duration: float | str | None = None,
     workers: Count | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Counted | None = None,
 ) -> pd.DataFrame:
     """Tell how quantities follow the numbers of a scene, by central differences.
 
@@ -139,7 +140,7 @@ def sensitivities(
             duration=case.run.duration,
             quantities=asked,
             workers=workers,
-            progress=None if progress is None else lambda new: progress(done + new, total),
+            progress=None if progress is None else lambda new, _: progress(done + new, total),
         )
 
     first = runs({number.key: np.array([number.at]) for number in numbers}, tolerance, 0.0, 0)

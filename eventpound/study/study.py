@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from eventpound.basics.given import Count, checked, positive
+from eventpound.basics.progress import Counted
 from eventpound.case.case import Case
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.solver_options import FAST
@@ -99,7 +100,7 @@ class Study:
         self,
         folder: str | Path | None = None,
         *,
-        progress: Callable[[int, int], None] | bool = False,
+        progress: Counted | bool = False,
         workers: Count | None = None,
         processes: Count | None = None,
     ) -> StudyTable:
@@ -134,17 +135,11 @@ class Study:
             Where runs scale their record by more than ``largest_scale``.
         """
         warn_of_scales(self.plan.bases)
-        size = self.plan.size
         show = _shown if progress is True else progress or None
-
-        def told(done: int, before: int) -> None:
-            if show is not None:
-                show(before + done, size)
-
         engine = Batch(workers if self.plan.solver == FAST else 1)
         with TemporaryDirectory() as scratch:
             out = Path(scratch if folder is None else folder)
-            run_study(self.plan, out, Processes(processes) if processes else engine, told)
+            run_study(self.plan, out, Processes(processes) if processes else engine, show)
             table = read_table(out)
         if progress is True:
             print(file=sys.stderr)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.accuracy.judge import KEEPING
 from eventpound.basics.given import Count, checked, positive
+from eventpound.basics.progress import Counted
 from eventpound.case.case import Case
 from eventpound.case.member import member_case
 from eventpound.case.run_options import Way, refuse_options
@@ -58,7 +59,7 @@ def simulate_suite(
     rtol: float | str | None = None,
     error_estimate: bool | None = None,
     workers: Count | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Counted | None = None,
     keep: Keep | None = None,
     intensities: bool = False,
     folder: str | Path | None = None,
@@ -120,16 +121,12 @@ def run_suite(
     plan: Plan,
     case: Case,
     out: Path,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Counted | None = None,
     keep: Keep | None = None,
     workers: int | None = None,
 ) -> Path | None:
     """Make what is missing of the table of a suite; where earlier results were moved."""
     started = datetime.now(UTC)
-
-    def told(done: int, before: int) -> None:
-        if progress is not None and done:
-            progress(before + done, plan.size)
 
     def details() -> tuple[dict[str, bytes], dict[str, object]]:
         table = read_table(out, SUITE_TABLE)
@@ -139,7 +136,7 @@ def run_suite(
 
     threads = workers or (cores() if plan.solver == FAST else 1)
     engine = Batch(threads, None if keep is None else _handing_on(case, keep))
-    return run_study(plan, out, engine, told, details, again=keep is not None)
+    return run_study(plan, out, engine, progress, details, again=keep is not None)
 
 
 def plan_of(

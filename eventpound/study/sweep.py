@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eventpound.basics.progress import Counted
 from eventpound.case.case import Case
 from eventpound.case.defaults import default_output_step
 from eventpound.case.solver_options import FAST
@@ -120,7 +121,7 @@ class Sweep:
         several = wanted.keep is None and not (driven or slides or one_by_one)
         self._in_one_call = wanted.solver == FAST and several
 
-    def run(self, workers: int = 1, progress: Callable[[int], None] | None = None) -> BatchResponse:
+    def run(self, workers: int = 1, progress: Counted | None = None) -> BatchResponse:
         """Run all rows.
 
         Parameters
@@ -128,7 +129,7 @@ class Sweep:
         workers : int
             Number of threads.
         progress : callable, optional
-            Called with the number of rows done as the work goes on.
+            Called with the numbers of rows done and of all.
 
         Returns
         -------
@@ -150,7 +151,7 @@ class Sweep:
             for new in runs:
                 done += new
                 if progress is not None:
-                    progress(done)
+                    progress(done, count)
         finally:
             if pool is not None:
                 pool.shutdown(cancel_futures=True)

@@ -4,19 +4,19 @@ import sys
 
 import eventpound.cli.progress as module
 from eventpound.case import load_case, write_template
-from eventpound.cli.progress import Progress, StudyProgress
+from eventpound.cli.progress import Counter, Progress
 
 
 def test_rate_and_time_left_count_the_runs_of_this_call(monkeypatch, capsys):
     now = [100.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    progress = StudyProgress(1000)
-    progress(0, 400)
+    progress = Counter("runs")
+    progress(400, 1000)
     assert "40%  400 of 1000 runs" in capsys.readouterr().err
     # 100 runs in 10 s, 500 to go.
     now[0] = 110.0
-    progress(100, 400)
+    progress(500, 1000)
     assert "50%  500 of 1000 runs, 10 a second, 50 s left" in capsys.readouterr().err
 
 

@@ -106,7 +106,7 @@ def test_progress_and_kept_responses(case_folder: Path) -> None:
         progress=lambda done, total: counts.append((done, total)),
         keep=lambda name, case, response: kept.update({name: (case, response)}),
     )
-    assert counts == [(1, 4), (2, 4), (3, 4), (4, 4)]
+    assert counts == [(0, 4), (1, 4), (2, 4), (3, 4), (4, 4)]
     assert sorted(kept) == ["a.txt", "b.txt", "d.txt"]
     case, response = kept["a.txt"]
     assert len(response.history) > 200
