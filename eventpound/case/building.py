@@ -78,6 +78,11 @@ def _expanded(table: Table) -> dict[str, list[object]]:
     heights, forces = list[float](), list[float]()
     if table.has("height"):
         heights = _values(table, "height", Dimension.LENGTH, storeys)
+    carried = list[float]()
+    if table.has("weight"):
+        carried = _values(table, "weight", Dimension.FORCE, storeys, weights)
+        if not heights:
+            table.report_missing("height", "the heights of the storeys (m), beside their weights")
     if table.has("yield_force"):
         forces = _values(table, "yield_force", Dimension.FORCE, storeys, weights)
     hardening = table.quantity("hardening", Dimension.NUMBER, 0.05) if forces else None
@@ -90,7 +95,8 @@ def _expanded(table: Table) -> dict[str, list[object]]:
             spring["hardening"] = hardening
         else:
             spring |= {"law": "linear", "stiffness": k}
-        springs.append(spring | ({"height": heights[i]} if heights else {}))
+        spring |= {"height": heights[i]} if heights else {}
+        springs.append(spring | ({"weight": carried[i]} if carried else {}))
     bodies: list[object] = [
         {"name": end, "mass": mass} for end, mass in zip(ends[1:], masses, strict=True)
     ]

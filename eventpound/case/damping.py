@@ -126,7 +126,7 @@ def _read_stiffness_coefficient(
         table.require(key, omega != 0.0, "a positive frequency (rad/s)")
         return 2.0 * ratio / omega if omega else math.nan
     stiffnesses = [stiffness_of(spring) for spring in standing]
-    usable = all(body.mass > 0.0 for body in bodies) and all(k >= 0.0 for k in stiffnesses)
+    usable = all(body.mass > 0.0 for body in bodies) and not any(map(math.isnan, stiffnesses))
     if not (usable and named):
         # What is wrong is said where it stands.
         return math.nan
@@ -155,8 +155,8 @@ def _read_modal(
             table.reject("base", f"one of {', '.join([GROUND, *supports, *others])}")
             return [], ()
     beside = springs_on(names, springs, {GROUND, base, *supports})
-    usable = all(body.mass > 0.0 for body in group) and all(
-        stiffness_of(spring) >= 0.0 for spring in beside
+    usable = all(body.mass > 0.0 for body in group) and not any(
+        math.isnan(stiffness_of(spring)) for spring in beside
     )
     if not (ratios and usable):
         # What is wrong is said where it stands.

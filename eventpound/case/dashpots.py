@@ -121,11 +121,15 @@ def _referred_stiffness(
     }
     if math.isnan(sums["initial-stiffness"]):
         return math.nan
-    if sums["initial-stiffness"] == 0.0:
+    if not sums["initial-stiffness"] > 0.0:
         idle = f"spring '{parallel[0].name}' does not resist at rest"
         table.reject("ratio", f"coefficient; {idle}, refer to a frequency")
         return math.nan
     if refers_to is None and not agree(*sums.values()):
         table.report_missing("refers_to", _REFERS_TO)
         return math.nan
-    return sums[str(refers_to or "initial-stiffness")]
+    found = sums[str(refers_to or "initial-stiffness")]
+    if found < 0.0:
+        table.reject("refers_to", "initial-stiffness, or a frequency: after yield P-Delta is more")
+        return math.nan
+    return found

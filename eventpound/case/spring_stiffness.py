@@ -89,8 +89,8 @@ class Stiffnesses:
         return share * self._mass * STANDARD_GRAVITY
 
     def close(self) -> None:
-        """Note a mass that nothing refers to."""
-        if self._table.has(OF_MASS) and not self._used:
+        """Note a mass that nothing refers to, where what refers to it was not refused."""
+        if self._table.has(OF_MASS) and not (self._used or self._table.has("period")):
             self._table.reject(
                 OF_MASS, 'it beside a frequency, a period or a force like "0.15 W", which it is of'
             )

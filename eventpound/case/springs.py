@@ -102,29 +102,45 @@ def read_springs(
     """
     ends = [table.pair("between", 'two bodies, or a body and "ground"') for table in tables]
     names = read_names(tables, ends)
-    heights = [table.optional_quantity("height", Dimension.LENGTH) for table in tables]
     return tuple(
-        Spring(name, between, _read_law(table, ends_on_ground(between, supports), masses), height)
-        for table, name, between, height in zip(tables, names, ends, heights, strict=True)
+        _read_spring(table, name, between, masses, supports)
+        for table, name, between in zip(tables, names, ends, strict=True)
     )
 
 
-def _read_law(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> Law:
+def _read_spring(
+    table: Table,
+    name: str,
+    between: tuple[str, str],
+    masses: Mapping[str, float],
+    supports: Sequence[str],
+) -> Spring:
+    height = table.optional_quantity("height", Dimension.LENGTH)
+    stiffnesses = Stiffnesses(table, ends_on_ground(between, supports), masses)
+    weight = stiffnesses.force("weight")
+    if weight is not None and height is None:
+        table.report_missing("height", "the height of the storey (m), beside its weight")
+    law = _read_law(table, stiffnesses)
+    stiffnesses.close()
+    return Spring(name, between, law, height, weight)
+
+
+def _read_law(table: Table, stiffnesses: Stiffnesses) -> Law:
     law: Law
     match table.choice("law", _LAWS, _CALLED):
         case "linear":
-            law = _read_linear(table, between, masses)
+            law = _read_linear(table, stiffnesses)
         case "bilinear-elastic":
             law = BilinearElastic(**read_numbers(table, BilinearElastic))
         case "bouc-wen":
-            law = _read_bouc_wen(table, between, masses)
+            law = _read_bouc_wen(table, stiffnesses)
         case "degrading-bouc-wen":
-            own = asdict(_read_bouc_wen(table, between, masses))
+            own = asdict(_read_bouc_wen(table, stiffnesses))
             law = DegradingBoucWen(**own, **read_numbers(table, DegradingBoucWen, *own))
         case "backfill":
             law = _read_backfill(table)
         case "slider":
-            law = _read_slider(table, between, masses)
+            law = _read_slider(table, stiffnesses)
         case "series":
             law = _read_series(table)
         case _:
@@ -133,10 +149,8 @@ def _read_law(table: Table, between: tuple[str, str], masses: Mapping[str, float
     return law
 
 
-def _read_linear(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> Linear:
-    stiffnesses = Stiffnesses(table, between, masses)
+def _read_linear(table: Table, stiffnesses: Stiffnesses) -> Linear:
     stiffness = stiffnesses.read("stiffness", ("frequency", "period"))
-    stiffnesses.close()
     if stiffness is None:
         table.report_missing("stiffness", Dimension.STIFFNESS.accepted)
         return _UNREAD
@@ -166,10 +180,8 @@ def _soil_behind(table: Table, wall: Mapping[str, float | None]) -> Sequence[flo
     return [math.nan] * len(_SOIL)
 
 
-def _read_slider(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> Slider:
-    stiffnesses = Stiffnesses(table, between, masses)
+def _read_slider(table: Table, stiffnesses: Stiffnesses) -> Slider:
     force = stiffnesses.force("normal_force")
-    stiffnesses.close()
     if force is None:
         table.report_missing("normal_force", Dimension.FORCE.accepted)
     law = Slider(
@@ -203,9 +215,9 @@ def _read_series(table: Table) -> Series:
     return Series(tuple(parts))
 
 
-def _read_bouc_wen(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> BoucWen:
+def _read_bouc_wen(table: Table, stiffnesses: Stiffnesses) -> BoucWen:
     values = {p: table.optional_quantity(p.value, d) for p, d in _DIMENSIONS.items()}
-    values |= _of_a_mass(table, between, masses)
+    values |= _of_a_mass(table, stiffnesses)
     given = {p: v for p in Parameter if (v := values[p]) is not None}
     own = [math.nan] * len(OF_LAW)
     if not any(math.isnan(value) for value in given.values()):
@@ -218,11 +230,8 @@ def _read_bouc_wen(table: Table, between: tuple[str, str], masses: Mapping[str, 
     return BoucWen(*own, **read_numbers(table, BoucWen, *Parameter))
 
 
-def _of_a_mass(
-    table: Table, between: tuple[str, str], masses: Mapping[str, float]
-) -> dict[Parameter, float | None]:
+def _of_a_mass(table: Table, stiffnesses: Stiffnesses) -> dict[Parameter, float | None]:
     """Stiffnesses and forces of a hysteretic spring, where they are given."""
-    stiffnesses = Stiffnesses(table, between, masses)
     found = {
         Parameter.INITIAL_STIFFNESS: stiffnesses.read("initial_stiffness", ("initial_period",)),
         Parameter.STIFFNESS: stiffnesses.read("stiffness", ("frequency", "post_yield_period")),
@@ -233,6 +242,4 @@ def _of_a_mass(
         # One message: what the others lack without it follows from it.
         table.report("period", f"found {table.data['period']!r}, which {_TWO_PERIODS}")
         found[Parameter.STIFFNESS] = math.nan
-    else:
-        stiffnesses.close()
     return found

@@ -11,7 +11,7 @@ from eventpound.case.run_options import DEFAULTS, RunOptions
 from eventpound.case.solver_options import SolverOptions
 from eventpound.scene.contact import Contact, written
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import law_keys
+from eventpound.scene.spring import law_keys, storey_keys
 
 SOURCED = ("body", "spring", "contact")
 """Tables of a case that may say where their numbers are from."""
@@ -60,7 +60,7 @@ def understood_case(
             {
                 "between": list(spring.between),
                 "name": spring.name,
-                **({} if spring.height is None else {"height": spring.height}),
+                **storey_keys(spring),
                 **law_keys(spring.law),
             }
             for spring in scene.springs

@@ -321,7 +321,7 @@ def _left_over(now: Pairs, acceleration: Floats, touching: Touching) -> Floats:
 
 @kernel
 def _slopes(y: Floats, system: Reduced) -> tuple[Floats, Floats]:
-    """Initial stiffness (N/m) and damping (N s/m) of each link, of an element those at y, (A,)."""
+    """Sizes of initial stiffness (N/m) and damping (N s/m) of links, of an element at y, (A,)."""
     stiffness, damping = system.stiffness.copy(), system.damping.copy()
     for a in range(stiffness.size):
         if system.iz[a] <= FIRST_CODE:
@@ -329,7 +329,8 @@ def _slopes(y: Floats, system: Reduced) -> tuple[Floats, Floats]:
             slopes = element_pull(code, stiffness[a], f, damping[a], x, x_rate, 0.0)
             stiffness[a], damping[a] = abs(slopes[1]), slopes[2]
         else:
-            stiffness[a] += memory_stiffness(a, system.memory)
+            stiffness[a] = abs(stiffness[a] + memory_stiffness(a, system.memory))
+            damping[a] = abs(damping[a])
     return stiffness, damping
 
 

@@ -266,7 +266,7 @@ def assemble(scene: Scene) -> Model:
             damping.append(dashpot.coefficient)
         else:
             damping[place] += dashpot.coefficient
-    laws = [spring.law for spring in scene.springs]
+    laws = [spring.acting for spring in scene.springs]
     loops = {i: law for i, law in enumerate(laws) if isinstance(law, Hysteretic)}
     two = [i for i, law in loops.items() if law.second]
     further = dict(zip(two, range(len(ends), len(ends) + len(two)), strict=True))

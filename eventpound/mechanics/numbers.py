@@ -7,6 +7,7 @@ Bouc-Wen's: the start of its memory follows from several numbers, those of bodie
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -17,9 +18,9 @@ from eventpound.mechanics.link_law import CONSTANTS, LinkLaw
 from eventpound.mechanics.model import Model, assemble, with_sliders
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.elastic_laws import ElasticLaws, reduced
-from eventpound.scene.parameters import Place, with_values
+from eventpound.scene.parameters import WEIGHT, Place, with_values
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Series
+from eventpound.scene.spring import GROUND, BoucWen, Linear, Series
 
 OF_CONTACTS = ("gap", "restitution")
 OF_MODEL = ("mass", "u0", "v0", "z0", *OF_CONTACTS)
@@ -60,7 +61,8 @@ def put_numbers(
     if scene.branched_springs:
         _put_all(scene, values, rows)
         return
-    for place, column in values.items():
+    for place, given in values.items():
+        column = _softened(scene, place, given, values)
         for key in _keys(place):
             index = place.index
             if key == "z0":
@@ -73,6 +75,17 @@ def put_numbers(
     _put_dashpots(scene, model, values, rows)
 
 
+def _softened(scene: Scene, place: Place, column: Floats, values: Mapping[Place, Floats]) -> Floats:
+    """Numbers as the arrays have them: of the stiffness of a storey with P-Delta what acts."""
+    spring = scene.springs[place.index] if place.kind == "spring" else None
+    if spring is None or spring.weight is None or place.field not in ("stiffness", WEIGHT):
+        return column
+    assert isinstance(spring.law, Linear | BoucWen)
+    k = values.get(replace(place, field="stiffness"), spring.law.stiffness)
+    weight = values.get(replace(place, field=WEIGHT), spring.weight)
+    return np.asarray(k - weight / (spring.height or math.nan))
+
+
 def _keys(place: Place) -> tuple[str, ...]:
     """Arrays that hold a number of the scene as it is."""
     match place.kind:
@@ -81,7 +94,7 @@ def _keys(place: Place) -> tuple[str, ...]:
         case "contact":
             return (place.field,)
         case "spring" if place.part < 0:
-            if place.field == "stiffness":
+            if place.field in ("stiffness", WEIGHT):
                 return ("compression", "extension")
             return ("z0" if place.field == "initial_z" else place.field,)
     return ()

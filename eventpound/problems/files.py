@@ -179,7 +179,7 @@ def _frequencies(scene: Scene) -> list[float]:
 
 def _law(spring: Spring) -> dict[str, float]:
     """A spring as a kinked line and a hysteretic part."""
-    law = spring.law
+    law = spring.acting
     if isinstance(law, Hysteretic) and law.beyond_bouc_wen:
         raise InputError(f"spring {spring.name}: its law is {law.word.value}; accepted: any other")
     if isinstance(law, BoucWen):

@@ -84,6 +84,10 @@ LISTED: tuple[Quantity, ...] = (
     Quantity(_SPRING + "drift_ratio", "drift ratio", D.NUMBER,
              "Largest elongation of either sign over the height of the storey, where it is given.",
              v.peak_drift_ratio, only=v.has_height),
+    Quantity(_SPRING + "stability_coefficient", "stability coefficient", D.NUMBER,
+             "P-Delta: theta = P D/(V h) of a storey with a weight P and a height h, D its largest "
+             "drift and V what its backbone resists there; P/(k h) of a linear one.",
+             v.stability_coefficient, only=v.has_weight),
     Quantity("max_drift", "largest drift", D.LENGTH,
              "Largest elongation of either sign of all storeys, the springs with a height.",
              v.largest_drift, only=v.has_storeys),

@@ -11,12 +11,13 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import SIX, Value, name_of
 from eventpound.quantities.runs import Runs
+from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.joints import joints_of
 from eventpound.scene.parameters import places_of, told_of_variants
 from eventpound.scene.scene import Scene
 from eventpound.scene.separation import correlation, cqc
-from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
+from eventpound.scene.spring import GROUND, BoucWen, Hysteretic, Linear
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes, Recording
 
@@ -67,6 +68,29 @@ def ductility(many: Runs, i: int) -> Floats:
 def peak_drift_ratio(many: Runs, i: int) -> Floats:
     """Largest elongation of a spring over its height, NaN without one."""
     return _peak(many.elongation, i) / (many.scene.springs[i].height or np.nan)
+
+
+def has_weight(scene: Scene, i: int) -> bool:
+    """Whether P-Delta softens spring i, which resists by itself."""
+    spring = scene.springs[i]
+    return spring.weight is not None and stiffness_of(replace(spring, weight=None)) > 0.0
+
+
+def stability_coefficient(many: Runs, i: int) -> Floats:
+    """P D/(V h) of a storey: V its resistance at the largest drift D when first loaded to there."""
+    spring = many.scene.springs[i]
+    law, key = spring.law, f"spring.{spring.name}."
+    assert isinstance(law, Linear | BoucWen)
+
+    def number(name: str, owner: object = law) -> Any:
+        return many.parameters.get(key + name, getattr(owner, name))
+
+    secant, x = number("stiffness"), _peak(many.elongation, i)
+    if isinstance(law, BoucWen):
+        # Up to yield the backbone goes along K0.
+        reach = np.maximum(x, law.bound * number("yield_displacement"))
+        secant = secant + law.bound * number("strength") / reach
+    return np.asarray(number("weight", spring) / (secant * (spring.height or np.nan)) + 0.0 * x)
 
 
 def largest_drift(many: Runs, _: int) -> Floats:
@@ -295,16 +319,19 @@ def close_work(path: str) -> Value:
 
 
 def elastic_force_of(many: Runs, i: int) -> Extremes:
-    """Extremes of a force that grows with the elongation, where that has its own."""
-    law, x = many.scene.springs[i].law, many.elongation
+    """Extremes of a force that grows with the elongation, or falls, where that has its own."""
+    law, x = many.scene.springs[i].acting, many.elongation
     assert not isinstance(law, Hysteretic)
     own = reduced(law)
 
     def force(elongation: Floats) -> Floats:
         return elastic_force(own, elongation)[0][:, None]
 
-    times = x.time_of_maximum[:, [i]], x.time_of_minimum[:, [i]]
-    return Extremes(force(x.maximum[:, i]), times[0], force(x.minimum[:, i]), times[1])
+    longest = force(x.maximum[:, i]), x.time_of_maximum[:, [i]]
+    shortest = force(x.minimum[:, i]), x.time_of_minimum[:, [i]]
+    if own.extension < 0.0:
+        return Extremes(*shortest, *longest)
+    return Extremes(*longest, *shortest)
 
 
 def stands_apart(scene: Scene, i: int) -> bool:

@@ -196,7 +196,7 @@ class View:
         own = [f"{name}.{of}" for of, name in memory if of == spring.name]
         if self.scene is None or x.size < 2 or not wanted.union(own) <= columns:
             return x, self.column(f"force.{spring.name}")
-        law = next(each.law for each in self.scene.springs if each.name == spring.name)
+        law = next(each.acting for each in self.scene.springs if each.name == spring.name)
         first, second = (self._of_end(end, "v", "sv") for end in spring.between)
         return loop_of(law, self.column("t"), x, second - first, *map(self.column, own))
 

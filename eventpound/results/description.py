@@ -10,7 +10,7 @@ import numpy as np
 from eventpound.motion.base import GroundMotion
 from eventpound.scene.contact import Contact, written
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Spring, law_keys
+from eventpound.scene.spring import Spring, law_keys, storey_keys
 
 
 def describe_scene(scene: Scene) -> dict[str, object]:
@@ -97,5 +97,5 @@ def describe_spring(spring: Spring) -> dict[str, object]:
     dict
         ``name``, ``between``, ``law`` and the parameters of the law (SI).
     """
-    height = {} if spring.height is None else {"height": spring.height}
-    return {"name": spring.name, "between": spring.between, **height} | law_keys(spring.law)
+    keys = law_keys(spring.law)
+    return {"name": spring.name, "between": spring.between, **storey_keys(spring), **keys}

@@ -70,6 +70,9 @@ WITH_LAWS = {
         " k is its stiffness, m = 1/sum_i W_i^2/M_i"
     ),
 }
+WITH_WEIGHTS = {
+    "weight": "a spring with a weight P and a height h pulls with F - (P/h) x (P-Delta)",
+}
 WITH_FORCES = {
     "forces": "motion.csv has the force p.<body> (N) on bodies, to be added to -M 1 a_g(t)",
 }
@@ -218,6 +221,7 @@ def _scene(scene: Scene, start: float) -> dict[str, object]:
     return describe_scene(told) | {
         "conventions": CONVENTIONS
         | (WITH_LAWS if any(contact.law for contact in scene.contacts) else {})
+        | (WITH_WEIGHTS if any(spring.weight for spring in scene.springs) else {})
         | (WITH_SUPPORTS if scene.supports else {})
         | (WITH_FORCES if scene.forces else {}),
         "springs": [_spring(spring) for spring in scene.springs],

@@ -43,11 +43,12 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
         ("bodies", "name=body; mass:mass; weight:force; source"),
         (
             "springs",
-            "name=spring; between; law; height:length; K0:stiffness; K_s:stiffness; F_y:force; "
-            "Q:force; u_y:length; alpha; friction; N:force; T_slip=T slip:s; F_ult:force; R_f; "
-            "y_ult=y at F_ult:length; gap:length; compression:stiffness; extension:stiffness; "
-            "offset:length; at_rest=k at rest:stiffness; mass=mass on it:mass; F_y/W; "
-            "T_initial=T initial:s; T_post_yield=T post-yield:s; source",
+            "name=spring; between; law; height:length; weight=P:force; theta; K0:stiffness; "
+            "K_s:stiffness; F_y:force; Q:force; u_y:length; alpha; friction; N:force; "
+            "T_slip=T slip:s; F_ult:force; R_f; y_ult=y at F_ult:length; gap:length; "
+            "compression:stiffness; extension:stiffness; offset:length; "
+            "at_rest=k at rest:stiffness; mass=mass on it:mass; F_y/W; T_initial=T initial:s; "
+            "T_post_yield=T post-yield:s; source",
         ),
         (
             "dashpots",

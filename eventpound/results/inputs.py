@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -31,7 +31,15 @@ from eventpound.scene.modes import modes_of
 from eventpound.scene.periods import period_of
 from eventpound.scene.pi_terms import number_of_terms, pi_terms
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Backfill, BilinearElastic, BoucWen, Series, Slider, Spring
+from eventpound.scene.spring import (
+    Backfill,
+    BilinearElastic,
+    BoucWen,
+    Series,
+    Slider,
+    Spring,
+    storey_keys,
+)
 from eventpound.scene.structures import mass_on, structures_of
 from eventpound.units import STANDARD_GRAVITY
 
@@ -145,12 +153,14 @@ def _mass_on(case: Case, spring: Spring) -> float | None:
 def _spring(spring: Spring, at_rest: float, mass: float | None) -> Row:
     law = spring.law
     row: Row = {"name": spring.name, "between": list(spring.between), "law": law.word.value}
-    if spring.height is not None:
-        row["height"] = spring.height
+    row |= storey_keys(spring)
     if isinstance(law, BilinearElastic | Series):
         return row | asdict(reduced(law)) | {"at_rest": at_rest}
     if isinstance(law, Backfill | Slider):
         return row | law.numbers | ({"at_rest": at_rest} if isinstance(law, Backfill) else {})
+    if spring.weight is not None:
+        k = stiffness_of(replace(spring, weight=None))
+        row["theta"] = spring.geometric_stiffness / k if k > 0.0 else None
     k_0 = row["K0"] = law.initial_stiffness if isinstance(law, BoucWen) else law.stiffness
     if isinstance(law, BoucWen):
         row |= {"K_s": law.stiffness, "F_y": k_0 * law.yield_displacement}
@@ -161,7 +171,7 @@ def _spring(spring: Spring, at_rest: float, mass: float | None) -> Row:
         row |= {"mass": mass, "T_initial": _finite(period_of(mass, at_rest))}
         if isinstance(law, BoucWen):
             row["F_y/W"] = row["F_y"] / (mass * STANDARD_GRAVITY)
-            row["T_post_yield"] = _finite(period_of(mass, law.stiffness))
+            row["T_post_yield"] = _finite(period_of(mass, stiffness_of(spring, True)))
     return row
 
 

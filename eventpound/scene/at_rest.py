@@ -9,6 +9,7 @@ motion and contacts play no part.
     Bouc-Wen                           k + Q/(eta u_y) (1 - nu (beta - gamma) |z|^n): it unloads
     backfill                           K0 where it is pressed, 0 in its gap
     slider                             the stiffness beside it: what sticks has none of its own
+    each with a weight                 P/h less (P-Delta)
 
 Where a law has two tangents at rest and no force, as a cable without slack, the smaller counts, so
 that no period is too short. Where it has a force, as one that has yielded, it counts as it
@@ -56,7 +57,7 @@ class Tangent(NamedTuple):
     @property
     def two(self) -> bool:
         """Whether there are two of them."""
-        return abs(self.closing - self.opening) > APART * max(self.closing, self.opening)
+        return abs(self.closing - self.opening) > APART * max(abs(self.closing), abs(self.opening))
 
 
 def at_rest(scene: Scene, start: float = 0.0) -> Scene:
@@ -71,27 +72,27 @@ def at_rest(scene: Scene, start: float = 0.0) -> Scene:
     """
     found = []
     for spring, tangent in zip(scene.springs, tangents(scene, start), strict=True):
-        law = spring.law
+        law = spring.acting
         if isinstance(law, Linear | BoucWen) and stiffness_of(spring) == tangent.counts:
             found.append(spring)
             continue
         resting: Law = Linear(tangent.counts)
         if isinstance(law, BoucWen):
             resting = BoucWen(law.stiffness, tangent.counts - law.stiffness, 1.0)
-        found.append(replace(spring, law=resting))
+        found.append(replace(spring, law=resting, weight=None))
     return replace(scene, springs=tuple(found))
 
 
 def tangents(scene: Scene, start: float = 0.0) -> list[Tangent]:
     """Stiffness of each spring of a scene at rest, as `at_rest` takes it."""
     x, length = _elongations(scene, start)
-    laws = (spring.law for spring in scene.springs)
+    laws = (spring.acting for spring in scene.springs)
     return [_tangent(law, at, length) for law, at in zip(laws, x.tolist(), strict=True)]
 
 
 def stiffness_of(spring: Spring, yielded: bool = False) -> float:
     """Stiffness (N/m) of a spring of a scene at rest, before it yields or after."""
-    law = spring.law
+    law = spring.acting
     if isinstance(law, BoucWen):
         return law.stiffness if yielded else law.initial_stiffness
     return law.stiffness if isinstance(law, Linear) else _tangent(law, 0.0, 0.0).counts
@@ -118,7 +119,7 @@ def told_at_rest(scene: Scene, start: float = 0.0) -> dict[str, list[str]]:
     """
     found: dict[str, list[str]] = {"counts": [], "not": [], "at_kink": [], "at_yield": []}
     for spring, tangent in zip(scene.springs, tangents(scene, start), strict=True):
-        found["counts" if tangent.counts > 0.0 else "not"].append(spring.name)
+        found["counts" if tangent.counts != 0.0 else "not"].append(spring.name)
         if tangent.two:
             smaller = tangent.counts == min(tangent.closing, tangent.opening)
             found["at_kink" if smaller else "at_yield"].append(spring.name)
@@ -162,7 +163,7 @@ def _elongations(scene: Scene, start: float) -> tuple[Floats, float]:
 
 def _balances(scene: Scene, link: Linkage, u: Floats, length: float) -> bool:
     """Whether forces on the bodies balance at u (N,), with some of shut contacts and sliders."""
-    laws, x = [spring.law for spring in scene.springs], link.moved + link.springs @ u
+    laws, x = [spring.acting for spring in scene.springs], link.moved + link.springs @ u
     elastic = as_arrays(laws)
     force, stiff = elastic_force(elastic, x)[0], np.maximum(elastic.compression, elastic.extension)
     friction = np.zeros(x.size)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any
 
@@ -13,13 +13,24 @@ import numpy as np
 from eventpound.basics.given import accepted_numbers, numbers_of
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
+from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.contact import BARRIER, Contact, opening
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import joined
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BoucWen, DegradingBoucWen, Law, Series, Slider
+from eventpound.scene.spring import (
+    GROUND,
+    BoucWen,
+    DegradingBoucWen,
+    Law,
+    Linear,
+    Series,
+    Slider,
+    Spring,
+)
+from eventpound.scene.stability import unstable
 from eventpound.scene.support_drift import starts_of_supports
 from eventpound.tolerances import EPS, PENETRATED
 
@@ -114,9 +125,10 @@ def check_scene(scene: Scene, start: float | None = 0.0) -> None:
 
 def scene_problems(scene: Scene, start: float | None = 0.0) -> list[Problem]:
     """All problems, in the order bodies, springs, dashpots, contacts, motion, supports, forces."""
+    springs = [*_spring_problems(scene)]
     return [
         *_body_problems(scene),
-        *_spring_problems(scene),
+        *(springs or _stability_problems(scene, start or 0.0)),
         *_dashpot_problems(scene),
         *_contact_problems(scene, start),
         *motion_problems(scene.motion),
@@ -194,6 +206,35 @@ def _spring_problems(scene: Scene) -> Iterator[Problem]:
             accepted = "slider only in a scene without contacts at points between bodies"
             yield element.problem("law", spring.law.word.value, accepted)
         yield from element.numbers(spring)
+        if spring.weight is not None:
+            yield from _weight_problems(element, spring)
+
+
+def _weight_problems(element: _Element, spring: Spring) -> Iterator[Problem]:
+    """What P-Delta needs beside a weight."""
+    if spring.height is None:
+        yield element.problem("height", None, "the height of a storey (m), beside its weight")
+    if not isinstance(spring.law, Linear | BoucWen):
+        accepted = "none beside this law; P-Delta is of linear and Bouc-Wen springs"
+        yield element.problem("weight", spring.weight, accepted)
+
+
+def _stability_problems(scene: Scene, start: float) -> Iterator[Problem]:
+    """A spring by which a scene gives way at rest."""
+    gives = unstable(scene, start)
+    if gives is None:
+        return
+    spring = scene.springs[gives.spring]
+    element = _Element("spring", gives.spring + 1, spring.name)
+    if spring.weight is None:
+        found = stiffness_of(spring)
+        accepted = f"stiffnesses with which the structure stands at rest; {gives}"
+        yield element.problem("stiffness", found, accepted)
+        return
+    most = stiffness_of(replace(spring, weight=None)) * (spring.height or math.nan)
+    alone = f" (below k h = {most:.6g} N)" if spring.weight >= most > 0.0 else ""
+    accepted = f"a weight{alone} under which the structure stands at rest; with P-Delta {gives}"
+    yield element.problem("weight", spring.weight, accepted)
 
 
 def _law_problems(element: _Element, law: Law) -> Iterator[Problem]:

@@ -8,9 +8,10 @@ stiffness: A. K. Chopra and F. McKenna, Modeling viscous damping in nonlinear re
 analysis of buildings for earthquake excitation, Earthquake Engng Struct. Dyn. 45 (2016) 193-211.
 
 Any symmetric C is that of dashpots: -C_ij between bodies i and j, and sum_j C_ij between i and the
-base. With one ratio for all modes C = 2 xi M (M^-1 K)^(1/2), and none of them is negative: K of
-springs has no positive entry off its diagonal, K 1 is not negative, and both hold of the
-root, too (M-matrices). Unlike ratios may ask for some that are negative; together they dissipate.
+base. With one ratio for all modes C = 2 xi M (M^-1 K)^(1/2), and none of them is negative where no
+stiffness is: K then has no positive entry off its diagonal, K 1 is not negative, and both hold of
+the root, too (M-matrices). Unlike ratios, or a frame, may ask for some that are negative; together
+they dissipate.
 """
 
 from __future__ import annotations
@@ -104,7 +105,7 @@ def modal_dashpots(
     own = [
         replace(spring, between=ends_on_ground(spring.between, fixed))
         for spring in springs_on(names, springs, fixed)
-        if stiffness_of(spring) > 0.0
+        if stiffness_of(spring) != 0.0
     ]
     if len(names) > MOST_BODIES or len(joined_groups(names, [s.between for s in own])) != 1:
         raise InputError(

@@ -1,7 +1,7 @@
 """The numbers of a scene by dotted keys, as a case names them, and scenes with other ones.
 
 body.<name>.mass, .displacement, .velocity
-spring.<name>.<number of its law>; of a series spring .parts.<1, 2, ...>.<number>
+spring.<name>.<number of its law>; of a series spring .parts.<1, 2, ...>.<number>; .weight
 dashpot.<first>-<second>.coefficient; .2 ahead of the last dot for the second of a pair
 contact.<name>.gap, .restitution; of one with a law .stiffness, .damping
 support.<name>.delay, of one that has a delay
@@ -29,16 +29,18 @@ from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Law, Series
+from eventpound.scene.spring import Law, Series, Spring
 from eventpound.scene.support import Support
 from eventpound.units import Dimension
 
+WEIGHT = "weight"
+"""The number of a spring that does not stand in its law."""
 OF_CONTACT_LAWS = ("stiffness", "damping")
 """Numbers of a contact that stand in its law."""
 
 _MADE: Mapping[str, tuple[type, ...]] = {
     "body": (Body,),
-    "spring": get_args(Law),
+    "spring": (Spring, *get_args(Law)),
     "dashpot": (Dashpot,),
     "contact": (Contact, ContactLaw),
     "support": (Support,),
@@ -100,6 +102,8 @@ def places_of(scene: Scene) -> dict[str, Place]:
     for i, spring in enumerate(scene.springs):
         key = f"spring.{spring.name}"
         add(key, "spring", i, spring.law)
+        if spring.weight is not None:
+            places[f"{key}.{WEIGHT}"] = Place("spring", i, WEIGHT)
         if isinstance(spring.law, Series):
             for number, part in enumerate(spring.law.parts):
                 add(f"{key}.parts.{number + 1}", "spring", i, part, number)
@@ -123,7 +127,7 @@ def value_at(scene: Scene, place: Place) -> Any:
     if place.kind == "excitation":
         return getattr(scene.motion, place.field)
     owner: Any = getattr(scene, _COLLECTION[place.kind])[place.index]
-    if place.kind == "spring":
+    if place.kind == "spring" and place.field != WEIGHT:
         owner = owner.law if place.part < 0 else owner.law.parts[place.part]
     elif place.kind == "contact" and place.field in OF_CONTACT_LAWS:
         owner = owner.law
@@ -199,7 +203,7 @@ def motion_with(motion: GroundMotion, values: Mapping[Place, float]) -> GroundMo
 def _changed(owner: Any, place: Place, value: float) -> Any:
     if place.kind == "contact" and place.field in OF_CONTACT_LAWS:
         return replace(owner, law=replace(owner.law, **{place.field: value}))
-    if place.kind != "spring":
+    if place.kind != "spring" or place.field == WEIGHT:
         return replace(owner, **{place.field: value})
     if place.part < 0:
         return replace(owner, law=replace(owner.law, **{place.field: value}))

@@ -100,7 +100,7 @@ def period_called(scene: Scene, word: str) -> float:
         name = word.removeprefix(f"{T_1} of ")
         if name not in names:
             raise InputError(f"found {word!r}; accepted: {T_1}, or {T_1} of {', '.join(names)}")
-        resisting = [s.between for s in scene.springs if stiffness_of(s) > 0.0]
+        resisting = [s.between for s in scene.springs if stiffness_of(s) != 0.0]
         held = {end for between in resisting if GROUND in between for end in between}
         joints = [between for between in resisting if not held.issuperset(between)]
         group = next(set(each) for each in joined_groups(names, joints) if name in each)

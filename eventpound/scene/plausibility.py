@@ -33,6 +33,8 @@ LARGEST_STRENGTH = 5.0
 """Q over mass and peak ground acceleration, Pi_Q."""
 LEAST_LOAD, LARGEST_LOAD = 0.5, 5.0
 """Normal forces of sliders over the weight that nothing else holds: it may carry more."""
+LARGEST_THETA = 0.3
+"""Stability coefficient of a storey (EN 1998-1, 4.4.2.2)."""
 LARGEST_YIELD_DISPLACEMENT, LARGEST_GAP = 0.5, 1.0
 """(m)"""
 ROWS_A_PERIOD = 10.0
@@ -79,6 +81,7 @@ def doubts(
         *_motion_doubts("excitation", scene.motion),
         *_support_doubts(supports),
         *_spring_doubts(scene),
+        *_storey_doubts(scene),
         *_load_doubts(scene),
         *(_ratio_doubts(ratios) or _damping_doubts(standing)),
         *_isolation_doubts(scene),
@@ -170,6 +173,26 @@ def _spring_doubts(scene: Scene) -> Iterator[Doubt]:
             )
 
 
+def _storey_doubts(scene: Scene) -> Iterator[Doubt]:
+    """Storeys that P-Delta softens much, or after yield altogether."""
+    for spring in scene.springs:
+        if spring.weight is None:
+            continue
+        lost, left = spring.geometric_stiffness, stiffness_of(spring)
+        if lost > LARGEST_THETA * (left + lost) > 0.0:
+            yield (
+                "P-Delta",
+                f"spring '{spring.name}': P-Delta takes {lost / (left + lost):.3g} of its "
+                f"stiffness (theta = P/(k h)); Eurocode 8 accepts up to {LARGEST_THETA:g}",
+            )
+        if (after := stiffness_of(spring, yielded=True)) < 0.0 < left:
+            yield (
+                "P-Delta after yield",
+                f"spring '{spring.name}': after yield P-Delta leaves it {after:.4g} N/m: the "
+                "storey leans on, and may not come back",
+            )
+
+
 def _load_doubts(scene: Scene) -> Iterator[Doubt]:
     """Loads of sliders, where bodies stand on them and on nothing else."""
     names = [GROUND, *(body.name for body in scene.bodies)]
@@ -214,7 +237,7 @@ def _damping_doubts(scene: Scene) -> Iterator[Doubt]:
         for end in set(spring.between) - {GROUND}:
             held[end] += stiffness_of(spring)
     for body in scene.bodies:
-        critical = ratio_coefficient(1.0, held[body.name], body.mass)
+        critical = ratio_coefficient(1.0, max(held[body.name], 0.0), body.mass)
         if damped[body.name] > critical > 0.0:
             yield (
                 "damping",

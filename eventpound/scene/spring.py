@@ -36,7 +36,8 @@ from eventpound.units import STANDARD_GRAVITY, Dimension
 GROUND = "ground"
 _TINY = sys.float_info.min
 _NOT_BELOW = Accepted(
-    "a stiffness >= 0 (N/m); P-Delta is a smaller stiffness of the storey", not_negative
+    "a stiffness >= 0 (N/m); P-Delta is weight and height of the spring, or a linear one beside it",
+    not_negative,
 )
 _STIFF = Accepted("a positive stiffness (N/m)", above_zero)
 _LONG = Accepted("a positive length (m)", above_zero)
@@ -46,7 +47,8 @@ _SHARE = Accepted("a number above 0, at most 1", lambda soil, r: 0.0 < r <= 1.0)
 _GAP = Accepted("a length >= 0 (m)", not_negative)
 _WIDER = Accepted("a length of at least gap (m), or 0", lambda s, g: g in (0.0, max(g, s.gap)))
 _Stiffness = Annotated[Number, Dimension.STIFFNESS, _NOT_BELOW]
-_Force = Annotated[Number, Dimension.FORCE, Accepted("a positive force (N)", above_zero)]
+_PULL = Accepted("a positive force (N)", above_zero)
+_Force = Annotated[Number, Dimension.FORCE, _PULL]
 _Loss = Annotated[Number, Dimension.NUMBER, Accepted("a number >= 0", not_negative)]
 _BEYOND = 0.1
 """Part of its bound by which z may exceed it at the end of a run of the largest tolerance."""
@@ -78,12 +80,13 @@ class Linear:
     Parameters
     ----------
     stiffness : float
-        k (N/m), not negative.
+        k (N/m). Negative only where all springs of the scene together resist at rest, as the
+        couplings of a condensed frame do.
     """
 
     word: ClassVar[LawName] = LawName.LINEAR
     equation: ClassVar[str] = "F = stiffness x"
-    stiffness: _Stiffness
+    stiffness: Annotated[Number, Dimension.STIFFNESS, Accepted("a stiffness (N/m)")]
 
 
 @converting
@@ -655,6 +658,12 @@ def law_keys(law: Law) -> dict[str, object]:
     return {"law": law.word.value} | asdict(law)
 
 
+def storey_keys(spring: Spring) -> dict[str, object]:
+    """What makes a spring a storey, by the keys of a case file (SI)."""
+    given = {"height": spring.height, "weight": spring.weight}
+    return {key: value for key, value in given.items() if value is not None}
+
+
 @converting
 class Spring:
     """A law between two bodies or a body and the ground.
@@ -669,9 +678,26 @@ class Spring:
         Force as a function of the elongation (and, for Bouc-Wen, its history).
     height : float, optional
         Of the storey that it is (m): its drift ratio is elongation over height.
+    weight : float, optional
+        P, that its columns carry (N): with it and the height h the spring pulls with
+        ``F - (P/h) x`` (P-Delta; linear and Bouc-Wen springs).
     """
 
     name: str
     between: Given[tuple[str, str], Sequence[str]]
     law: Law
     height: Annotated[OptionalNumber, Dimension.LENGTH, _LONG] = default(None)
+    weight: Annotated[OptionalNumber, Dimension.FORCE, _PULL] = default(None)
+
+    @property
+    def geometric_stiffness(self) -> float:
+        """P/h (N/m), by which P-Delta softens it; 0 without a weight."""
+        return 0.0 if self.weight is None else self.weight / (self.height or math.nan)
+
+    @property
+    def acting(self) -> Law:
+        """The law of its force: its own, softened by P-Delta."""
+        law = self.law
+        if self.weight is None or not isinstance(law, Linear | BoucWen):
+            return law
+        return replace(law, stiffness=law.stiffness - self.geometric_stiffness)

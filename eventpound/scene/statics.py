@@ -21,6 +21,7 @@ from eventpound.scene.linkage import Linkage, linkage_of
 from eventpound.scene.loaded_straight import Loops, Soils, Worn
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, BoucWen, DegradingBoucWen, Law, Slider
+from eventpound.scene.stability import gives_way
 
 
 def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
@@ -43,6 +44,7 @@ def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
     link = linkage_of(scene, start)
     given = np.array([body.displacement for body in scene.bodies], float)
     springs = _Springs.of(scene, link.moved + link.springs @ given)
+    _check_softest(scene, springs.softest, link.springs)
     potential = _potential(scene, springs, link, given)
     try:
         u = equilibrium(potential, given)
@@ -109,6 +111,24 @@ def _check(scene: Scene) -> None:
             raise _refused(f"with the spring {spring.name!r}, {found}", "gamma >= 0")
 
 
+def _check_softest(scene: Scene, softest: Floats, springs: Floats) -> None:
+    """Refuse negative stiffnesses that leave the potential other than convex, or no bodies held.
+
+    softest (S,): smallest stiffnesses (N/m); springs (S, N): what displacements elongate.
+    """
+    if not (softest < 0.0).any():
+        return
+    K, whole = ((springs.T * each) @ springs for each in (softest, abs(softest)))
+    held, joined = (np.linalg.matrix_rank(each, CERTAIN * whole.max()) for each in (K, whole))
+    if gives_way(K, whole.diagonal()) is not None or held < joined:
+        names = ", ".join(repr(scene.springs[i].name) for i in np.flatnonzero(softest < 0.0)[:8])
+        raise _refused(
+            f"beside negative stiffnesses ({names}) that may be more than what others keep after "
+            "they yield or are slack",
+            '"initial"',
+        )
+
+
 @dataclass(frozen=True)
 class _Springs:
     """Springs (S,) as arrays: elastic parts, and those with a memory, loaded straight from x_0."""
@@ -125,12 +145,12 @@ class _Springs:
     @classmethod
     def of(cls, scene: Scene, x_0: Floats) -> _Springs:
         """Those of a scene, at elongations from which they are loaded (m)."""
-        laws = [spring.law for spring in scene.springs]
+        laws = [spring.acting for spring in scene.springs]
         loops = {i: law for i, law in enumerate(laws) if isinstance(law, BoucWen)}
         soils = {i: law for i, law in enumerate(laws) if isinstance(law, Backfill)}
         soil = np.array([*soils], np.int64)
         return cls(
-            laws,
+            [spring.law for spring in scene.springs],
             as_arrays(laws),
             x_0,
             np.array([*loops], np.int64),
@@ -172,6 +192,11 @@ class _Springs:
             if any(way.last < end for way in ways):
                 past.append(i)
         return past
+
+    @property
+    def softest(self) -> Floats:
+        """The smallest stiffness of each, yielded or slack (N/m)."""
+        return np.minimum(self.elastic.compression, self.elastic.extension)
 
     @property
     def stiffness(self) -> Floats:

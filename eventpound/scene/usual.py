@@ -144,16 +144,17 @@ def _stiffest(law: Law) -> float:
     if isinstance(law, BilinearElastic | Series):
         whole = reduced(law)
         return max(whole.compression, whole.extension)
-    return float(getattr(law, "initial_stiffness", getattr(law, "stiffness", 0.0)))
+    return abs(float(getattr(law, "initial_stiffness", getattr(law, "stiffness", 0.0))))
 
 
 def _forces(scene: Scene) -> Iterator[tuple[str, tuple[str, ...], float]]:
     """Places, bodies and sizes (N) of forces that laws and loads have."""
     for spring in scene.springs:
-        for key, dimension in numbers_of(type(spring.law)).items():
-            if dimension is Dimension.FORCE:
-                size = float(getattr(spring.law, key))
-                yield f"spring '{spring.name}': {key}", spring.between, size
+        for owner in (spring, spring.law):
+            for key, dimension in numbers_of(type(owner)).items():
+                if dimension is Dimension.FORCE:
+                    size = float(getattr(owner, key) or 0.0)
+                    yield f"spring '{spring.name}': {key}", spring.between, size
     for force in scene.forces:
         history = force.history
         sizes = (getattr(history, key, None) for key in ("value", "amplitude", "peak"))

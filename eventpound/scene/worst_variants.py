@@ -20,6 +20,7 @@ from eventpound.scene.contact import BARRIER, opening
 from eventpound.scene.parameters import Place, value_at, with_values
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
+from eventpound.scene.stability import may_soften
 
 
 def worst_variants(scene: Scene, values: Mapping[Place, Floats], count: int) -> Ints:
@@ -43,6 +44,8 @@ def worst_variants(scene: Scene, values: Mapping[Place, Floats], count: int) -> 
     for place, column in values.items():
         if place.kind == "spring" and place.field in WITHIN_BOUND:
             shapes.setdefault(place.index, []).append(column)
+        elif place.kind == "spring" and (may_soften(scene) or column.min() < 0.0):
+            shapes.setdefault(-2, []).append(column)
         elif place.kind == "dashpot" and (column.min() < 0.0 or _any_negative(scene)):
             shapes.setdefault(-1, []).append(column)
     rows += [distinct(columns, count)[0] for columns in shapes.values()]
@@ -118,4 +121,6 @@ class KnownRanges:
             return value + self._openings[place.index] >= 0.0
         if place.kind == "dashpot":
             return min(value, low) >= 0.0 and not _any_negative(self._scene)
-        return place.kind != "spring" or place.field not in WITHIN_BOUND
+        if place.kind == "spring" and (place.field in WITHIN_BOUND or may_soften(self._scene)):
+            return False
+        return place.field != "stiffness" or value >= 0.0

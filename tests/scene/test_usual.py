@@ -185,7 +185,7 @@ def test_a_normal_force_by_a_weight(of_mass: Any) -> None:
     [
         (("spring", 5, "normal_force"), "500 t", "it has a mass for a force: write kN, or tf"),
         (("spring", 1, "stiffness"), "500 t/m", "it has a mass for a force: write kN, or tf"),
-        (("spring", 1, "stiffness"), -1e6, "a stiffness >= 0 (N/m); P-Delta is a smaller stiff"),
+        (("spring", 2, "extension"), -1e6, "a stiffness >= 0 (N/m); P-Delta is weight and hei"),
         (("body", 0, "source"), "drawing\0 B", "accepted: where its numbers are from, no contr"),
         (("title",), "a\x1b[31mbridge", "title: found 'a\\x1b[31mbridge'; accepted: some text, no"),
     ],

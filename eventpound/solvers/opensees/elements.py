@@ -262,7 +262,7 @@ def _law_problems(scene: Scene, model: Model) -> list[str]:
 
 
 def _spring_material(spring: Spring) -> Material:
-    law = spring.law
+    law = spring.acting
     if isinstance(law, BoucWen):
         initial = law.initial_stiffness
         size = law.yield_displacement**law.exponent

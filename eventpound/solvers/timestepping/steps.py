@@ -93,8 +93,8 @@ def time_step(task: Task, model: Model, scales: SceneScales, contact_period: flo
 
 
 def largest_stiffness(model: Model) -> Floats:
-    """Largest stiffness each link can have (N/m), shape (L,); of a Bouc–Wen spring the first."""
-    elastic = np.maximum(model.elastic.compression, model.elastic.extension)
+    """Largest stiffness each link can have in size (N/m), (L,); of a Bouc–Wen spring the first."""
+    elastic = np.maximum(abs(model.elastic.compression), abs(model.elastic.extension))
     return np.asarray(elastic + yielding(model.law.memory).stiffness)
 
 
