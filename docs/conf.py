@@ -1,8 +1,9 @@
 """The documentation site: `python -m sphinx -W --keep-going docs build/site`.
 
-Pages are Markdown (MyST). Three parts are written here when the site is built, into
+Pages are Markdown (MyST). Four parts are written here when the site is built, into
 `docs/generated/`: the gallery, a page for each case of `cases/`; the reference of the
-commands, which is their own help; and the notebook, with the outputs stored in it.
+commands, which is their own help; the list of quantities; and the notebooks, with the outputs
+stored in them.
 """
 
 from __future__ import annotations
@@ -114,6 +115,27 @@ def _write_commands() -> None:
     (GENERATED / "commands.md").write_text("\n".join(parts), encoding="utf-8")
 
 
+_OF = {"Bodies": "<body>", "Springs": "<spring>", "Contacts": "<contact>", "All others": ""}
+"""Headings of the quantities, and what stands in the paths below each."""
+
+
+def _write_quantities() -> None:
+    """The list of quantities, below what each is one of."""
+    from eventpound.quantities.lookup import listing
+
+    rows = list(listing())
+    parts = []
+    for heading, word in _OF.items():
+        here = [row for row in rows if word in row[0]]
+        rows = [row for row in rows if row not in here]
+        lines = [f"| `{path}` | {' | '.join(others)} |" for path, *others in here]
+        parts.append(
+            f"### {heading}\n\n| name | unit | what | from |\n| --- | --- | --- | --- |\n"
+            + "\n".join(lines)
+        )
+    (GENERATED / "quantities.txt").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
 def _write_notebook() -> None:
     """Cells of the notebook, each with its outputs."""
     cells = json.loads((HERE / "notebook.ipynb").read_text(encoding="utf-8"))["cells"]
@@ -139,6 +161,7 @@ def _write_generated(app: Any) -> None:
     GENERATED.mkdir()
     _write_gallery()
     _write_commands()
+    _write_quantities()
     _write_notebook()
 
 

@@ -1,4 +1,4 @@
-"""Pictures of docs/contact.md, docs/sensitivities.md and of loops in docs/case-format.md.
+"""Pictures of the first page, docs/contact.md, docs/sensitivities.md; loops in docs/case-format.md.
 
 `python docs/explained.py` draws them.
 """
@@ -13,12 +13,40 @@ import numpy as np
 
 import eventpound
 from eventpound import ContactLaw
+from eventpound.report.model_figure import model_figure
 from eventpound.report.tornado import tornado_figure
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "explained"
-SIZE, DPI = (6.4, 3.6), 110
+SIZE, DPI, FINE = (6.4, 3.6), 110, 160
 FORCE_IN_MN = 1e-6
+
+
+def first() -> None:
+    """A bridge as it is modelled; how far its joint closes, as built and if nothing could touch."""
+    case = eventpound.load_case(HERE.parent / "cases" / "bridge-el-centro")
+    _save(model_figure(case.scene, within=(5.1, 2.6)), "first-model.png", FINE)
+    response = eventpound.simulate(case, "fast", output_step="5 ms")
+    gap = case.scene.contacts[0].gap
+    figure, axis = plt.subplots(figsize=(5.0, 3.1), dpi=DPI, layout="constrained")
+    for run, color, label in (
+        (response.without_contact, "#999999", "if nothing could touch"),
+        (response, "#0072b2", "as built"),
+    ):
+        history = run.history
+        closing = history["u.segment1"] - history["u.segment2"]
+        axis.plot(history["t"], 1e3 * closing, color=color, label=label, linewidth=1)
+    struck = response.events["t"][response.events["kind"] == "impact"]
+    circles = {"color": "#d55e00", "fillstyle": "none", "linestyle": "none", "markersize": 5}
+    axis.plot(struck, np.full(len(struck), 1e3 * gap), "o", label="impact", **circles)
+    needed = response.quantity("contacts.joint.separation_needed")
+    axis.axhline(1e3 * needed, color="#d55e00", linestyle="--", linewidth=1)
+    said = {"textcoords": "offset points", "color": "#d55e00", "weight": "bold", "fontsize": 11}
+    axis.annotate(f"{1e3 * needed:.0f} mm: no impact", (12.0, 1e3 * needed), (0, -14), **said)
+    axis.set(xlim=(0, 30), xlabel="time (s)", ylabel="closing of the joint (mm)")
+    axis.grid(alpha=0.3)
+    axis.legend(loc="lower right", fontsize=8)
+    _save(figure, "first-motion.png", FINE)
 
 
 def rest() -> None:
@@ -126,13 +154,14 @@ def degrading() -> None:
     _save(figure, "degrading.png")
 
 
-def _save(figure: plt.Figure, name: str) -> None:
+def _save(figure: plt.Figure, name: str, dpi: int = DPI) -> None:
     FOLDER.mkdir(exist_ok=True)
-    figure.savefig(FOLDER / name)
+    figure.savefig(FOLDER / name, dpi=dpi)
     plt.close(figure)
 
 
 if __name__ == "__main__":
+    first()
     rest()
     contact_spring()
     backfill()

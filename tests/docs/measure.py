@@ -35,7 +35,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-PAGES = sorted([*DOCS.glob("*.md"), *DOCS.glob("measured/*.md")])
+README = ROOT / "README.md"
+PAGES = sorted([README, *DOCS.glob("*.md"), *DOCS.glob("measured/*.md")])
 BLOCK = re.compile(
     r"<!-- measured by: python -m (?P<command>.*?)(?:; table (?P<table>\d+))? -->\n"
     r"(?P<inside>.*?)<!-- end of measured(?P<seal>.*?) -->",
@@ -106,7 +107,7 @@ def blocks(text: str) -> Iterator[Block]:
 
 def name_of(page: Path) -> str:
     """What a page is called by the command."""
-    return page.relative_to(DOCS).with_suffix("").as_posix()
+    return page.relative_to(ROOT).with_suffix("").as_posix().removeprefix("docs/")
 
 
 def machine() -> str:
@@ -145,7 +146,8 @@ def main(arguments: list[str]) -> None:
     if arguments:
         name, *rest = arguments
         which, file = [*rest, None, None][:2]
-        measure(DOCS / f"{name}.md", int(which) if which else None, Path(file) if file else None)
+        page = README if name == README.stem else DOCS / f"{name}.md"
+        measure(page, int(which) if which else None, Path(file) if file else None)
         return
     for page in PAGES:
         for number, block in enumerate(blocks(page.read_text(encoding="utf-8")), start=1):

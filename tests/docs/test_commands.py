@@ -31,8 +31,8 @@ STANDING_FOR = {
 """What stands for words of the pages, and for studies of thousands of runs."""
 ELSEWHERE = {
     "eventpound plot cases": "a minute and a half; the tests of studies make every figure",
-    "eventpound run tutorial": "tests/study/test_tutorial.py",
-    "eventpound check tutorial": "tests/study/test_tutorial.py",
+    "eventpound run tutorial": "tests/study/test_pi_spectrum.py",
+    "eventpound check tutorial": "tests/study/test_pi_spectrum.py",
     "eventpound study cases/figure-05 --spectrum": "tests/study/test_spectra.py, with fewer runs",
     "eventpound problems score": "tests/test_score.py",
     "eventpound problems pack": "tests/problems",

@@ -251,13 +251,6 @@ def test_units_of_pi_terms_are_products_of_mass_length_and_time() -> None:
     assert {q.dimension for q in LISTED} <= {*expected, Dimension.ANGULAR_FREQUENCY}
 
 
-def test_the_page_of_the_docs_is_the_list() -> None:
-    lines = ["| name | unit | what | from |", "| --- | --- | --- | --- |"]
-    lines += [f"| `{path}` | {' | '.join(others)} |" for path, *others in listing()]
-    table = "\n".join(lines) + "\n"
-    assert table in (ROOT / "docs" / "quantities.md").read_text(), table
-
-
 def test_the_command_lists_them_without_a_case(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--quantities"]) == 0
     printed = capsys.readouterr().out.splitlines()

@@ -40,7 +40,7 @@ def peaks(case: Case, solver: str, **options: Any) -> tuple[Floats | None, float
     """Peaks of the bodies (m), None where the run fails, and its processor time (s)."""
     began = time.process_time()
     try:
-        found = simulate(case, solver, RTOL, **options).recording.displacement
+        found = simulate(case, solver, **{"rtol": RTOL} | options).recording.displacement
     except ComputationError:
         return None, time.process_time() - began
     return np.maximum(found.maximum, -found.minimum), time.process_time() - began

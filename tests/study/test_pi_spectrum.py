@@ -12,7 +12,7 @@ from eventpound.cli import main
 from eventpound.study.table import read_table
 
 ROOT = Path(__file__).parents[2]
-BLOCKS = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "tutorial.md").read_text(), re.DOTALL)
+BLOCKS = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "pi-spectrum.md").read_text(), re.DOTALL)
 
 
 @pytest.fixture
@@ -28,7 +28,7 @@ def test_one_oscillator(case):
     free = simulate(replace(scene, contacts=()), "fast", duration=loaded.run.duration)
     found = [float(r.peaks.loc["0", "abs_max"]) / scene.motion.scales().length for r in (run, free)]
     assert [f"{value:.1f}" for value in found] == re.findall(
-        r"(\d+\.\d)(?= times|\. `results)", (ROOT / "docs" / "tutorial.md").read_text()
+        r"(\d+\.\d)(?= times|\. `results)", (ROOT / "docs" / "pi-spectrum.md").read_text()
     )
     assert run.impacts == 1
 
