@@ -176,7 +176,7 @@ LISTED: tuple[Quantity, ...] = (
     Quantity("final.<spring>.z", "final $z$", D.NUMBER, "Hysteretic variable at the end.", v.z_of,
              only=v.law_is(Hysteretic)),
     Quantity("final.<spring>.epsilon", "final $\\varepsilon$", D.NUMBER,
-             "Hysteretic energy of a degrading Bouc-Wen spring at the end, in parts of Q u_y.",
+             "Hysteretic energy of a degrading Bouc-Wen spring at the end, over Q u_y.",
              v.by_law("epsilon"), TakenFrom.LAWS, v.told_by_law("epsilon")),
     Quantity("work.steps", "steps", D.NUMBER, "Steps of the solver.", lambda m, i: m.steps,
              kind=int),

@@ -155,7 +155,7 @@ def model_figure(
     axes.set(xlim=(left, right), ylim=(low, max(tops)), aspect="equal", title=literal(title))
     axes.axis("off")
     hidden = len(routes) < len(scene.springs) + len(scene.dashpots)
-    _legend(axes, scene, "dashpots past a floor are not drawn" if hidden else "")
+    _legend(axes, scene, "dashpots that pass a floor are not drawn" if hidden else "")
     return figure
 
 
