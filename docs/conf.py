@@ -53,13 +53,23 @@ napoleon_google_docstring = False
 napoleon_use_rtype = False
 
 
+_GROUPS = (
+    "Several bodies",
+    "The two-segment bridge of the founding paper",
+    "One body",
+    "Studies and figures of the founding paper",
+)
+"""Headings of the gallery, in order."""
+
+
 def _group(name: str, case: dict[str, Any]) -> str:
     """The heading of the gallery that a case stands below."""
+    several, bridge, one, studies = _GROUPS
     if "study" in case or "suite" in case["excitation"] or name.startswith("figure"):
-        return "Studies and figures of the founding paper"
+        return studies
     if name.startswith("bridge"):
-        return "The two-segment bridge of the founding paper"
-    return "One body" if len(case.get("body", "several")) == 1 else "Several bodies"
+        return bridge
+    return one if len(case.get("body", "several")) == 1 else several
 
 
 def _write_gallery() -> None:
@@ -74,10 +84,20 @@ def _write_gallery() -> None:
         case = tomllib.loads(text)
         command = "study" if "study" in case else "run"
         title, picture = case["title"], f"/gallery/{name}.png"
+        drawn = f"![what the command draws]({picture})"
+        sketch = f"/gallery/{name}-model.png"
+        if (HERE / sketch.lstrip("/")).exists():
+            # A motion looks like any other in a thumbnail; the structure tells cases apart.
+            picture = sketch
+            drawn = (
+                "::::{grid} 1 1 2 2\n:::{grid-item}\n:columns: 12 12 5 5\n"
+                f"![the structure]({sketch})\n:::\n"
+                f":::{{grid-item}}\n:columns: 12 12 7 7\n{drawn}\n:::\n::::"
+            )
         (folder / f"{name}.md").write_text(
             f"# {title}\n\n{about_case(file.parent)}\n\n"
             f"```sh\neventpound {command} cases/{name}\n```\n\n"
-            f"![what the command draws]({picture})\n\n"
+            f"{drawn}\n\n"
             f"## The case file\n\n`cases/{name}/case.toml`:\n\n"
             f"```{{literalinclude}} ../../../cases/{name}/case.toml\n:language: toml\n```\n",
             encoding="utf-8",
@@ -87,8 +107,8 @@ def _write_gallery() -> None:
             f":img-top: {picture}\n:img-alt: {title}\n\n`{name}`\n:::\n"
         )
     grids = [
-        f"## {group}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(found) + "\n::::\n"
-        for group, found in sorted(cards.items())
+        f"## {group}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(cards[group]) + "\n::::\n"
+        for group in _GROUPS
     ]
     (GENERATED / "gallery.md").write_text(
         "# Gallery: the cases\n\nEvery picture is made by one command from one case file of "

@@ -1,5 +1,7 @@
 """Pictures of the gallery: `python docs/pictures.py [CASE ...]` runs cases and keeps one each.
 
+Of a case of one run the sketch of its model is kept, too; `--models` draws these alone.
+
 They are kept in docs/gallery with `made.csv`, which says of which case file each picture is
 (its hash): tests/docs/test_site.py tells those that are out of date. All cases take two minutes
 once kernels are compiled.
@@ -17,13 +19,17 @@ from pathlib import Path
 
 from PIL import Image
 
+from eventpound.case.loading import load_case
 from eventpound.cli import main
+from eventpound.report.model_figure import model_figure
 
 ROOT = Path(__file__).parents[1]
 GALLERY = ROOT / "docs" / "gallery"
 MADE = GALLERY / "made.csv"
 WIDTH, COLOURS = 900, 256
 """Pixels, and shades: enough for a figure of lines, at a quarter of the size."""
+MODEL, MODEL_DPI = (5.6, 3.6), 150
+"""Inches that a sketch has at most, so that its names are read in half a page."""
 FIRST = ("displacements.png", "study.png")
 """The picture that says most, where there are several."""
 AS_PRINTED = {
@@ -41,6 +47,12 @@ def hash_of(name: str) -> str:
 def case_names() -> list[str]:
     """All cases, in order."""
     return sorted(file.parent.name for file in (ROOT / "cases").glob("*/case.toml"))
+
+
+def is_one_run(name: str) -> bool:
+    """Whether a case is one structure under one motion, of which a sketch says most."""
+    case = tomllib.loads((ROOT / "cases" / name / "case.toml").read_text(encoding="utf-8"))
+    return not {"study", "figure"} & case.keys() and "suite" not in case["excitation"]
 
 
 def made() -> dict[str, str]:
@@ -92,10 +104,22 @@ def make(name: str) -> None:
         shrink(chosen(name, sorted(out.rglob("*.png"))), GALLERY / f"{name}.png")
 
 
-def run(names: list[str]) -> None:
+def draw_model(name: str) -> None:
+    """Keep the sketch of a case of one run."""
+    with tempfile.TemporaryDirectory() as folder:
+        sketch = Path(folder) / "model.png"
+        figure = model_figure(load_case(ROOT / "cases" / name).scene, within=MODEL)
+        figure.savefig(sketch, dpi=MODEL_DPI)
+        shrink([sketch], GALLERY / f"{name}-model.png")
+
+
+def run(names: list[str], models: bool = False) -> None:
     """Make the pictures of these cases, or of all, and say of which files they are."""
     hashes = made()
-    for name in names or case_names():
+    names = names or case_names()
+    for name in filter(is_one_run, names):
+        draw_model(name)
+    for name in [] if models else names:
         make(name)
         hashes[name] = hash_of(name)
     with MADE.open("w", newline="", encoding="utf-8") as file:
@@ -105,4 +129,4 @@ def run(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    run(sys.argv[1:])
+    run([word for word in sys.argv[1:] if word != "--models"], "--models" in sys.argv)

@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 sys.path.insert(0, str(DOCS))
 
-from pictures import GALLERY, case_names, hash_of, made  # noqa: E402
+from pictures import GALLERY, case_names, hash_of, is_one_run, made  # noqa: E402
 
 WRITTEN_WHEN_BUILT = ("generated/",)
 PAGES = [
@@ -33,6 +33,7 @@ def test_the_gallery_shows_the_case_as_it_is(name: str) -> None:
     """`python docs/pictures.py NAME` makes a picture again."""
     assert made().get(name) == hash_of(name)
     assert (GALLERY / f"{name}.png").exists()
+    assert (GALLERY / f"{name}-model.png").exists() == is_one_run(name)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)
