@@ -12,7 +12,7 @@ import numpy as np
 
 from eventpound.basics.given import positive
 from eventpound.basics.progress import Reached
-from eventpound.case.case import Case
+from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import RunOptions, Stated, with_given
 from eventpound.case.solver_options import LARGEST_RTOL as LARGEST_RTOL
 from eventpound.case.solver_options import SMALLEST_RTOL as SMALLEST_RTOL
@@ -82,7 +82,7 @@ def made_ready(
         if isinstance(solver, str) and ":" in solver:
             raise InputError(f"settings: found beside solver = {solver!r}; accepted: one of them")
         options = replace(options, settings=settings_in_si(settings))
-    scene = case.scene if isinstance(case, Case) else case
+    scene = case_of(case).scene
     task = task_with(scene, run, options, progress)
     asked([(scene, run.stated)])
     if max_steps is not None:
@@ -192,16 +192,15 @@ def refuse_suite(case: Case) -> None:
 
 def check_case(case: Case | Scene) -> None:
     """Refuse a scene that cannot be computed, also of a case that was changed since it was read."""
-    scene, start = (case.scene, case.run.start_time) if isinstance(case, Case) else (case, 0.0)
-    check_scene(scene, start)
+    case = case_of(case)
+    check_scene(case.scene, case.run.start_time)
 
 
 def options_of(case: Case | Scene, **given: object) -> tuple[RunOptions, SolverOptions]:
     """Options of a checked case, or defaults for a scene, with what a call gives instead."""
-    if isinstance(case, Case):
-        refuse_suite(case)
-        return with_given(case.run, given, case.scene), case.solver
-    return with_given(RunOptions(), given, case), SolverOptions()
+    case = case_of(case)
+    refuse_suite(case)
+    return with_given(case.run, given, case.scene), case.solver
 
 
 _AT_LEAST = 1.0

@@ -11,7 +11,7 @@ from eventpound.accuracy.estimate import estimate_of
 from eventpound.basics.given import Count, checked
 from eventpound.basics.progress import Reached
 from eventpound.basics.warned import warn_caller
-from eventpound.case.case import Case
+from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import EQUILIBRIUM, INITIAL
 from eventpound.errors import AccuracyWarning, InputError
 from eventpound.response import Response
@@ -93,6 +93,7 @@ def simulate(
     AccuracyWarning
         Where the tolerance does not tell a number or an event, or the error is not known.
     """
+    case = case_of(case)
     if start is not None:
         case = _started(case, start)
     response = simulation.simulate(
@@ -107,9 +108,8 @@ def simulate(
         progress=_shown if progress is True else progress or None,
         max_steps=max_steps,
     )
-    if error_estimate is None and isinstance(case, Case):
-        error_estimate = case.run.error_estimate
-    estimate = estimate_of(response, asked=error_estimate)
+    asked = case.run.error_estimate if error_estimate is None else error_estimate
+    estimate = estimate_of(response, asked=asked)
     for text in (estimate or {}).get("warnings", ()):
         warn_caller(text, AccuracyWarning)
     if progress is True:
@@ -118,30 +118,22 @@ def simulate(
     return response if estimate is None else replace(response, error_estimate=estimate)
 
 
-def _started(case: Case | Scene, start: FinalState | str) -> Case | Scene:
+def _started(case: Case, start: FinalState | str) -> Case:
     """The same in equilibrium, as it is, or from the end of another run on."""
-    if isinstance(case, Case):
-        if case.run.in_equilibrium and isinstance(start, str):
-            if start == EQUILIBRIUM:
-                return case
-            raise InputError(f"start: found {start!r}; accepted: a case that starts there")
-        scene = _started_scene(case.scene, start, case.run.start_time)
-        return replace(case, scene=scene)
-    return _started_scene(case, start, 0.0)
-
-
-def _started_scene(scene: Scene, start: FinalState | str, time: float) -> Scene:
+    scene, time = case.scene, case.run.start_time
     if not isinstance(start, str):
-        return continued(scene, start, time)
-    if start == INITIAL:
-        return scene
+        return replace(case, scene=continued(scene, start, time))
+    if case.run.in_equilibrium and start != EQUILIBRIUM:
+        raise InputError(f"start: found {start!r}; accepted: a case that starts there")
+    if start == INITIAL or case.run.in_equilibrium:
+        return case
     if start != EQUILIBRIUM:
         accepted = f"{INITIAL!r}, {EQUILIBRIUM!r}, or the final state of a run"
         raise InputError(f"start: found {start!r}; accepted: {accepted}")
     from eventpound.scene.statics import in_equilibrium
 
     check_scene(scene, None)
-    return in_equilibrium(scene, time)
+    return replace(case, scene=in_equilibrium(scene, time))
 
 
 def _shown(t: float) -> None:

@@ -27,7 +27,7 @@ from eventpound.accuracy.routes import (
 )
 from eventpound.accuracy.sequences import instead_of
 from eventpound.basics.given import checked, number, positive
-from eventpound.case.case import Case
+from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import Way, warn_left_out
 from eventpound.case.solver_options import rtol_problems
 from eventpound.errors import ComputationError, InputError
@@ -107,10 +107,11 @@ def verify(
     if problems := rtol_problems(tolerance):
         raise InputError(problems)
     patience = positive("patience", patience, Dimension.TIME)
+    case = case_of(case)
+    title = case.title or "scene"
     check_case(case)
     say = report or (lambda _: None)
-    if isinstance(case, Case):
-        warn_left_out(case.run, Way.VERIFY)
+    warn_left_out(case.run, Way.VERIFY)
     task = _task(case, duration)
     times = [number("moments", t, Dimension.TIME) for t in moments]
     if outside := [t for t in times if not task.start <= t <= task.end]:
@@ -120,7 +121,6 @@ def verify(
         )
     task = replace(task, output_times=np.union1d(task.output_times, times))
     routes = routes_of(task.scene, tolerance)
-    title = case.title if isinstance(case, Case) else "scene"
     runs: list[RouteRun | RouteFailure] = []
     try:
         for route in routes:
@@ -167,11 +167,10 @@ def _reported(task: Task, runs: Sequence[RouteRun | RouteFailure]) -> tuple[Rout
     return tuple(reports)
 
 
-def _task(case: Case | Scene, duration: float | str | None) -> Task:
+def _task(case: Case, duration: float | str | None) -> Task:
     run, options = options_of(case, duration=duration, energy=False)
-    scene = case.scene if isinstance(case, Case) else case
     run = replace(run, output_step=run.duration / SAMPLES)
-    return task_with(scene, run, replace(options, name="cvode", settings={}, atol={}), None)
+    return task_with(case.scene, run, replace(options, name="cvode", settings={}, atol={}), None)
 
 
 def _conditioning(

@@ -101,3 +101,10 @@ class Case:
             f"{len(scene.dashpots)} dashpots, {len(scene.contacts)} contacts, {scene.motion.kind}"
             f"{many}; {self.solver.name}, rtol {self.solver.rtol:g}>"
         )
+
+
+def case_of(given: Case | Scene, rtol: float = 1e-9) -> Case:
+    """A case as it is, or that of a scene, which says nothing else."""
+    if isinstance(given, Case):
+        return given
+    return Case("", given, RunOptions(), SolverOptions(rtol=rtol), Path(), "", None, (), {})

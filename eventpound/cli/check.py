@@ -31,14 +31,14 @@ def add(commands: Commands) -> None:
 
 
 def _check(options: Options) -> int:
-    from eventpound.case.loading import read_document
-
     if options.quantities:
         options.refuse(["--json"], "is not for --quantities")
         return _list_quantities(options.case)
     if options.case is None:
         options.parser.error("the following arguments are required: CASE")
-    if "study" in read_document(options.case)[0]:
+    from eventpound.study.kinds import Kind, kind_of
+
+    if kind_of(options.case)[0] is Kind.STUDY:
         options.refuse(["--json"], "is for the case of a single run or of a suite, not of a study")
         return _check_study(arguments.load_study(options.case))
     case = arguments.load(options.case)
@@ -97,7 +97,6 @@ def _check_study(case: StudyCase) -> int:
 
 def _list_quantities(path: Path | None) -> int:
     """Names of the quantities of a case, or of what a study may tabulate; without any, all."""
-    from eventpound.case.loading import read_document
     from eventpound.quantities.base import SIX
     from eventpound.quantities.lookup import listing, names_of
 
@@ -106,7 +105,9 @@ def _list_quantities(path: Path | None) -> int:
             print(f"{name:<34} {unit:<6} {text}")
         print(f"* stands for {', '.join(SIX)}")
         return 0
-    if "study" in read_document(path)[0]:
+    from eventpound.study.kinds import Kind, kind_of
+
+    if kind_of(path)[0] is Kind.STUDY:
         from eventpound.study.quantities import quantities_of
 
         scenes = [base.case.scene for base in arguments.load_study(path).study.bases]

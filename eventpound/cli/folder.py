@@ -1,4 +1,4 @@
-"""Folders of cases: whether one is, and something made of each case in it."""
+"""Something made of each case of a folder."""
 
 from __future__ import annotations
 
@@ -10,12 +10,6 @@ from eventpound.cli.talk import complain
 from eventpound.errors import ComputationError, EventpoundError, InputError, InterruptionError
 
 T = TypeVar("T")
-_CASES = "*/case.toml"
-
-
-def is_folder(path: Path) -> bool:
-    """Whether it is a folder of cases and none itself."""
-    return not (path / "case.toml").is_file() and any(path.glob(_CASES))
 
 
 def of_each(
@@ -30,9 +24,11 @@ def of_each(
     one : callable
         Makes it of a directory; None where there is nothing to make.
     """
+    from eventpound.study.kinds import CASES
+
     made: dict[str, T] = {}
     left_out: dict[str, EventpoundError] = {}
-    for file in sorted(folder.glob(_CASES)):
+    for file in sorted(folder.glob(CASES)):
         name = file.parent.name
         try:
             if (found := one(file.parent)) is not None:

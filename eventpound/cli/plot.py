@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING
 
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
-from eventpound.cli.folder import is_folder
 from eventpound.cli.plot_folder import plot_folder
 from eventpound.cli.talk import complain
 from eventpound.errors import InputError
@@ -46,10 +45,11 @@ def add(commands: Commands) -> None:
 
 def _plot(options: Options) -> int:
     from eventpound.report.run_figures import plot
-    from eventpound.study.table import SUITE_TABLE, TABLE
+    from eventpound.study.kinds import Kind, kind_of_results
 
     out = options.results
-    if is_folder(options.case):
+    kind, document = kind_of_results(out, options.case)
+    if kind is Kind.FOLDER:
         options.refuse_others("--out", "is for a single case, and this is a folder of cases")
         return plot_folder(options.case, options.out or Path("figures"))
     paper = options.paper()
@@ -57,31 +57,17 @@ def _plot(options: Options) -> int:
         options.refuse_others("--model --out" + arguments.PAPER, "is not for --model")
         _plot_model(options.case, out, paper)
         return 0
-    many = ""
-    if (out / SUITE_TABLE).is_file():
-        many, draw = "suite", _plot_suite
-    elif (out / TABLE).is_file() or _has(options.case, "study"):
-        many, draw = "study", _plot_study
-    if many:
-        why = f"is for a single run, and these are the results of a {many}"
-        options.refuse_others("--out" + arguments.PAPER, why)
-        drawn = draw(options, out, paper)
-    else:
-        pi = options.pi or _has(options.case, "pi")
+    if kind is Kind.RUN:
+        pi = options.pi or "pi" in document
         drawn = plot(out, out, paper, options.xlim, _beside(options, out), pi)
+    else:
+        why = f"is for a single run, and these are the results of a {kind}"
+        options.refuse_others("--out" + arguments.PAPER, why)
+        draw = _plot_suite if kind is Kind.SUITE else _plot_study
+        drawn = draw(options, out, paper)
     for path in drawn:
         print(path)
     return 0
-
-
-def _has(directory: Path, table: str) -> bool:
-    """Whether a case has a table, if it is still there."""
-    from eventpound.case.loading import read_document
-
-    try:
-        return table in read_document(directory)[0]
-    except InputError:
-        return False
 
 
 def _beside(options: Options, out: Path) -> tuple[Path | Response, str] | None:
@@ -103,9 +89,10 @@ def _plot_model(directory: Path, out: Path, paper: Paper) -> None:
     """Draw the bodies of a case and what joins them, of a study those of its first run."""
     from eventpound.report.model_figure import model_figure
     from eventpound.report.style import on_paper
+    from eventpound.study.kinds import Kind, kind_of
     from eventpound.study.reading import load_study
 
-    if _has(directory, "study"):
+    if kind_of(directory)[0] is Kind.STUDY:
         case = load_study(directory).study.bases[0].case
     else:
         case = arguments.load(directory)

@@ -42,10 +42,10 @@ def plot_folder(folder: Path, out: Path) -> int:
 
 def _maker(directory: Path) -> Callable[[Path, Path], GalleryEntry] | None:
     """What makes the figures of a case; None where it has none."""
-    from eventpound.case.loading import read_document
+    from eventpound.study.kinds import Kind, kind_of
 
-    document, _, _ = read_document(directory)
-    if "study" in document:
+    kind, document = kind_of(directory)
+    if kind is Kind.STUDY:
         return _study_entry if "figure" in document or "intensity" in document else None
     return _suite_entry if "figure" in document else None
 

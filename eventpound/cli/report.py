@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
-from eventpound.cli.folder import is_folder, of_each, worst_code
+from eventpound.cli.folder import of_each, worst_code
 from eventpound.cli.progress import Counter, Progress, Watch
 from eventpound.cli.talk import complain, going_on, say
 
@@ -54,7 +54,9 @@ def add(commands: Commands) -> None:
 
 
 def _report(options: Options) -> int:
-    if not is_folder(options.case):
+    from eventpound.study.kinds import Kind, kind_of
+
+    if kind_of(options.case)[0] is not Kind.FOLDER:
         _one(options, options.out or options.results / _FOLDER)
         return 0
     options.refuse_others("--out", "is for a single case, and this is a folder of cases")
@@ -74,13 +76,13 @@ def _report(options: Options) -> int:
 
 def _one(options: Options, out: Path) -> str:
     """Make the report of one case; its title."""
-    from eventpound.case.loading import read_document
     from eventpound.report.html import PAGE
     from eventpound.report.sheets import as_html, as_pdf
     from eventpound.results.tables import table_csv
     from eventpound.study.design import DESIGN_TABLE
+    from eventpound.study.kinds import Kind, kind_of
 
-    if "study" in read_document(options.case)[0]:
+    if kind_of(options.case)[0] is Kind.STUDY:
         options.refuse(["--suite"], "is for a case without a [study]")
         study = arguments.load_study(options.case)
         title, table, parts = study.study.title, *_of_study(study, options, out)

@@ -104,9 +104,9 @@ def _of_finished(options: Options, name: str, accepted: str, needed: str) -> Non
 
 def _scene_of(path: Path) -> Case:
     """The case as it is, without what its [study] varies."""
-    from eventpound.case.loading import read_document
+    from eventpound.study.kinds import Kind, kind_of
 
-    if "study" not in read_document(path)[0]:
+    if kind_of(path)[0] is not Kind.STUDY:
         return arguments.load(path)
     bases = arguments.load_study(path).study.bases
     if len(bases) > 1 or bases[0].records:

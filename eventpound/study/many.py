@@ -10,7 +10,7 @@ import numpy as np
 
 from eventpound.basics.given import Count, checked, positive
 from eventpound.basics.progress import Counted
-from eventpound.case.case import Case
+from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import Way, refuse_options
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
@@ -82,23 +82,20 @@ def simulate_many(
     InputError
         Where a key, a value or an option cannot be used; then nothing is run.
     """
-    if isinstance(case, Case):
-        refuse_options(case.run, Way.MANY, parameters)
-        asked = quantities_asked([(case.scene, case.run)])
-    else:
-        asked = []
+    solver = solver_of(case, rtol)
+    case = case_of(case)
+    refuse_options(case.run, Way.MANY, parameters)
+    asked = quantities_asked([(case.scene, case.run)])
     if not parameters:
         raise InputError("parameters: found none; accepted: at least one key with its values")
     axes = given_axes("parameters", parameters, [list(parameters)])
     lengths = _lengths(duration, axes[0].values.size)
-    scene = case.scene if isinstance(case, Case) else case
-    solver = solver_of(case, rtol)
     check_case(case)
     base = base_of(case, axes, (), solver, math.nan if lengths is None else float(lengths.max()))
     if unknown := [f"parameters: {key}: {text}" for key, text in unknown_axes(base)]:
         raise InputError(unknown)
     stated = base.case.run.stated
-    names = list(dict.fromkeys([*chosen(scene, quantities, stated), *asked]))
+    names = list(dict.fromkeys([*chosen(case.scene, quantities, stated), *asked]))
     wanted = Wanted(solver.name, solver.rtol, names, accelerations)
     values = axis_values(base, 0, base.size)
     rows = replace(rows_with(base, values, range(base.size)), lengths=lengths)

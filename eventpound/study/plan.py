@@ -7,11 +7,10 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
-from pathlib import Path
 
 from eventpound.basics.given import positive
-from eventpound.case.case import Case
-from eventpound.case.run_options import RunOptions
+from eventpound.case.case import Case, case_of
+from eventpound.case.run_options import with_given
 from eventpound.case.solver_options import FAST, SolverOptions, default_solver
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member
@@ -22,7 +21,7 @@ from eventpound.results.description import driven, pieces_hash
 from eventpound.results.jsontext import canonical
 from eventpound.results.manifest import versions
 from eventpound.scene.scene import Scene
-from eventpound.simulation import options_of, refuse_suite
+from eventpound.simulation import refuse_suite
 from eventpound.study.axes import NumberAxis, sizes
 from eventpound.units import Dimension
 
@@ -134,20 +133,17 @@ def base_of(
     InputError
         Where the scene or its run cannot be.
     """
-    own = not math.isnan(length)
-    if not isinstance(given, Case):
-        run = RunOptions(0.0, length, length)
-        if own or not records:
-            step = length if own else None
-            run, _ = options_of(given, duration=step, output_step=step)
-        case = Case("", given, run, solver, Path(), "", None, (), {})
-    else:
-        if not records:
-            refuse_suite(given)
-        run = replace(given.run, duration=length, output_step=length) if own else given.run
-        own = not math.isnan(run.duration)
-        case = replace(given, run=run, solver=solver, suite=None, figure=None)
-    return Base(case, {}, axes, own, tuple(records))
+    case = case_of(given)
+    run, own = case.run, not math.isnan(length)
+    if own:
+        run = replace(run, duration=length, output_step=length)
+    sets_length = not math.isnan(run.duration)
+    if not records:
+        refuse_suite(case)
+    if own or not records:
+        run = with_given(run, {}, case.scene)
+    case = replace(case, run=run, solver=solver, suite=None, figure=None)
+    return Base(case, {}, axes, sets_length, tuple(records))
 
 
 def solver_of(
@@ -170,11 +166,8 @@ def solver_of(
         Where either is none.
     """
     tolerance = positive("rtol", rtol, Dimension.NUMBER)
-    if isinstance(given, Case):
-        scene, own = given.scene, given.solver
-    else:
-        scene, own = given, SolverOptions(rtol=_RTOL)
-    solver = solver or default_solver([scene], many=True)
+    case = case_of(given, _RTOL)
+    own, solver = case.solver, solver or default_solver([case.scene], many=True)
     return replace(solver_instead(own, solver, "solver"), rtol=tolerance or own.rtol)
 
 

@@ -29,6 +29,7 @@ from eventpound.errors import InputError
 from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
 from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities
+from eventpound.study.kinds import has_records
 from eventpound.study.plan import PART, RECORD, Base, Plan
 from eventpound.study.quantities import planned
 from eventpound.study.table import read_manifest
@@ -101,14 +102,14 @@ def load_study(path: str | Path) -> StudyCase:
     rest = {key: v for key, v in document.items() if key not in _OF_STUDY}
     if table.has("records"):
         rest["excitation"] = _under_records(table, document.get("excitation"))
-    parts = _read_parts(table, file.parent, _has_records(rest))
+    parts = _read_parts(table, file.parent, has_records(rest))
     table.close()
     keys = tuple(dict.fromkeys(axis.key for part in parts for axis in part.axes))
     figures, intensities = read_figures(top), read_intensities(top)
     _raise(problems, file)
     named = any(part.name for part in parts)
     bases = tuple(base for part in parts for base in _bases(part, rest, file, source_hash, named))
-    columns = (*([PART] if named else []), *([RECORD] if _has_records(rest) else []), *keys)
+    columns = (*([PART] if named else []), *([RECORD] if has_records(rest) else []), *keys)
     unnamed = default_solver([base.case.scene for base in bases], many=True)
     solver = read_solver(Table(_table(rest, "solver"), "[solver]", problems), unnamed)
     _raise(problems, file)
@@ -174,11 +175,6 @@ def _under_records(study: Table, excitation: object) -> _Document:
     if given.get("kind") != "record":
         study.reject("records", 'no records, where [excitation] is not of kind = "record"')
     return with_suite(given, pattern)
-
-
-def _has_records(document: _Document) -> bool:
-    excitation = document.get("excitation")
-    return isinstance(excitation, dict) and bool({"suite", "synthetic"} & set(excitation))
 
 
 def _read_parts(study: Table, directory: Path, records: bool) -> list[_Part]:

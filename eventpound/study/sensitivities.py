@@ -23,7 +23,7 @@ from eventpound.accuracy.sequences import SOFT
 from eventpound.basics.given import Count, checked, positive
 from eventpound.basics.progress import Counted
 from eventpound.basics.warned import warn_caller
-from eventpound.case.case import Case
+from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import Stated
 from eventpound.case.solver_options import LARGEST_RTOL, SolverOptions, default_solver
 from eventpound.case.table import suggestion
@@ -120,7 +120,7 @@ def sensitivities(
     """
     tolerance = positive("rtol", rtol, Dimension.NUMBER)
     length = np.nan if duration is None else positive("duration", duration, Dimension.TIME)
-    given = case.scene if isinstance(case, Case) else case
+    given = case_of(case).scene
     solver = SolverOptions(default_solver([given], many=True), tolerance)
     check_case(case)
     base = base_of(case, (), (), solver, length)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from eventpound.basics.given import Count, checked, positive
 from eventpound.basics.progress import Counted
-from eventpound.case.case import Case
+from eventpound.case.case import Case, case_of
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.solver_options import FAST
 from eventpound.case.suite import Member, Suite
@@ -84,8 +84,9 @@ class Study:
         options = solver_of(case, rtol, solver)
         length = math.nan if duration is None else positive("duration", duration, Dimension.TIME)
         varied, members = given_axes("axes", axes, together), _members(case, records)
-        if isinstance(case, Case) and records:
+        if records:
             # Each of these sets its own.
+            case = case_of(case)
             case = replace(case, run=replace(case.run, duration=math.nan, output_step=math.nan))
         check_case(case)
         base = described(base_of(case, varied, members, options, length))
@@ -201,8 +202,8 @@ def _shown(done: int, size: int) -> None:
 
 def _members(given: Case | Scene, records: str | None) -> tuple[Member, ...]:
     """The records of a pattern, or those of the case."""
-    suite = given.suite if isinstance(given, Case) else None
-    directory = given.directory if isinstance(given, Case) else Path()
+    case = case_of(given)
+    suite, directory = case.suite, case.directory
     if records is not None:
         options = RecordOptions() if suite is None else suite.options
         others = () if suite is None else suite.supports
