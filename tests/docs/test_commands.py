@@ -33,10 +33,10 @@ ELSEWHERE = {
     "eventpound plot cases": "a minute and a half; the tests of studies make every figure",
     "eventpound run tutorial": "tests/study/test_pi_spectrum.py",
     "eventpound check tutorial": "tests/study/test_pi_spectrum.py",
-    "eventpound study cases/figure-05 --spectrum": "tests/study/test_spectra.py, with fewer runs",
+    "eventpound study spectrum cases/figure-05": "tests/study/test_spectra.py, with fewer runs",
     "eventpound problems score": "tests/test_score.py",
     "eventpound problems pack": "tests/problems",
-    "eventpound study CASE --fragility": "tests/study/test_fragility.py",
+    "eventpound study fragility CASE": "tests/study/test_fragility.py",
     "eventpound floor-spectrum CASE A1": "tests/quantities/test_floor.py",
 }
 """Calls that are not run here, and where the like is tested."""

@@ -166,7 +166,7 @@ def test_command_on_a_study_by_psa(tmp_path: Path, capsys: pytest.CaptureFixture
     # An elastic structure of this very period: its peak is the PSA over w^2, of every record.
     expected = table["excitation.psa"] / (2.0 * np.pi / 0.5) ** 2
     assert table["peaks.deck.abs_max"].to_numpy() == pytest.approx(expected.to_numpy(), rel=1e-7)
-    words = ["study", str(tmp_path), "--fragility", "--measure", "excitation.psa"]
+    words = ["study", "fragility", str(tmp_path), "--measure", "excitation.psa"]
     words += ["--demand", "peaks.deck.abs_max", "--limit", "1 cm"]
     capsys.readouterr()
     # All capacities are one but for rounding: there is no dispersion to find.

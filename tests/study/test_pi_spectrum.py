@@ -38,7 +38,7 @@ def test_a_spectrum(case):
     assert main(["study", str(case)]) == 0
     assert len(read_table(case / "results")) == 600
     pulse = ["--amplitude", "0.4 g", "--period", "0.8 s"]
-    assert main(["study", str(case), "--spectrum", *pulse]) == 0
+    assert main(["study", "spectrum", str(case), *pulse]) == 0
     assert (case / "results" / "spectrum-study.png").is_file()
 
 

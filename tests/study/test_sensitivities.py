@@ -222,7 +222,7 @@ def test_what_is_refused(options: dict[str, object], said: str) -> None:
 def test_the_command_writes_the_table_and_a_tornado(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["study", str(BRIDGE), "--sensitivities", "--to", "contact.joint.gap"]
+    words = ["study", "sensitivities", str(BRIDGE), "--to", "contact.joint.gap"]
     assert main([*words, "--of", "peaks.segment1.abs_max", "--out", str(tmp_path)]) == 0
     assert "contact.joint.gap         +0.1099" in capsys.readouterr().out
     written = read_columns(tmp_path / "sensitivities.csv")

@@ -90,7 +90,7 @@ def test_names(column, name):
 
 def test_command(make_study, capsys):
     case = make_study(BILINEAR.format(excitation="") + FIGURE)
-    words = ["study", "--spectrum", str(case.directory), "--amplitude"]
+    words = ["study", "spectrum", str(case.directory), "--amplitude"]
     arguments = [*words, "0.4 g", "--period", "0.8"]
     assert main(arguments) == 2
     assert "no table of this case" in capsys.readouterr().err

@@ -1,25 +1,34 @@
-"""``eventpound study --spectrum`` and ``--fragility``: what is made of a finished table."""
+r"""Fit and draw curves of fragility: the probability that a demand exceeds a limit.
+
+Of a finished table of a study or of a suite: lognormal curves over an intensity, by maximum
+likelihood. Of a study that scales each record through intensities, the capacity of each record is
+found, and a record that never exceeds the limit is censored at its largest intensity. Of a suite,
+or with --counts, runs are counted. What is done: the page "spectra" of the documentation.
+
+Files: fragility.csv and fragility.png.
+
+Examples
+--------
+  eventpound study fragility ida --measure excitation.psa --demand peaks.deck.abs_max --limit "5 cm"
+  eventpound study fragility suite --measure L_e --demand contacts.joint.max_impulse \
+      --limit "20 kN s" --limit "60 kN s"
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eventpound.basics.given import number
-from eventpound.cli.arguments import PAPER, Command, Options
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.errors import InputError, told_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eventpound.units import Dimension
-
-SPECTRUM = "--spectrum --out --amplitude --period"
-FRAGILITY = "--fragility --out --measure --demand --limit --counts --where" + PAPER
-"""Options that go together."""
 _RECORDS = ("excitation.file", "record")
 """Columns that may name the record of a row."""
 _FRAGILITY = "fragility"
@@ -28,29 +37,22 @@ _SHOWN = 8
 """Values that a message lists."""
 
 
-def add(study: Command) -> None:
-    """Add the options to the parser."""
-    study.group("the response spectrum of a pulse")
-    study.option("--spectrum", "write and draw it")
-    study.option("--amplitude A", 'a_g of the pulse, "0.4 g" or m/s²')
-    study.option("--period T", 'T_p of the pulse, "0.8 s" or s')
-    study.group("curves of fragility")
-    study.option("--fragility", "fit and draw them")
-    study.option("--measure COLUMN", "the intensity")
-    study.option("--demand COLUMN", "what has a limit")
-    study.option("--limit VALUE", 'as "5 cm"; may be repeated', action="append", default=[])
-    study.option("--counts", "count the runs, do not follow each record")
-    study.option(
-        "--where COLUMN=VALUE",
-        'these rows only, as contact.joint.gap="5 cm"',
-        action="append",
-        default=[],
-    )
-    study.paper()
+def add(commands: Commands) -> None:
+    """Add the command to the parser."""
+    command = add_command(commands, "study fragility", _fragility, __doc__)
+    command.case()
+    command.option("--measure COLUMN", "the intensity", required=True)
+    command.option("--demand COLUMN", "what has a limit", required=True)
+    several: dict[str, Any] = {"action": "append"}
+    command.option("--limit VALUE", 'as "5 cm"; may be repeated', required=True, **several)
+    command.option("--counts", "count the runs, do not follow each record")
+    rows = 'these rows only, as contact.joint.gap="5 cm"'
+    command.option("--where COLUMN=VALUE", rows, default=[], **several)
+    command.out("where the results are and the curves go (CASE/results)")
+    command.paper()
 
 
-def fit_fragility(options: Options, out: Path) -> dict[str, bytes]:
-    """Fit, print and draw the curves; the files."""
+def _fragility(options: Options) -> int:
     from eventpound.report.fragility_figure import fragility_figure
     from eventpound.report.style import on_paper
     from eventpound.report.symbols import dimension_of
@@ -58,7 +60,7 @@ def fit_fragility(options: Options, out: Path) -> dict[str, bytes]:
     from eventpound.study.fragility import fragility_table
     from eventpound.study.stated import PSA, psa_at
 
-    paper = options.paper()
+    out, paper = options.results, options.paper()
     table, excitations = _read(out)
     table = _where(table, options.where, out)
     of_demand = dimension_of(options.demand)
@@ -83,7 +85,9 @@ def fit_fragility(options: Options, out: Path) -> dict[str, bytes]:
     of = {"measure": options.measure, "demand": options.demand, "rows": "; ".join(options.where)}
     made = table_csv(curves.assign(**of))
     _set_aside(out, made)
-    return {f"{_FRAGILITY}.csv": made} | on_paper({f"{_FRAGILITY}.png": figure}, paper)
+    figures = on_paper({f"{_FRAGILITY}.png": figure}, paper)
+    arguments.write(out, {f"{_FRAGILITY}.csv": made} | figures)
+    return 0
 
 
 def _set_aside(out: Path, made: bytes) -> None:
@@ -142,24 +146,3 @@ def _where(table: pd.DataFrame, wanted: list[str], out: Path) -> pd.DataFrame:
             raise InputError(f"--where: no row has {text!r}; accepted: {name} of {some}")
         table = table[there]
     return table
-
-
-def draw_spectrum(options: Options, out: Path) -> list[Path]:
-    """Write and draw the spectrum; the files."""
-    from eventpound.motion.base import Scales
-    from eventpound.report.study_files import draw_spectrum
-    from eventpound.study.reading import load_finished
-    from eventpound.units import Dimension
-
-    a_g = _positive("--amplitude", options.amplitude, Dimension.ACCELERATION)
-    period = _positive("--period", options.period, Dimension.TIME)
-    case, _, _ = load_finished(options.case, out)
-    return draw_spectrum(case, out, Scales(a_g, 2.0 * math.pi / period))
-
-
-def _positive(name: str, text: str, dimension: Dimension) -> float:
-    """A positive number, with or without a unit."""
-    value = number(name, text, dimension)
-    if value <= 0.0:
-        raise InputError(f"{name}: found {text!r}; accepted: a positive one")
-    return value
