@@ -396,12 +396,16 @@ def next_z(
             i = m // 2
             low = speed[i] * power[i]
             flow = (weighted[i] - m * z[i]) * power[i]
-        for i in range((m - 1) // 2, 0, -1):
-            j = m - i
+        i = (m - 1) // 2
+        # Where the compiler sees no sign, each index costs as much as the sum that it serves.
+        j = max(m - i, 0)
+        while i > 0:
             low += speed[i] * power[j]
             high += speed[j] * power[i]
             flow += (weighted[i] - m * z[i]) * power[j]
             later += (weighted[j] - m * z[j]) * power[i]
+            i -= 1
+            j += 1
         power[m] = (flow + later) * (curve[OVER_Z] * INVERSE[m]) + curve[LIFT] * z[m]
         product = latest * power[0] + (low + high)
         value = ((latest - kappa * product) - kappa * first * power[m]) * INVERSE[k]

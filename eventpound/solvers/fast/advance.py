@@ -93,6 +93,7 @@ def _put_supports(piece: CurrentPiece, run: FastRun) -> None:
     alone, as a gap may be smaller, but for velocities: they tell whether a slip ends.
     """
     state, mass, limits, contacts = run.state, run.plan.mass, run.plan.limits, run.plan.contacts
+    state.progress[0].known = False
     for s in range(mass.size):
         if not is_support(s, mass):
             continue
@@ -125,7 +126,7 @@ def _settle_instant(run: FastRun) -> int:
     """Do the duties of the present instant and write down what follows it."""
     plan, state, series, observed = run.plan, run.state, run.series, run.observed
     ground, progress = plan.ground, state.progress[0]
-    t, order = state.now[0].t, plan.limits.order
+    t, order, progress.known = state.now[0].t, plan.limits.order, False
     while progress.due == 1 and ground.ends[progress.piece] <= t:
         progress.piece += 1
     piece = by_address(piece_of(progress.piece, ground))

@@ -40,6 +40,7 @@ from eventpound.solvers.fast.run import (
     Ground,
     Limits,
     Links,
+    MovingLink,
     Sdof,
 )
 from eventpound.solvers.fast.sdof.body import SdofBody, oscillator_of
@@ -185,8 +186,9 @@ def blank_located(plan: FastPlan) -> FastLocated:
     """Marks of nothing."""
     links, hysteretic = plan.links.ends.shape[0], plan.hysteresis.link.size
     contacts = plan.contacts.left.size
-    sizes = (contacts, contacts, contacts, links, hysteretic, hysteretic)
-    return FastLocated(*(np.zeros(size, np.bool_) for size in sizes))
+    sizes = (contacts, contacts, links, hysteretic, hysteretic)
+    joined = JoinedArrays([np.zeros(size, np.bool_) for size in sizes])
+    return FastLocated(*(*joined.arrays, joined.data, np.zeros(contacts, np.bool_)))
 
 
 def zero_state(
@@ -236,18 +238,20 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
     most = max(size + MORE_TERMS, REST_TERMS)
     # Each of them is copied into the block.
     arrays = {
-        "X": np.zeros((bodies, size)),
+        "X": np.zeros((bodies + 1, size)),
         "ground": np.zeros(size),
         "load": np.zeros((size if loaded else 0, bodies)),
         "of_body": np.zeros(bodies, np.int64),
         "weights": np.zeros((2, bodies)),
-        **dict.fromkeys(("inverse_mass", "force", "expected", "travel"), np.zeros(bodies)),
-        **dict.fromkeys(("swing", "reach", "bend", "end"), np.zeros(bodies)),
+        "inverse_mass": np.zeros(bodies),
+        "force": np.zeros(bodies + 1),
+        **dict.fromkeys(("expected", "travel", "swing", "reach", "bend", "end"), np.zeros(bodies)),
         "F": np.zeros((links, size)),
         **dict.fromkeys(("x", "x_rate", "stiffness"), np.zeros(links)),
         "memory": np.zeros(plan.links.law.memory.shape[-2:]),
         "ends": np.zeros((links, 2), np.int64),
         "active": np.zeros(links, np.int64),
+        "moving": np.zeros(links, MovingLink.layout),
         **dict.fromkeys(("z", "power", "speed", "weighted"), np.zeros((hysteretic, size))),
         "curve": np.zeros((hysteretic, CURVE_PLACES)),
         "contact_force": np.zeros((contacts, size)),

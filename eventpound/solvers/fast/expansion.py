@@ -20,7 +20,7 @@ from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import INVERSE, begin_curve, next_z, pull_per_z
 from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece, ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.followed import follow, follows, last_of_followed
 from eventpound.solvers.fast.links import (
@@ -44,9 +44,19 @@ CONVERGED = 0.5
 
 
 @compiled
-def _on_curve(h: int, part: Ints) -> bool:
-    """Whether a hysteretic link, -1 for none, is on a curved part of its backbone."""
-    return bool(h >= 0 and DOWN <= part[h] <= UP)
+def _begin_link(i: int, run: FastRun) -> None:
+    """Put what `expand` needs of the moving link i into one record."""
+    plan, state, series = run.plan, run.state, run.series
+    link, a, memory = series.moving[i], series.active[i], plan.links.law.memory
+    head, tail, ground = series.ends[a, 0], series.ends[a, 1], plan.mass.size
+    link.number = a
+    link.head, link.tail = head if head >= 0 else ground, tail if tail >= 0 else ground
+    link.stiffness, link.damping, link.curved = series.stiffness[a], plan.links.law.damping[a], -1
+    h = plan.links.z_of_link[a]
+    if h >= 0 and DOWN <= state.part[h] <= UP:
+        link.curved, link.pull = h, pull_per_z(a, memory)
+        sign = 1.0 if state.part[h] == UP else -1.0
+        begin_curve(a, memory, sign, series.z[h, 0], series.power[h], series.curve[h])
 
 
 @compiled
@@ -81,34 +91,28 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
     step, in units of its tolerance.
     """
     plan, state, series = run.plan, run.state, run.series
-    links, law, progress = plan.links, plan.links.law, state.progress[0]
+    progress = state.progress[0]
     loaded, following = series.load.shape[0] > 0, follows(run)
     X, F, acceleration = series.X, series.F, series.force
     clusters, active = progress.clusters, progress.active
     for i in range(active):
-        a = series.active[i]
-        j = links.z_of_link[a]
-        if _on_curve(j, state.part):
-            sign = 1.0 if state.part[j] == UP else -1.0
-            begin_curve(a, law.memory, sign, series.z[j, 0], series.power[j], series.curve[j])
+        _begin_link(i, run)
+    acceleration[:] = 0.0
     order, error, power, over = most, np.inf, h, 1.0 / h
     for k in range(most - 1):
-        acceleration[:clusters] = 0.0
         for i in range(active):
-            a = series.active[i]
-            first, second = series.ends[a, 0], series.ends[a, 1]
+            link = series.moving[i]
+            a, head, tail = link.number, link.head, link.tail
+            force = F[a, 0]
             if k > 0:
-                x_k = distance_coefficient(first, second, k, series)
-                rate_k = distance_coefficient(first, second, k + 1, series)
-                force = series.stiffness[a] * x_k + law.damping[a] * (k + 1) * rate_k
-                j = links.z_of_link[a]
-                if _on_curve(j, state.part):
-                    force += pull_per_z(a, law.memory) * _curve_coefficient(j, k, x_k, series)
+                x_k = X[tail, k] - X[head, k]
+                rate_k = X[tail, k + 1] - X[head, k + 1]
+                force = link.stiffness * x_k + link.damping * (k + 1) * rate_k
+                if link.curved >= 0:
+                    force += link.pull * _curve_coefficient(link.curved, k, x_k, series)
                 F[a, k] = force
-            if first >= 0:
-                acceleration[first] += F[a, k]
-            if second >= 0:
-                acceleration[second] -= F[a, k]
+            acceleration[head] += force
+            acceleration[tail] -= force
         if following:
             follow(k, run)
         if loaded:
@@ -116,6 +120,7 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
         scale = INVERSE[k + 1] * INVERSE[k + 2]
         for c in range(clusters):
             X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
+            acceleration[c] = 0.0
         if loaded:
             drive_clusters(k, plan.mass, series)
         power *= h
@@ -211,13 +216,17 @@ def begin_series(t: float, piece: CurrentPiece, run: FastRun) -> None:
         c = series.of_body[b]
         if c >= 0:
             series.X[c, 1] = state.v[b]
-    links = plan.links
+    links, observed, known = plan.links, run.observed, state.progress[0].known
     for a in range(links.ends.shape[0]):
         x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], state.u, state.v)
         series.x[a], series.x_rate[a] = x, x_rate
-        force, z = link_force(a, x, run)
-        if links.z_of_link[a] >= 0:
-            series.z[links.z_of_link[a], 0] = z
+        h = links.z_of_link[a]
+        if known:
+            force, z = observed.force[a], observed.z[h] if h >= 0 else 0.0
+        else:
+            force, z = link_force(a, x, run)
+        if h >= 0:
+            series.z[h, 0] = z
         series.stiffness[a] = tangent(a, links, state)
         series.F[a, 0] = force + links.law.damping[a] * x_rate
     saturate(series.x, plan.hysteresis, state)

@@ -64,11 +64,7 @@ def _note(tau: float, first: float, which: int, flags: Bools, located: FastLocat
 @compiled
 def clear_located(located: FastLocated) -> None:
     """Nothing is located."""
-    located.closing[:] = False
-    located.released[:] = False
-    located.kinked[:] = False
-    located.turned[:] = False
-    located.crossed[:] = False
+    located.block[:] = 0
 
 
 @compiled

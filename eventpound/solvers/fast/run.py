@@ -149,6 +149,7 @@ class FastProgress(NamedNumbers):
     resting: int  # contacts at rest
     edges: int  # rows of the elimination
     started: bool  # whether the run has begun
+    known: bool  # whether the links' forces `observed` are those of the present state
 
 
 class FastState(NamedTuple):
@@ -184,6 +185,18 @@ class Sdof(NamedTuple):
     work: Floats
 
 
+class MovingLink(NamedNumbers):
+    """A link that moves, in a step: all that its force is expanded by, in one place."""
+
+    number: int
+    head: int  # cluster of each end, N for the ground
+    tail: int
+    stiffness: float  # tangent (N/m)
+    damping: float  # (N s/m)
+    curved: int  # its z where that is on a curved part of its backbone, else -1
+    pull: float  # of that z (N)
+
+
 class FollowedMemories(NamedTuple):
     """Of z that go by series of their own (F,), `eventpound.solvers.fast.followed`.
 
@@ -203,13 +216,13 @@ class FastSeries(NamedTuple):
     The arrays before `block` are parts of it, which is blank before a run.
     """
 
-    # Clusters, rows as many as bodies; bodies that do not touch are one each.
-    X: Floats  # (N, p + 3): displacement (m/s^k), ``X[:, 0]`` unused
+    # Clusters, rows as many as bodies; bodies that do not touch are one each. Last the ground.
+    X: Floats  # (N + 1, p + 3): displacement (m/s^k), ``X[:, 0]`` unused
     ground: Floats  # (p + 3,): acceleration of the ground (m/s^(2+k))
     load: Floats  # (p + 3, N): loads on bodies (N/s^k), no rows without any
     of_body: Ints  # (N,): cluster of each body
     inverse_mass: Floats  # (N,): 1/m (1/kg)
-    force: Floats  # (N,): sum of the forces for one coefficient (N/s^k)
+    force: Floats  # (N + 1,): sum of the forces for one coefficient (N/s^k)
     weights: Floats  # (2, N): what errors of u and v are multiplied by
     expected: Floats  # (N,): relative acceleration by the series, looked at last (m/s²)
     travel: Floats  # (N,): bound of what the quadratic leaves of the displacement in a step (m)
@@ -226,6 +239,7 @@ class FastSeries(NamedTuple):
     memory: Floats  # (L, constants): those of the laws on the present branches
     ends: Ints  # (L, 2): clusters of the ends
     active: Ints  # (L,): those that move, the first ones
+    moving: Records  # (L,): a `MovingLink` of each of these
     z: Floats  # (H, p + 3): z
     power: Floats  # (H, p + 3): ``|z|^n``
     speed: Floats  # (H, p + 3): rate of x/u_y, of a z with a series of its own x'
@@ -251,16 +265,18 @@ class FastSeries(NamedTuple):
 class FastLocated(NamedTuple):
     """The events located at the end of a step: closing, released (K,), kinked (L,).
 
-    turned, crossed (H,): hysteretic links that reverse or pass a border. vanished (K,):
-    contacts whose force has passed zero in this instant, by this event or one before it.
+    turned, crossed (H,): hysteretic links that reverse or pass a border. block: all of these.
+    vanished (K,): contacts whose force has passed zero in this instant, by this event or one
+    before it.
     """
 
     closing: Bools
     released: Bools
-    vanished: Bools
     kinked: Bools
     turned: Bools
     crossed: Bools
+    block: Bytes
+    vanished: Bools
 
 
 class FastRecord(NamedTuple):

@@ -106,7 +106,7 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
         if fleeting and progress.due == 1:
             restore_record(run)
     else:
-        progress.trial = tau
+        progress.trial, progress.known = tau, not follows(run)
         end_if_over(run)
     endless = t_end == t and now.in_a_row > LONGEST_CASCADE
     return STUCK if endless or progress.stalled > MOST_STALLS else DONE
@@ -122,6 +122,7 @@ def _expansion(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[int, fl
         begin_series(run.state.now[0].t, piece, run)
         order, error = expand(tried, most, run)
         progress.expansions += 1
+        progress.known = False
         if not wrong_way(order, run):
             break
     h = choose_step_size(tried, order, error, longest)
