@@ -99,6 +99,13 @@ def compilation_begins() -> None:
         _tell()
 
 
+def compilation_waits() -> None:
+    """Say that the kernel is made by another process, on which this one waits."""
+    _mine.signals.answer()
+    if _mine.total > 0:
+        _tell()
+
+
 def function_read(function: Callable[..., Any]) -> None:
     """Say that a function of the kernel has been read."""
     _mine.signals.answer()

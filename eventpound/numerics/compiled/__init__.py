@@ -44,6 +44,7 @@ def compile_with(
     fused: bool = False,
     recipe: Recipe = ONCE_AN_EVENT,
     deferred: bool = False,
+    ahead: bool = False,
 ) -> F:
     """Compile a function.
 
@@ -63,6 +64,8 @@ def compile_with(
     deferred : bool
         Whether compiled code that calls it has it compiled only when it comes there; see
         `eventpound.numerics.compiled.deferred`.
+    ahead : bool
+        Whether every run comes to a deferred one, which another process then compiles meanwhile.
     """
     if INTERPRETED:
         return function
@@ -86,7 +89,9 @@ def compile_with(
         if deferred:
             from eventpound.numerics.compiled.deferred import DeferredEntry
 
-            return cast(F, DeferredEntry(function, options, recipe, store))
+            made = DeferredEntry(function, options, recipe, store)
+            made.ahead = ahead
+            return cast(F, made)
         made = Entry(function, options, recipe, store)
     return made
 
@@ -130,6 +135,11 @@ def deferred_kernel(function: F) -> F:
     It may make arrays, and returns what `eventpound.numerics.compiled.deferred` lists.
     """
     return compile_with(function, counted=True, recipe=EVERY_STEP, deferred=True)
+
+
+def parallel_kernel(function: F) -> F:
+    """Compile a deferred function to which every run comes, on another core where there is one."""
+    return compile_with(function, counted=True, recipe=EVERY_STEP, deferred=True, ahead=True)
 
 
 class PlainInPython:

@@ -28,6 +28,7 @@ from numba.core.compiler import compile_result
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.funcdesc import ExternalFunctionDescriptor
 
+from eventpound.numerics.compiled.beside import Wanted, compile_beside
 from eventpound.numerics.compiled.linked import Entry, KernelPart, PartLibrary
 
 _FILL_SLOT = "eventpound_fill_slot"
@@ -47,12 +48,25 @@ _RETURNED = {
 
 
 class DeferredEntry(Entry):
-    """An `Entry` that other compiled functions call through a slot."""
+    """An `Entry` that other compiled functions call through a slot.
+
+    Attributes
+    ----------
+    ahead : bool
+        Whether every run comes there: another process compiles it beside its caller.
+    """
+
+    ahead = False
 
     @cached_property
     def part(self) -> KernelPart:
         """The same function as other compiled functions call it."""
-        return _DeferredPart(self.py_func, self._options)
+        return _DeferredPart(self)
+
+    def kept(self, arguments: tuple[Any, ...]) -> bool:
+        """Whether there is a kernel for arguments of these types, wherever."""
+        self._make()
+        return arguments in self.overloads or self._cache.has(arguments, self.targetctx)
 
     def address_for(self, arguments: tuple[Any, ...]) -> int:
         """Where the machine code for arguments of these types begins."""
@@ -66,6 +80,10 @@ class DeferredEntry(Entry):
 
 class _DeferredPart(KernelPart):
     """A few instructions that call the part through its slot."""
+
+    def __init__(self, entry: DeferredEntry) -> None:
+        super().__init__(entry.py_func, entry._options)
+        self._entry = entry
 
     def compile(self, signature: Any) -> Any:
         """Write the call for arguments of these types; the key under which it is called."""
@@ -84,9 +102,11 @@ class _DeferredPart(KernelPart):
         described = ExternalFunctionDescriptor(f"deferred {mark}", returned, arguments)
         library = PartLibrary(self.targetctx.codegen(), name)
         module = library.create_ir_module(name)
-        whole = (self.py_func.__module__, self.py_func.__qualname__, arguments)
+        wanted = Wanted(self.py_func.__module__, self.py_func.__qualname__, arguments)
+        if self._entry.ahead and not self._entry.kept(arguments):
+            compile_beside(wanted)
         # Types have long names, which say the same again and again.
-        asked = zlib.compress(pickle.dumps(whole))
+        asked = zlib.compress(pickle.dumps(wanted))
         _write_call(self.targetctx.declare_function(module, described), module, mark, asked)
         library.add_ir_module(module)
         library.finalize()
@@ -149,9 +169,9 @@ def _fill_slot(asked: int, size: int, slot: int) -> None:
     """
     global _stopped
     try:
-        module, name, arguments = pickle.loads(zlib.decompress(ctypes.string_at(asked, size)))
-        entry: DeferredEntry = getattr(importlib.import_module(module), name)
-        address = entry.address_for(arguments)
+        wanted: Wanted = pickle.loads(zlib.decompress(ctypes.string_at(asked, size)))
+        entry: DeferredEntry = getattr(importlib.import_module(wanted.module), wanted.name)
+        address = entry.address_for(wanted.arguments)
         if _stopped:
             _stopped = False
             threading.Timer(_SOON, _thread.interrupt_main).start()

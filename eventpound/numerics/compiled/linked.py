@@ -416,7 +416,10 @@ class Entry(CPUDispatcher):
         """Make the function ready for arguments of these types."""
         self._make()
         with getting_ready(self.py_func), global_compiler_lock, quick_front_end():
-            return super().compile(signature)
+            try:
+                return super().compile(signature)
+            finally:
+                self._cache.release()
 
     def __reduce__(self) -> Any:
         return _by_name, (self.py_func.__module__, self.py_func.__qualname__)
@@ -435,7 +438,10 @@ class LinkedCallback(CFunc):
     def compile(self) -> None:
         """Make the function ready; its address is known then."""
         with global_compiler_lock, quick_front_end():
-            super().compile()
+            try:
+                super().compile()
+            finally:
+                self._cache.release()
 
 
 def linked_callback(function: Callable[..., Any], signature: Any, recipe: Recipe) -> CFunc:

@@ -32,9 +32,10 @@ import llvmlite.binding as llvm
 import numba
 
 from eventpound.numerics.compiled import shipped
+from eventpound.numerics.compiled.beside import Claim
 from eventpound.numerics.compiled.shipped import SUFFIX
 from eventpound.numerics.compiled.sources import source_stamp
-from eventpound.numerics.compiling import compilation_begins
+from eventpound.numerics.compiling import compilation_begins, compilation_waits
 
 _DIGEST = 16
 _LONGEST_NAME = 80
@@ -56,6 +57,7 @@ class KernelStore:
     def __init__(self, function: Callable[..., Any], way: object, plain: bool) -> None:
         self._file, self._function = function.__code__.co_filename, function.__qualname__
         self._way, self._plain = way, plain
+        self._claim: Claim | None = None
 
     @cached_property
     def _name(self) -> str:
@@ -68,16 +70,30 @@ class KernelStore:
         return str(_folders(self._file)[0])
 
     def load_overload(self, signature: Any, context: Any) -> Any:
-        """The kept kernel for arguments of these types, or None.
+        """The kept kernel for arguments of these types, or None: then it is this process's to make.
 
-        A damaged file is taken away, and said so.
+        A damaged file is taken away, and said so. What another process is making is waited for.
         """
-        from numba.core.compiler import CompileResult
-
         if self._plain:
             context.refresh()
         else:
             _make_names_known()
+        found = self._kept(signature, context)
+        if found is None:
+            self._say_why_none()
+            compilation_begins()
+            if not self._plain:
+                first = next(self._places(signature, context.codegen()))
+                self._claim = Claim(first, compilation_waits)
+                found = self._kept(signature, context)
+        if found is not None:
+            self.release()
+        return found
+
+    def _kept(self, signature: Any, context: Any) -> Any:
+        """What is in the first file that is whole, or None."""
+        from numba.core.compiler import CompileResult
+
         for path in self._places(signature, context.codegen()):
             try:
                 content = path.read_bytes()
@@ -88,9 +104,13 @@ class KernelStore:
                 return CompileResult._rebuild(context, *kept)
             except Exception as error:
                 _drop(path, error)
-        self._say_why_none()
-        compilation_begins()
         return None
+
+    def release(self) -> None:
+        """Let other processes go on that wait for what this one was to make."""
+        if self._claim is not None:
+            self._claim.release()
+            self._claim = None
 
     def has(self, signature: Any, context: Any) -> bool:
         """Whether there is a kept kernel for arguments of these types; nothing is loaded."""

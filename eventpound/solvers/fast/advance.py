@@ -16,7 +16,12 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration, ground_onset, next_corner
 from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.by_address import by_address
-from eventpound.solvers.fast.compiled import compiled, compiled_noinline, compiled_whole
+from eventpound.solvers.fast.compiled import (
+    compiled,
+    compiled_in_parallel,
+    compiled_noinline,
+    compiled_whole,
+)
 from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.extremes import distance_now, take_instant
 from eventpound.solvers.fast.followed import follows, put_on_branches
@@ -121,7 +126,7 @@ def _goes_with(b: int, s: int, run: FastRun) -> bool:
     return b == s or (b >= 0 and of_body[b] == of_body[s] >= 0 and not is_support(b, run.plan.mass))
 
 
-@compiled_noinline
+@compiled_in_parallel
 def _settle_instant(run: FastRun) -> int:
     """Do the duties of the present instant and write down what follows it."""
     plan, state, series, observed = run.plan, run.state, run.series, run.observed

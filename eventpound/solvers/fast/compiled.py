@@ -25,6 +25,14 @@ def compiled_deferred(function: F) -> F:
     return compile_with(function, counted=False, fused=True, recipe=EVERY_STEP, deferred=True)
 
 
+def compiled_in_parallel(function: F) -> F:
+    """As `compiled_noinline`, for what every run comes to: on another core where there is one."""
+    recipe = EVERY_STEP
+    return compile_with(
+        function, counted=False, fused=True, recipe=recipe, deferred=True, ahead=True
+    )
+
+
 def compiled_deferred_loop(function: F) -> F:
     """As `compiled_deferred`, small enough to take all its parts into itself."""
     return compile_with(function, counted=False, fused=True, recipe=SMALL, deferred=True)

@@ -1,0 +1,147 @@
+"""Kernels that another process compiles meanwhile, where there is a second core.
+
+Most of what compiling takes is Python, of which one process runs one thread at a time. So a
+process beside this one compiles deferred parts that every run comes to
+(`eventpound.numerics.compiled.deferred`), from the moment at which their callers are read. Both
+keep what they make, and whoever wants a kernel that another process is making waits for it.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import importlib
+import multiprocessing
+import os
+import pickle
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO, Any, NamedTuple
+
+try:
+    import fcntl
+except ImportError:  # Windows, where every process compiles for itself.
+    fcntl = None  # type: ignore[assignment]
+
+_PROGRAM = "from eventpound.numerics.compiled.beside import serve; serve()"
+_OFTEN = 0.05
+"""How often who waits looks whether a kernel is made (s)."""
+_IDLE = 10.0
+"""After which a process ends that is asked for nothing more (s)."""
+
+
+class Wanted(NamedTuple):
+    """A deferred part: its module and name, and Numba's types of its arguments."""
+
+    module: str
+    name: str
+    arguments: tuple[Any, ...]
+
+
+_process: subprocess.Popen[bytes] | None = None
+
+
+def compile_beside(wanted: Wanted) -> None:
+    """Have a part compiled by a process beside this one, after what it was asked for before.
+
+    Nothing is done where there is one core, or in a process of several that work together.
+    """
+    global _process
+    if fcntl is None or _cores() < 2 or multiprocessing.parent_process() is not None:
+        return
+    # Where that fails, the part is compiled here when a run comes to it.
+    with contextlib.suppress(OSError):
+        if _process is None or _process.poll() is not None:
+            _process = _started()
+        pipe: Any = _process.stdin
+        pickle.dump(wanted, pipe)
+        pipe.flush()
+
+
+def _cores() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _started() -> subprocess.Popen[bytes]:
+    silent = subprocess.DEVNULL
+    command = [sys.executable, "-c", _PROGRAM]
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=silent, stderr=silent)
+    atexit.register(process.kill)
+    return process
+
+
+def serve() -> None:
+    """Compile what is asked for on standard input, until whoever asks has ended."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    waiting: queue.SimpleQueue[Wanted] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(sys.stdin.buffer, waiting), daemon=True).start()
+    with contextlib.suppress(queue.Empty):
+        while True:
+            wanted = waiting.get(timeout=_IDLE)
+            entry = getattr(importlib.import_module(wanted.module), wanted.name)
+            entry.compile(wanted.arguments)
+
+
+def _listen(source: IO[bytes], waiting: queue.SimpleQueue[Wanted]) -> None:
+    try:
+        while True:
+            waiting.put(pickle.load(source))
+    finally:
+        # Nobody waits for what is half done, and files appear whole or not at all.
+        os._exit(0)
+
+
+class Claim:
+    """That this process makes a kernel, which others wait for.
+
+    Parameters
+    ----------
+    path : Path
+        Where the kernel is to be kept.
+    waits : callable
+        Called while another process makes it; what it raises ends the waiting.
+    """
+
+    def __init__(self, path: Path, waits: Callable[[], None]) -> None:
+        self._path = path.with_suffix(".making")
+        self._opened: int | None = None
+        if fcntl is None:
+            return
+        # In a folder that cannot be written, or on a disk without locks, nobody waits.
+        with contextlib.suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._opened = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o644)
+            self._take(self._opened, waits)
+
+    @staticmethod
+    def _take(opened: int, waits: Callable[[], None]) -> None:
+        while True:
+            try:
+                fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                return
+            except BlockingIOError:
+                try:
+                    waits()
+                except BaseException:
+                    os.close(opened)
+                    raise
+                time.sleep(_OFTEN)
+
+    def release(self) -> None:
+        """Let others make, or find, the kernel; also after a failure."""
+        if self._opened is not None:
+            with contextlib.suppress(OSError):
+                self._path.unlink()
+                # Of processes that were forked meanwhile, too.
+                fcntl.flock(self._opened, fcntl.LOCK_UN)
+            os.close(self._opened)
+            self._opened = None
