@@ -32,8 +32,8 @@ except ImportError:  # Windows, where every process compiles for itself.
 _PROGRAM = "from eventpound.numerics.compiled.beside import serve; serve()"
 _OFTEN = 0.05
 """How often who waits looks whether a kernel is made (s)."""
-_IDLE = 10.0
-"""After which a process ends that is asked for nothing more (s)."""
+_IDLE = 60.0
+"""After which a process ends that is asked for nothing; to start may take long, too (s)."""
 
 
 class Wanted(NamedTuple):
