@@ -39,6 +39,7 @@ from eventpound.scene import Series as Series
 from eventpound.scene import Slider as Slider
 from eventpound.scene import Spring as Spring
 from eventpound.scene import Support as Support
+from eventpound.scene.frame import frame as frame
 from eventpound.scene.modal_damping import modal_damping as modal_damping
 from eventpound.scene.modes import rayleigh as rayleigh
 from eventpound.scene.modes import stiffness_proportional as stiffness_proportional

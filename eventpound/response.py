@@ -468,12 +468,13 @@ class Response:
         """Columns of `history`, by their names."""
         h = self.recording.history
         columns = {"t": h.t, "a_g": h.ground}
+        springs = [i for i, spring in enumerate(self.scene.springs) if spring.frame is None]
         for prefix, values, names in (
             ("u", h.u, [b.name for b in self.scene.bodies]),
             ("v", h.v, [b.name for b in self.scene.bodies]),
             ("a", h.a, [b.name for b in self.scene.bodies]),
             *((name, h.z[:, [i]], [s]) for i, (s, name) in enumerate(self.scene.memory)),
-            ("force", h.force, [s.name for s in self.scene.springs]),
+            ("force", h.force[:, springs], [self.scene.springs[i].name for i in springs]),
             ("gap", h.gap, [c.name for c in self.scene.contacts]),
             ("lambda", h.contact_force, [c.name for c in self.scene.contacts]),
         ):

@@ -101,7 +101,7 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
     ),
     "Spring": (
         {"name": "s", "between": ("ground", "a"), "law": Linear(1.0)},
-        {TEXT: "name", THINGS: "between law", NUMBER: "height"},
+        {TEXT: "name", THINGS: "between law", NUMBER: "height weight", "BILMOC": "frame"},
     ),
     "Dashpot": (
         {"between": ("ground", "a"), "coefficient": 1.0},
@@ -228,6 +228,10 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
     "rayleigh": (
         {"bodies": SCENE.bodies, "springs": SCENE.springs, "ratio": 0.05, "modes": (1, 1)},
         {THINGS: "bodies springs", NEEDED: "ratio", "BITLMOC": "modes periods"},
+    ),
+    "frame": (
+        {"name": "F", "stiffness": [[1e7]], "mass": [1e5]},
+        {TEXT: "name on", THINGS: "stiffness mass", "BITLMOC": "damping names"},
     ),
     "modal_damping": (
         {"bodies": SCENE.bodies, "springs": SCENE.springs, "ratio": 0.05},

@@ -1,7 +1,7 @@
 """``[[building]]``: storeys of a frame, written out as bodies, springs and damping.
 
     body            NAME1, NAME2, ... from the bottom
-    spring          storey-NAME1, ... between the ground or the floor below and the floor
+    spring          storey-NAME1, ... between what it stands on or the floor below and the floor
     [[rayleigh]]    C = a M + b K with one ratio at two of its modes, or
     [[modal_damping]]  a ratio in each mode
 
@@ -13,16 +13,27 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Collection, Sequence
+from itertools import accumulate
+from typing import NamedTuple
 
-from eventpound.case.table import CaseProblem, Table
+from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.scene.spring import GROUND
 from eventpound.units import STANDARD_GRAVITY, Dimension, quantity
 
 MOST_STOREYS = 500
+RAYLEIGH, MODAL = "rayleigh", "modal"
+"""How the damping ratio of a building or a frame is meant."""
 _WEIGHT = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*W\s*")
+
+
+class Levels(NamedTuple):
+    """What a structure stands on, its floors from below, and how high each is (m), if known."""
+
+    base: str
+    floors: tuple[str, ...]
+    heights: tuple[float, ...]
 
 
 def weight_share(value: object) -> float | None:
@@ -31,47 +42,23 @@ def weight_share(value: object) -> float | None:
     return None if match is None else float(match[1])
 
 
-def with_buildings(document: Mapping[str, object], file: Path) -> Mapping[str, object]:
-    """Tables of a case, with its buildings written out.
+def building_tables(
+    table: Table, supports: Collection[str]
+) -> tuple[dict[str, list[object]], Levels | None]:
+    """Bodies, springs and damping of one building, and its levels; none where it has problems.
 
     Parameters
     ----------
-    document : mapping
-        As tomllib gives it.
-    file : Path
-        For messages.
-
-    Raises
-    ------
-    InputError
-        With one line for every problem of a building.
+    table : Table
+        The building; problems are noted.
+    supports : collection of str
+        Names of the supports of the case.
     """
-    problems: list[CaseProblem] = []
-    top = Table(document, "", problems)
-    if not top.has("building"):
-        return document
-    kinds = ("body", "spring", "rayleigh", "modal_damping")
-    parts: dict[str, list[object]] = {kind: [] for kind in kinds}
-    for table in top.tables("building"):
-        for kind, tables in _expanded(table).items():
-            parts[kind] += tables
-    if problems:
-        raise InputError([f"{file}: {problem}" for problem in problems])
-    whole = {key: value for key, value in document.items() if key != "building"}
-    for kind, tables in parts.items():
-        given = whole.get(kind, [])
-        # What is no list is refused where it is read.
-        if tables and isinstance(given, list):
-            whole[kind] = [*given, *tables]
-    return whole
-
-
-def _expanded(table: Table) -> dict[str, list[object]]:
-    """Bodies, springs and damping of one building; empty where it has problems."""
     name = table.text("name", "a name for the building")
+    on = table.text("on", "what it stands on: a body or a support", GROUND)
     storeys = table.whole_number("storeys", 1, MOST_STOREYS)
     if storeys is None:
-        return {}
+        return {}, None
     masses = _values(table, "mass", Dimension.MASS, storeys)
     weights = [STANDARD_GRAVITY * sum(masses[i:]) for i in range(storeys)]
     stiffnesses = _values(table, "stiffness", Dimension.STIFFNESS, storeys)
@@ -86,7 +73,7 @@ def _expanded(table: Table) -> dict[str, list[object]]:
     if table.has("yield_force"):
         forces = _values(table, "yield_force", Dimension.FORCE, storeys, weights)
     hardening = table.quantity("hardening", Dimension.NUMBER, 0.05) if forces else None
-    ends = [GROUND, *(f"{name}{i}" for i in range(1, storeys + 1))]
+    ends = [on, *(f"{name}{i}" for i in range(1, storeys + 1))]
     springs: list[object] = []
     for i, k in enumerate(stiffnesses):
         spring: dict[str, object] = {"between": ends[i : i + 2], "name": f"storey-{ends[i + 1]}"}
@@ -100,19 +87,35 @@ def _expanded(table: Table) -> dict[str, list[object]]:
     bodies: list[object] = [
         {"name": end, "mass": mass} for end, mass in zip(ends[1:], masses, strict=True)
     ]
-    found: dict[str, list[object]] = {"body": bodies, "spring": springs}
-    modal = table.has("damping") and table.choice("damping", ("rayleigh", "modal")) == "modal"
-    if table.has("ratio"):
-        damping: dict[str, object] = {"bodies": ends[1:], "ratio": table.data["ratio"]}
-        if modal and table.has("modes"):
-            table.reject("modes", 'none beside damping = "modal": its ratio holds in every mode')
-        elif not modal:
-            damping["modes"] = table.data["modes"] if table.has("modes") else [1, min(2, storeys)]
-        found["modal_damping" if modal else "rayleigh"] = [damping]
-    elif table.has("damping"):
-        table.report_missing("ratio", "the ratio of its damping")
+    damping = damping_tables(table, ends[1:], on, on in supports)
     table.close()
-    return found
+    levels = Levels(on, tuple(ends[1:]), tuple(accumulate(heights)))
+    return {"body": bodies, "spring": springs, **damping}, levels
+
+
+def damping_tables(
+    table: Table, bodies: Sequence[str], on: str, on_support: bool
+) -> dict[str, list[object]]:
+    """``[[rayleigh]]`` or ``[[modal_damping]]`` of bodies that stand on the ground, or elsewhere.
+
+    On a body, such as a slab on isolators, Rayleigh damping would damp what that moves by.
+    """
+    isolated = on != GROUND and not on_support
+    words = (MODAL,) if isolated else (RAYLEIGH, MODAL)
+    word = table.choice("damping", words) if table.has("damping") else words[0]
+    if not table.has("ratio"):
+        for key in ("damping", "modes"):
+            if table.has(key):
+                table.report_missing("ratio", "the ratio of its damping")
+                break
+        return {}
+    found: dict[str, object] = {"bodies": [*bodies], "ratio": table.data["ratio"]}
+    if word == MODAL:
+        if table.has("modes"):
+            table.reject("modes", 'none beside damping = "modal": its ratio holds in every mode')
+        return {"modal_damping": [found | ({} if on == GROUND else {"base": on})]}
+    found["modes"] = table.data["modes"] if table.has("modes") else [1, min(2, len(bodies))]
+    return {"rayleigh": [found | ({"support": on} if on_support else {})]}
 
 
 def _values(

@@ -13,7 +13,6 @@ from pathlib import Path
 
 from eventpound.basics.given import checked
 from eventpound.basics.input_files import read_bytes
-from eventpound.case.building import with_buildings
 from eventpound.case.case import Case
 from eventpound.case.damping import read_damping
 from eventpound.case.dashpots import given_ratios, read_dashpot
@@ -31,6 +30,7 @@ from eventpound.case.suite import Suite, with_suite
 from eventpound.case.supports import Driven, read_driven
 from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import SOURCED, understood_case
+from eventpound.case.written_out import written_out
 from eventpound.errors import InputError
 from eventpound.motion.free import NoMotion
 from eventpound.motion.record import Record
@@ -166,7 +166,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     InputError
         With one line for every problem.
     """
-    document = with_buildings(document, file)
+    document = written_out(document, file)
     problems: list[CaseProblem] = []
     top = Table(with_unit_scales(document), "", problems)
     start = _start_time(top)

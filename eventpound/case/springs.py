@@ -120,9 +120,10 @@ def _read_spring(
     weight = stiffnesses.force("weight")
     if weight is not None and height is None:
         table.report_missing("height", "the height of the storey (m), beside its weight")
+    frame = table.text("frame", "the name of a frame") if table.has("frame") else None
     law = _read_law(table, stiffnesses)
     stiffnesses.close()
-    return Spring(name, between, law, height, weight)
+    return Spring(name, between, law, height, weight, frame)
 
 
 def _read_law(table: Table, stiffnesses: Stiffnesses) -> Law:

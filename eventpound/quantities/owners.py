@@ -21,6 +21,11 @@ def owners(scene: Scene, kind: str) -> Sequence[str]:
     return [group[0] for group in structures_of(scene)] if kind == "structure" else [""]
 
 
+def told(scene: Scene, kind: str, i: int) -> bool:
+    """Whether tables tell of it: a coupling of a frame means nothing by itself."""
+    return kind != "spring" or scene.springs[i].frame is None
+
+
 def _dashpots(scene: Scene) -> list[str]:
     """Names of dashpots as the keys of their numbers have them, ``ground-deck``."""
     keys = [key for key, place in places_of(scene).items() if place.kind == "dashpot"]

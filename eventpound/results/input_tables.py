@@ -50,6 +50,7 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
             "at_rest=k at rest:stiffness; mass=mass on it:mass; F_y/W; T_initial=T initial:s; "
             "T_post_yield=T post-yield:s; source",
         ),
+        ("frames", "name=frame; couplings; held=to what it stands on"),
         (
             "dashpots",
             "between=dashpot; coefficient=c:damping; ratio_initial=of critical, initial:%; "

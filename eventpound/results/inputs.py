@@ -60,7 +60,7 @@ def inputs_of(case: Case) -> dict[str, Any]:
     -------
     dict
         ``title``, ``bodies``, ``springs``, ``dashpots``, ``contacts`` (a row each), ``at_rest``
-        (names of springs, as `eventpound.scene.at_rest.told_at_rest`), ``supports``
+        (names of springs, as `eventpound.scene.at_rest.told_at_rest`), ``frames``, ``supports``
         and ``forces`` where there are some, ``structures``
         with their ``initial`` and ``post_yield`` modes, ``motion``, ``run``, ``solver`` and
         ``pi``. What a part does not have is left out of its row.
@@ -77,7 +77,9 @@ def inputs_of(case: Case) -> dict[str, Any]:
         "springs": [
             _spring(spring, stiffness_of(still), carried[spring.name])
             for spring, still in zip(scene.springs, resting.springs, strict=True)
+            if spring.frame is None
         ],
+        **_frames(scene),
         "at_rest": told_at_rest(scene, case.run.start_time),
         "dashpots": _dashpots(resting, carried),
         "contacts": [_contact(scene, contact) for contact in scene.contacts],
@@ -94,6 +96,17 @@ def inputs_of(case: Case) -> dict[str, Any]:
         for row, source in zip(rows, sources, strict=False):
             row |= {"source": source} if source else {}
     return found
+
+
+def _frames(scene: Scene) -> dict[str, list[Row]]:
+    """Frames by their matrices, a row each; nothing of a scene that has none."""
+    rows: dict[str, Row] = {}
+    own = {spring.between[1] for spring in scene.springs if spring.frame is not None}
+    for spring in scene.springs:
+        if spring.frame is not None:
+            row = rows.setdefault(spring.frame, {"name": spring.frame, "couplings": 0, "held": 0})
+            row["couplings" if spring.between[0] in own else "held"] += 1
+    return {"frames": [*rows.values()]} if rows else {}
 
 
 def _driven(case: Case) -> dict[str, list[Row]]:

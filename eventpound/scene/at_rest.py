@@ -119,11 +119,12 @@ def told_at_rest(scene: Scene, start: float = 0.0) -> dict[str, list[str]]:
     """
     found: dict[str, list[str]] = {"counts": [], "not": [], "at_kink": [], "at_yield": []}
     for spring, tangent in zip(scene.springs, tangents(scene, start), strict=True):
-        found["counts" if tangent.counts != 0.0 else "not"].append(spring.name)
+        told = spring.name if spring.frame is None else f"frame {spring.frame}"
+        found["counts" if tangent.counts != 0.0 else "not"].append(told)
         if tangent.two:
             smaller = tangent.counts == min(tangent.closing, tangent.opening)
             found["at_kink" if smaller else "at_yield"].append(spring.name)
-    return found
+    return {key: [*dict.fromkeys(names)] for key, names in found.items()}
 
 
 def _tangent(law: Law, x: float, length: float) -> Tangent:

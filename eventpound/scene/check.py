@@ -228,12 +228,14 @@ def _stability_problems(scene: Scene, start: float) -> Iterator[Problem]:
     element = _Element("spring", gives.spring + 1, spring.name)
     if spring.weight is None:
         found = stiffness_of(spring)
-        accepted = f"stiffnesses with which the structure stands at rest; {gives}"
+        accepted = f"stiffnesses with which the structure stands at rest; {gives.moves}"
         yield element.problem("stiffness", found, accepted)
         return
     most = stiffness_of(replace(spring, weight=None)) * (spring.height or math.nan)
     alone = f" (below k h = {most:.6g} N)" if spring.weight >= most > 0.0 else ""
-    accepted = f"a weight{alone} under which the structure stands at rest; with P-Delta {gives}"
+    accepted = (
+        f"a weight{alone} under which the structure stands at rest; with P-Delta {gives.moves}"
+    )
     yield element.problem("weight", spring.weight, accepted)
 
 

@@ -25,8 +25,8 @@ and ``epsilon.<contact>`` for one of several; ``delay`` and ``delay.<support>`` 
 with a motion of its own has no term: its numbers stay as they are.
 
 An oscillator's own spring is its only linear or Bouc-Wen spring to the ground or to a support:
-a body with none of them, or with several, has no omega_s, u_y and Q, nor has one with P-Delta. A
-perfectly plastic one has Pi_omega_s = 0; a ratio with it is left out.
+a body with none of them, or with several, has no omega_s, u_y and Q, nor has one with P-Delta or
+in a frame. A perfectly plastic one has Pi_omega_s = 0; a ratio with it is left out.
 """
 
 from __future__ import annotations
@@ -166,6 +166,7 @@ def own_spring(scene: Scene, body: str) -> Spring | None:
         and not fixed.isdisjoint(spring.between)
         and isinstance(spring.law, Linear | BoucWen)
         and spring.weight is None
+        and spring.frame is None
         and spring.law.stiffness >= 0.0
     ]
     return own[0] if len(own) == 1 else None

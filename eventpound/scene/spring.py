@@ -659,8 +659,8 @@ def law_keys(law: Law) -> dict[str, object]:
 
 
 def storey_keys(spring: Spring) -> dict[str, object]:
-    """What makes a spring a storey, by the keys of a case file (SI)."""
-    given = {"height": spring.height, "weight": spring.weight}
+    """What a spring is beside its law, by the keys of a case file (SI)."""
+    given = {"height": spring.height, "weight": spring.weight, "frame": spring.frame}
     return {key: value for key, value in given.items() if value is not None}
 
 
@@ -681,6 +681,9 @@ class Spring:
     weight : float, optional
         P, that its columns carry (N): with it and the height h the spring pulls with
         ``F - (P/h) x`` (P-Delta; linear and Bouc-Wen springs).
+    frame : str, optional
+        Name of the frame that it is a coupling of (`eventpound.frame`): it counts as any other
+        spring, but tables and histories leave it out.
     """
 
     name: str
@@ -688,6 +691,7 @@ class Spring:
     law: Law
     height: Annotated[OptionalNumber, Dimension.LENGTH, _LONG] = default(None)
     weight: Annotated[OptionalNumber, Dimension.FORCE, _PULL] = default(None)
+    frame: str | None = None
 
     @property
     def geometric_stiffness(self) -> float:

@@ -28,14 +28,10 @@ TOLD = 0.1
 
 
 class Unstable(NamedTuple):
-    """A motion that nothing resists: which spring drives it most, and bodies with their parts."""
+    """A motion that nothing resists: which spring drives it most, and what moves."""
 
     spring: int
-    moves: dict[str, float]
-
-    def __str__(self) -> str:
-        parts = ", ".join(f"{name} {part:.2g}" for name, part in [*self.moves.items()][:8])
-        return f"it gives way as {parts}"
+    moves: str
 
 
 def may_soften(scene: Scene) -> bool:
@@ -65,9 +61,14 @@ def unstable(scene: Scene, start: float = 0.0) -> Unstable | None:
         if moves is not None:
             u = dict(zip(group, moves.tolist(), strict=True))
             work = [_work(u, *link) for link in links]
-            told = {name: part for name, part in u.items() if abs(part) >= TOLD}
-            return Unstable(own[int(np.argmin(work))], told)
+            return Unstable(own[int(np.argmin(work))], told(group, moves))
     return None
+
+
+def told(bodies: Sequence[str], moves: Floats) -> str:
+    """A motion in words, of the bodies that take much part in it."""
+    parts = [(name, u) for name, u in zip(bodies, moves.tolist(), strict=True) if abs(u) >= TOLD]
+    return "it gives way as " + ", ".join(f"{name} {u:.2g}" for name, u in parts[:8])
 
 
 def gives_way(stiffness: Floats, sizes: Floats) -> Floats | None:

@@ -173,7 +173,9 @@ def _beside_others(scene: Scene) -> Iterator[tuple[str, str]]:
             part = f"a mass of {value:.4g} kg beside one of {heaviest:.4g} kg"
             yield "lightest", f"body '{name}': {part}; usual is from {LEAST_OF_HEAVIEST:g} of it"
     pairs: list[tuple[str, tuple[str, ...], float]] = [
-        (f"spring '{s.name}'", s.between, _stiffest(s.law)) for s in scene.springs
+        (f"spring '{s.name}'", s.between, _stiffest(s.law))
+        for s in scene.springs
+        if s.frame is None
     ]
     stiffest = max((k for *_, k in pairs), default=0.0)
     pairs += [
