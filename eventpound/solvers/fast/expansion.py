@@ -22,7 +22,12 @@ from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece, ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
-from eventpound.solvers.fast.followed import follow, follows, last_of_followed
+from eventpound.solvers.fast.followed import (
+    begin_followed,
+    follow,
+    follows,
+    last_of_followed,
+)
 from eventpound.solvers.fast.links import (
     CORE,
     DOWN,
@@ -95,6 +100,8 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
     loaded, following = series.load.shape[0] > 0, follows(run)
     X, F, acceleration = series.X, series.F, series.force
     clusters, active = progress.clusters, progress.active
+    if following:
+        begin_followed(run)
     for i in range(active):
         _begin_link(i, run)
     acceleration[:] = 0.0

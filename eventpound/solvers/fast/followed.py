@@ -71,8 +71,8 @@ def _put_on_branches(own: Floats, branch: Ints, out: Floats) -> None:
 
 
 @compiled_noinline
-def _begin(run: FastRun) -> None:
-    """Make ready what `follow` needs; the start of every link is known."""
+def begin_followed(run: FastRun) -> None:
+    """Make ready what `follow` needs, before stiffnesses are read; every link's start is known."""
     plan, state, series = run.plan, run.state, run.series
     links, limits, of = plan.links, plan.limits, run.series.followed
     of.defect[0] = 0.0
@@ -93,8 +93,6 @@ def follow(k: int, run: FastRun) -> None:
     """
     plan, series, limits = run.plan, run.series, run.plan.limits
     memory, of, noise = series.memory, series.followed, still_rate(limits.length, limits.time)
-    if k == 0:
-        _begin(run)
     for i in range(of.sigma.size):
         h = plan.hysteresis.followed[i]
         a = plan.hysteresis.link[h]
