@@ -144,8 +144,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
 )
 """Module, what it does, and the formulations that run through it."""
 SHARED_AT_POINTS = {
-    f"{_MECHANICS}.points": "constraints of resting contacts at points, their forces",
-    "eventpound.contact.points": "impacts at points, and which contacts open there",
+    f"{_MECHANICS}.followers": "what follows from what at points, forces of contacts there",
 }
 """What routes of a scene with contacts at points between bodies share besides."""
 SHARED_WITH_LAWS = {

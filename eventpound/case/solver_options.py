@@ -70,10 +70,10 @@ def default_solver(scenes: Iterable[Scene], many: bool) -> str:
     scenes : iterable of Scene
         What is run.
     many : bool
-        Whether they are run many times, as in a suite or a study. Contacts that are not plain are
-        left to the reference then, too.
+        Whether they are run many times, as in a suite or a study. Contacts with a law of their own
+        are left to the reference then, too.
     """
-    plain = all(contact.plain for scene in scenes for contact in scene.contacts)
+    plain = all(contact.law is None for scene in scenes for contact in scene.contacts)
     return FAST if many and plain else REFERENCE
 
 

@@ -6,8 +6,7 @@ all event-driven solvers.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,9 +14,11 @@ from eventpound.contact.cascade import WINDOW, is_endless, is_plastic
 from eventpound.contact.event_rows import EventRow, kind_of_impact, new_group, write_event
 from eventpound.contact.modes import IMPACT, duty
 from eventpound.contact.state import Instant, Now
-from eventpound.mechanics.clusters import close_one, form_clusters, is_support
+from eventpound.mechanics.clusters import Clusters, close_one, form_clusters, is_support
+from eventpound.mechanics.contact_problem import Joints
+from eventpound.mechanics.followers import answers
 from eventpound.mechanics.impact import impact_law, inverse_mass, newton, push_apart
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.tolerances import FADED, LAST_INTERVAL, LISTED_SPEED
 
@@ -41,12 +42,12 @@ def settle_closed(at: Instant) -> int:
     """Put closed contacts on their constraints, and impacts until none approaches."""
     close_collapsed(at)
     one = _only_closed(at.gap)
-    if one >= 0:
+    if one >= 0 and at.compliance.size == 0:
         left, right = at.left[one], at.right[one]
         _close_one(left, right, at.opening[one], at.mass, at.u)
         if at.gap_rate[one] < 0.0:
             _impact_of_only(one, at)
-    elif one == SEVERAL:
+    elif one != NONE:
         _close_several(at)
         ended = _impacts_of_several(at)
         if ended == DONE and at.now[0].here > 0:
@@ -88,8 +89,7 @@ def _only_closed(gap: Floats) -> int:
 def _close_several(at: Instant) -> None:
     """Put all bodies that closed contacts join in touch, their centres of mass kept."""
     shut = at.gap == 0.0
-    touching = form_clusters(at.left, at.right, at.opening, shut, shut, at.mass)
-    put_as_one(touching.of_body, touching.offset, at.mass, at.u)
+    put_as_one(clusters_of(shut, shut, at), True, at.mass, at.u)
 
 
 @deferred_kernel
@@ -101,16 +101,26 @@ def _still_several(at: Instant) -> None:
     """
     still = (at.gap == 0.0) & (at.gap_rate == 0.0)
     if still.any():
-        touching = form_clusters(at.left, at.right, at.opening, still, still, at.mass)
-        put_as_one(touching.of_body, np.zeros(at.mass.size), at.mass, at.v)
+        put_as_one(clusters_of(still, still, at), False, at.mass, at.v)
 
 
 @kernel
-def put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
-    """Put bodies (N,) of one cluster at their offsets beside its value, with the mean they had.
+def clusters_of(resting: Bools, pressed: Bools, at: Instant) -> Clusters:
+    """Clusters with these contacts (K,) at rest."""
+    return form_clusters(at.left, at.right, at.opening, resting, pressed, at.mass, at.weights)
 
-    Cluster -1, of the barriers, has the value zero; that of a support its own.
+
+@kernel
+def put_as_one(clusters: Clusters, places: bool, mass: Floats, x: Floats) -> None:
+    """Put displacements of bodies (N,) in their `places` in clusters, or velocities, overwritten.
+
+    A cluster keeps the mean of its bodies. Cluster -1, of the barriers, has the value zero; that of
+    a support its own. Where some follow others all move the least, weighted by mass.
     """
+    cluster, offset = clusters.of_body, clusters.offset if places else np.zeros(mass.size)
+    if clusters.compliance.size > 0:
+        _put_followers(clusters, offset, mass, x)
+        return
     total, moment = np.zeros(mass.size), np.zeros(mass.size)
     for b in range(mass.size):
         c = cluster[b]
@@ -126,6 +136,29 @@ def put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
             x[b] = offset[b]
         elif total[c] != mass[b]:
             x[b] = offset[b] + moment[c] / total[c]
+
+
+@kernel
+def _put_followers(clusters: Clusters, offset: Floats, mass: Floats, x: Floats) -> None:
+    """`put_as_one` in a scene with points."""
+    compliance, count = clusters.compliance, clusters.count
+    moment, placed = np.zeros(count), np.zeros(count)
+    bodies, tied = np.zeros(count, np.int64), np.zeros(count, np.bool_)
+    for b in range(mass.size):
+        c = clusters.of_body[b]
+        if c >= 0:
+            moment[c] += mass[b] * (x[b] - offset[b])
+            bodies[c] += 1
+    answers(compliance, moment, placed)
+    for c in range(count):
+        for d in range(count):
+            tied[c] |= bodies[c] > 1 or (c != d and compliance[c, d] != 0.0)
+    for b in range(mass.size):
+        c = clusters.of_body[b]
+        if c < 0:
+            x[b] = offset[b]
+        elif tied[c]:
+            x[b] = offset[b] + placed[c]
 
 
 @scalar_kernel
@@ -233,40 +266,17 @@ def next_problem(shut: Bools, at: Instant) -> tuple[int, bool]:
 @deferred_kernel
 def _impacts_of_several(at: Instant) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
-    return impacts_until_none(_law_of_pairs, at.left, at.gap == 0.0, at)
-
-
-@kernel
-def _law_of_pairs(
-    left: Ints, restitution: Floats, shut: Bools, at: Instant
-) -> tuple[Floats, Bools, float, bool]:
-    return impact_law(at.mass, left, at.right, restitution, shut, at.gap_rate, at.v)
-
-
-@kernel
-def impacts_until_none(
-    law: Callable[[Any, Floats, Bools, Instant], tuple[Floats, Bools, float, bool]],
-    given: Any,
-    shut: Bools,
-    at: Instant,
-) -> int:
-    """Impact problems of this instant, until no closed contact approaches.
-
-    Parameters
-    ----------
-    law : callable
-        `impact_law`, from what is given, every ε (K,), which contacts are closed and the instant.
-    given, shut, at
-        What it is handed.
-    """
-    gap_rate = at.gap_rate
+    gap_rate, shut = at.gap_rate, at.gap == 0.0
+    joints = Joints(at.left, at.right, 1.0 / at.mass, at.compliance)
     while True:
         ended, plastic = next_problem(shut, at)
         if ended != PROBLEM:
             return ended
         restitution = np.zeros(shut.size) if plastic else at.restitution
         before = gap_rate.copy()
-        impulse, involved, lost, solved = law(given, restitution, shut, at)
+        impulse, involved, lost, solved = impact_law(
+            joints, at.mass, restitution, shut, gap_rate, at.v
+        )
         if not solved:
             return NO_IMPACT
         for j in range(shut.size):

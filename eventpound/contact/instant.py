@@ -80,10 +80,22 @@ def _keep_released(at: Instant) -> None:
             vanished[j] = False
         released[j] = released[j] or vanished[j]
         for end in (at.left[j], at.right[j]):
-            if end >= 0 and at.v[end] != at.before[end]:
+            if end >= 0 and _struck(end, at):
                 released[j] = False
         vanished[j] = released[j]
     now.settled_at = now.t
+
+
+@scalar_kernel
+def _struck(end: int, at: Instant) -> bool:
+    """Whether an impact has changed the velocity of a body, or of one that a point is on."""
+    if at.v[end] != at.before[end]:
+        return True
+    bodies = at.mass.size - at.weights.shape[0]
+    for b in range(bodies if end >= bodies else 0):
+        if at.weights[end - bodies, b] != 0.0 and at.v[b] != at.before[b]:
+            return True
+    return False
 
 
 @scalar_kernel
@@ -138,6 +150,7 @@ def touching_between(
         right,
         opening,
         at.mass,
+        at.weights,
         at.ends,
         LinkLaw(at.law.damping, memory_on_branches(at.law.memory, at.branch)),
         at.hysteretic,

@@ -9,15 +9,20 @@ found pressed moving as one. What no order decides stays closed.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters, is_support
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_pull
-from eventpound.mechanics.contact_problem import parts, solve_contacts
+from eventpound.mechanics.contact_problem import (
+    Joints,
+    answer,
+    of_members,
+    parts,
+    solve_contacts,
+)
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.observables import difference
@@ -35,7 +40,7 @@ from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root
-from eventpound.tolerances import ACCELERATION, DIRECT, UNDECIDED
+from eventpound.tolerances import ACCELERATION, DEPENDENT, DIRECT, UNDECIDED
 
 _GAUSSIAN = int(Family.GAUSSIAN)
 ORDER = 12
@@ -52,8 +57,8 @@ class Touching(NamedTuple):
 
     undecided (K,): contacts with g = γ = 0. pressed (K,): others that are known to be. released
     (K,): those whose force has just been found to pass zero, for which the order zero has vanished
-    by definition. u (m), v (m/s), shape (N,); z (H,). left, right, gap (K,), mass (N,), link_ends,
-    law, hysteretic: those of the `Model`.
+    by definition. u (m), v (m/s), shape (N,); z (H,). left, right, gap (K,), mass (N,), weights,
+    link_ends, law, hysteretic: those of the `Model`.
     stiffness k (N/m), preload f (N), shape (L,): of each link on its present branch. forcing: the
     ground motion from now on, its start at the time of the state. speed_noise: elongation rates
     without a meaningful sign (m/s). acceleration, time: the scene's own, L/T² (m/s²) and T (s).
@@ -69,6 +74,7 @@ class Touching(NamedTuple):
     right: Ints
     gap: Floats
     mass: Floats
+    weights: Floats
     link_ends: Ints
     law: LinkLaw
     hysteretic: Ints
@@ -80,12 +86,12 @@ class Touching(NamedTuple):
     time: float
 
 
-class Pairs(NamedTuple):
-    """What moves with the contacts pressed, C clusters, as gaps between two of them.
+class Pressed(NamedTuple):
+    """What moves with the contacts pressed, C clusters.
 
     system, y: its equations of motion and its state. rough (C,): clusters of whose accelerations an
     own part of those of the scene is rounding. leaves (K,): gaps that are not closed for good.
-    first, second (K,): clusters of the contacts. members: the undecided contacts that are left,
+    joints: clusters of the contacts (K,). members: the undecided contacts that are left,
     label: the part of the scene of each.
     """
 
@@ -93,45 +99,14 @@ class Pairs(NamedTuple):
     y: Floats
     rough: Bools
     leaves: Bools
-    first: Ints
-    second: Ints
+    joints: Joints
     members: Ints
     label: Ints
 
 
 @kernel
 def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
-    """The acceleration problem, order by order; returns as `decide_by_orders`."""
-    return decide_by_orders(_pairs, _opening_of_pairs, _left_over, _solve_pairs, touching, touching)
-
-
-@kernel
-def decide_by_orders(
-    form: Callable[[Any, Touching, Bools, Bools], Any],
-    opening_of: Callable[[Any, Floats, Floats, Floats, Floats], None],
-    left_over: Callable[[Any, Floats, Touching], Floats],
-    solve: Callable[[Any, Ints, Floats, float], tuple[Floats, Floats, bool]],
-    given: Any,
-    touching: Touching,
-) -> tuple[Bools, Bools, bool]:
     """The acceleration problem, order by order.
-
-    Parameters
-    ----------
-    form : callable
-        From `given` and which contacts (K,) are pressed and undecided: what moves then, with the
-        first four fields of `Pairs` at least. The others are handed it first.
-    opening_of : callable
-        Fills in, from the accelerations of clusters (C,) of one order and their noise, those of all
-        gaps and theirs, (K,).
-    left_over : callable
-        What is left of the accelerations (C,) of released contacts, which counts as rounding.
-    solve : callable
-        Forces of some contacts and the accelerations left, from those without forces; if solved.
-    given
-        What `form` is handed.
-    touching : Touching
-        The problem.
 
     Returns
     -------
@@ -145,15 +120,16 @@ def decide_by_orders(
     kept = np.zeros(undecided.size, np.bool_)
     while undecided.any():
         # Those found pressed move as one.
-        now = form(given, touching, pressed, undecided)
+        now = _pressed(touching, pressed, undecided)
         for j in range(undecided.size):
             if undecided[j] and not now.leaves[j]:
                 kept[j], undecided[j] = True, False
-        order, opening, level = _first_deciding(opening_of, left_over, now, undecided, touching)
+        order, opening, level = _first_deciding(now, undecided, touching)
         if order < 0:
             break
         members = np.flatnonzero(undecided)
-        force, after, solved = solve(now, members, opening[members], level[members].max())
+        joints, noise = of_members(now.joints, members), level[members].max()
+        force, after, solved = solve_contacts(joints, opening[members], noise)
         if not solved:
             return undecided, pressed, False
         passed_over = touching.released & (order == 0)
@@ -172,24 +148,49 @@ def system_of(touching: Touching, clusters: Clusters) -> tuple[Reduced, Floats]:
 
 
 @kernel
-def _pairs(given: Touching, touching: Touching, pressed: Bools, undecided: Bools) -> Pairs:
-    """What moves with these pressed."""
-    left, right, mass = touching.left, touching.right, touching.mass
-    clusters = form_clusters(left, right, touching.gap, pressed, pressed, mass)
-    system, y = system_of(touching, clusters)
-    first, second = _clusters_of(left, clusters), _clusters_of(right, clusters)
-    members = np.flatnonzero(undecided & (first != second))
-    label = parts(first[members], second[members], system.iv.size)
-    rough = round_as_the_scene(system, touching.forcing)
-    return Pairs(system, y, rough, first != second, first, second, members, label)
+def pressed_as_one(touching: Touching, pressed: Bools) -> Clusters:
+    """Clusters that contacts (K,) press together."""
+    t = touching
+    return form_clusters(t.left, t.right, t.gap, pressed, pressed, t.mass, t.weights)
 
 
 @kernel
-def _solve_pairs(
-    now: Pairs, members: Ints, opening: Floats, level: float
-) -> tuple[Floats, Floats, bool]:
-    inverse = 1.0 / now.system.mass
-    return solve_contacts(now.first[members], now.second[members], inverse, opening, level)
+def _pressed(touching: Touching, pressed: Bools, undecided: Bools) -> Pressed:
+    """What moves with these pressed."""
+    clusters = pressed_as_one(touching, pressed)
+    system, y = system_of(touching, clusters)
+    first = _clusters_of(touching.left, clusters)
+    second = _clusters_of(touching.right, clusters)
+    joints = Joints(first, second, 1.0 / system.mass, system.compliance)
+    rough = round_as_the_scene(system, touching.forcing)
+    leaves = first != second
+    if system.compliance.size > 0:
+        _spread_rough(system.compliance, rough)
+        for j in range(leaves.size):
+            leaves[j] = leaves[j] and _parts_two(joints, j)
+    members = np.flatnonzero(undecided & leaves)
+    label = parts(of_members(joints, members))
+    return Pressed(system, y, rough, leaves, joints, members, label)
+
+
+@kernel
+def _parts_two(joints: Joints, j: int) -> bool:
+    """Whether a force parts the two clusters of a contact, and what follows one is not both's."""
+    left, right, largest, size = joints.left[j], joints.right[j], 0.0, 0.0
+    for c in range(joints.inverse_mass.size):
+        largest = max(largest, abs(answer(joints.compliance, c, left, right)))
+        for end in (left, right):
+            size = max(size, abs(joints.compliance[c, end]) if end >= 0 else 0.0)
+    return largest > DEPENDENT * size
+
+
+@kernel
+def _spread_rough(compliance: Floats, rough: Bools) -> None:
+    """Let clusters (C,) be rough that have to do with one that is."""
+    own = rough.copy()
+    for c in range(rough.size):
+        for d in range(rough.size):
+            rough[c] |= own[d] and compliance[c, d] != 0.0
 
 
 @scalar_kernel
@@ -229,11 +230,7 @@ def _clusters_of(bodies: Ints, clusters: Clusters) -> Ints:
 
 @kernel
 def _first_deciding(
-    opening_of: Callable[[Any, Floats, Floats, Floats, Floats], None],
-    left_over: Callable[[Any, Floats, Touching], Floats],
-    now: Any,
-    undecided: Bools,
-    touching: Touching,
+    now: Pressed, undecided: Bools, touching: Touching
 ) -> tuple[int, Floats, Floats]:
     """Lowest order at which an undecided gap accelerates.
 
@@ -243,10 +240,10 @@ def _first_deciding(
     opening, level = np.zeros(undecided.size), np.zeros(undecided.size)
     for highest in (1, ORDER):
         found = accelerations(now.y, now.system, highest, touching)
-        left = left_over(now, found[0], touching)
+        left = _left_over(now, found[0], touching)
         noise = noise_of(found, left, now.rough, now.y, now.system, touching)
         for order in range(highest):
-            opening_of(now, found[order], noise[order], opening, level)
+            _put_openings(now, found[order], noise[order], opening, level)
             deciding = False
             for j in range(opening.size):
                 opening[j] = opening[j] if abs(opening[j]) > level[j] else 0.0
@@ -270,7 +267,7 @@ def noise_of(
 ) -> Floats:
     """Noise of `accelerations` that are `found`, (orders, C).
 
-    left_over (C,): what counts as rounding of the first beside its own. rough, y: of `Pairs`.
+    left_over (C,): what counts as rounding of the first beside its own. rough, y: of `Pressed`.
     """
     orders, forcing = found.shape[0], touching.forcing
     ground, (stiffness, damping) = np.zeros(orders), _slopes(y, system)
@@ -287,19 +284,31 @@ def noise_of(
             noise[order, c] = max(part * absolute, rounding[order, c])
             if order == 0:
                 rounding[0, c] = max(rounding[0, c], left_over[c])
+        if system.compliance.size > 0:
+            _spread_noise(system.compliance, noise[order])
         _pass_on(rounding, order, system, stiffness, damping)
         own, part = own / (time * (order + 1)), UNDECIDED
     return noise
 
 
 @kernel
-def _left_over(now: Pairs, acceleration: Floats, touching: Touching) -> Floats:
+def _spread_noise(compliance: Floats, noise: Floats) -> None:
+    """Let accelerations (C,) err as those that they are sums of."""
+    own = noise.copy()
+    for c in range(noise.size):
+        for d in range(noise.size):
+            if compliance[c, d] != 0.0:
+                noise[c] = max(noise[c], own[d])
+
+
+@kernel
+def _left_over(now: Pressed, acceleration: Floats, touching: Touching) -> Floats:
     """What is left of the accelerations (C,) of released contacts.
 
     These vanish at the instant of the release, which is known to rounding; so all bodies of a
     chain of undecided contacts err by as much, and their stiffness makes higher derivatives of it.
     """
-    first, second, members, label = now.first, now.second, now.members, now.label
+    first, second, members, label = now.joints.left, now.joints.right, now.members, now.label
     own, of_part = np.zeros(acceleration.size), np.zeros(acceleration.size)
     result = np.zeros(acceleration.size)
     for j in range(first.size):
@@ -352,9 +361,15 @@ def _pass_on(
                 error = max(error, rounding[order, c])
         for c in system.ends[a]:
             if c >= 0:
-                part = error / (system.mass[c] * (order + 2))
+                part = error / (_felt_mass(c, system) * (order + 2))
                 rounding[order + 1, c] += damping[a] * part
                 rounding[order + 2, c] += stiffness[a] * part / (order + 3)
+
+
+@scalar_kernel
+def _felt_mass(c: int, system: Reduced) -> float:
+    """What a force at a cluster has to move (kg)."""
+    return 1.0 / system.compliance[c, c] if system.compliance.size > 0 else system.mass[c]
 
 
 @kernel
@@ -374,14 +389,14 @@ def round_as_the_scene(system: Reduced, forcing: Forcing) -> Bools:
 
 
 @kernel
-def _opening_of_pairs(
-    now: Pairs, acceleration: Floats, noise: Floats, opening: Floats, level: Floats
+def _put_openings(
+    now: Pressed, acceleration: Floats, noise: Floats, opening: Floats, level: Floats
 ) -> None:
     """Accelerations of the gaps and their noise: in each part the largest of its clusters.
 
     What is between two whose motion is given has their own alone.
     """
-    first, second, members, label = now.first, now.second, now.members, now.label
+    first, second, members, label = now.joints.left, now.joints.right, now.members, now.label
     for j in range(opening.size):
         opening[j] = difference(acceleration, first[j], second[j])
     largest = np.zeros(noise.size)

@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.impacts import DONE, put_as_one
+from eventpound.contact.impacts import DONE, clusters_of, put_as_one
 from eventpound.contact.instant import any_may_rest, take_rests, touching_between, touching_of
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import (
@@ -33,6 +33,7 @@ from eventpound.contact.rest import (
     Touching,
     accelerations,
     noise_of,
+    pressed_as_one,
     rest_contacts,
     round_as_the_scene,
     system_of,
@@ -79,8 +80,7 @@ def begin_beside_sliders(force: Floats, kinked: Bools, sliders: Ints, at: Instan
         stopped |= kinked[a]
     if stopped:
         # What a support carries goes on with it where a slip beside it ends.
-        clusters = form_clusters(at.left, at.right, at.opening, held, at.resting, at.mass)
-        put_as_one(clusters.of_body, np.zeros(at.mass.size), at.mass, at.v)
+        put_as_one(clusters_of(held, at.resting, at), False, at.mass, at.v)
     at.gap[own:] = np.inf
 
 
@@ -169,8 +169,7 @@ def _accelerations(touching: Touching) -> tuple[Floats, Floats]:
     they may be less than the rounding of a sum, and still tell who gives way.
     """
     mass, none = touching.mass, np.zeros(touching.undecided.size, np.bool_)
-    clusters = form_clusters(touching.left, touching.right, touching.gap, none, none, mass)
-    system, y = system_of(touching, clusters)
+    system, y = system_of(touching, pressed_as_one(touching, none))
     supports = 0
     for b in range(mass.size):
         supports += is_support(b, mass)
@@ -233,7 +232,10 @@ def locked_beside_sliders(
     """Resting contacts (R,) that cannot open: the last ones, of sliders, give way either way."""
     own, members = resting.copy(), clusters.resting
     own[own.size - sliders :] = False
-    alone, locked = form_clusters(left, right, opening, own, own, mass), np.zeros_like(resting)
+    # No scene with sliders has points.
+    no_points = np.zeros((0, mass.size))
+    alone = form_clusters(left, right, opening, own, own, mass, no_points)
+    locked = np.zeros_like(resting)
     put_numbers(alone.locked, alone.resting, locked)
     result = np.zeros(members.size, np.bool_)
     for i in range(members.size):

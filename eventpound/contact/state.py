@@ -40,11 +40,13 @@ def begin(now: Records, start: float, time: Floats | float) -> None:
 class Instant(NamedTuple):
     """A scene at one instant: arrays of a run, which the rules change in place; by address.
 
-    N bodies, L links, H of them hysteretic, K contacts.
+    N coordinates, L links, H of them hysteretic, K contacts.
     """
 
     # Constants.
     mass: Floats  # (N,) (kg)
+    weights: Floats  # (D, N): of points, the last coordinates
+    compliance: Floats  # (N, N): of all coordinates, nothing at rest; empty without points
     ends: Ints  # (L, 2): bodies of a link
     law: LinkLaw  # of the links
     compression: Floats  # (L,): stiffness below the kink (N/m)

@@ -8,6 +8,8 @@ that a solution found pressed carry them. On a directed cycle (a row squeezed
 between two barriers) no contact can open: it is locked, and its forces here may
 have any sign (`eventpound.mechanics.pressures` has those that are told).
 
+Where a scene has points, clusters may follow others (`eventpound.mechanics.followers`).
+
 All barriers are one node of the graph of contacts, number N. So are supports where it is asked
 what joins what: contacts may join two of them only while they move alike, and their forces are then
 not unique. A cluster never holds more than one.
@@ -19,13 +21,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.followers import Grouped, Rests, examine_rests, follow
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.numerics.graph import grouped, on_directed_cycles, root
 
 
 class Clusters(NamedTuple):
-    """Bodies grouped by resting contacts.
+    """Coordinates of bodies and points grouped by resting contacts.
 
     Parameters
     ----------
@@ -35,7 +38,7 @@ class Clusters(NamedTuple):
     offset : ndarray, shape (N,)
         ``u_body = q_cluster + offset`` (m), with q = 0 for cluster -1.
     count : int
-        Number of moving clusters.
+        Number of moving clusters, C.
     resting : ndarray of int, shape (R,)
         The resting contacts.
     locked : ndarray of bool, shape (R,)
@@ -45,9 +48,15 @@ class Clusters(NamedTuple):
     elimination : ndarray of int, shape (E, 4)
         Rows (body, contact, parent, sign) in the order in which forces follow:
         ``λ = sign r_body``, then ``r_parent += r_body``.
+    unique : ndarray of bool, shape (R,)
+        Those whose force is.
     force_map : ndarray, shape (R, N)
-        Maps residual forces to contact forces where contacts at points are
-        among them; empty where the elimination gives them all.
+        Maps residual forces to contact forces in a scene with points; else empty: the
+        elimination gives them all.
+    compliance : ndarray, shape (C, C)
+        A of `eventpound.mechanics.followers` in such a scene (1/kg), else empty: 1/m of each.
+    carried : ndarray, shape (C,)
+        r there, else empty: 1.
     """
 
     of_body: Ints
@@ -57,7 +66,10 @@ class Clusters(NamedTuple):
     locked: Bools
     redundant: Bools
     elimination: Ints
+    unique: Bools
     force_map: Floats
+    compliance: Floats
+    carried: Floats
 
     @property
     def tree(self) -> bool:
@@ -66,29 +78,21 @@ class Clusters(NamedTuple):
 
 
 @kernel
-def unique_forces(clusters: Clusters, left: Ints, right: Ints) -> Bools:
-    """Resting contacts whose force is unique, shape (R,), for the ends of all contacts."""
-    resting = clusters.resting
-    cluster = np.empty(resting.size, np.int64)
-    several = np.zeros(clusters.count + 1, np.bool_)
-    for i in range(resting.size):
-        for end in (left[resting[i]], right[resting[i]]):
-            # The bodies that stand still count as one cluster, the last.
-            cluster[i] = clusters.of_body[end] if end >= 0 else -1
-            several[cluster[i]] |= clusters.redundant[i]
-    return ~several[cluster]
-
-
-@kernel
 def form_clusters(
-    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, mass: Floats
+    left: Ints,
+    right: Ints,
+    gap: Floats,
+    resting: Bools,
+    pressed: Bools,
+    mass: Floats,
+    weights: Floats,
 ) -> Clusters:
-    """Group bodies by resting contacts.
+    """Group coordinates by resting contacts.
 
     Parameters
     ----------
     left, right : ndarray of int, shape (K,)
-        Bodies of the contacts, -1 for a barrier.
+        Coordinates of the contacts, -1 for a barrier.
     gap : ndarray, shape (K,)
         Openings at zero displacement (m).
     resting : ndarray of bool, shape (K,)
@@ -97,32 +101,47 @@ def form_clusters(
         Contacts that a solution of the acceleration problem found pressed:
         where contacts are redundant, these carry the forces.
     mass : ndarray, shape (N,)
-        Of the bodies, inf of supports.
+        Of the coordinates, inf of supports, none of points.
+    weights : ndarray, shape (D, N)
+        Of the points (`Model.weights`).
     """
-    return Clusters(*_joined(left, right, gap, resting, pressed, mass))
+    return Clusters(*_joined(left, right, gap, resting, pressed, mass, weights))
 
 
 def form_clusters_of_few(
-    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, mass: Floats
+    left: Ints,
+    right: Ints,
+    gap: Floats,
+    resting: Bools,
+    pressed: Bools,
+    mass: Floats,
+    weights: Floats,
 ) -> Clusters:
     """`form_clusters` for callers in Python: what resting contacts need is compiled when one is."""
-    if not resting.any():
+    if not resting.any() and weights.size == 0:
         return _bodies_alone(mass.size)
-    return in_python(form_clusters)(left, right, gap, resting, pressed, mass)
+    return in_python(form_clusters)(left, right, gap, resting, pressed, mass, weights)
 
 
 def _bodies_alone(bodies: int) -> Clusters:
     """Clusters without a resting contact."""
     none, nobody = np.zeros(0, np.int64), np.zeros(0, np.bool_)
-    no_rows = np.zeros((0, 4), np.int64)
+    no_rows, no_map = np.zeros((0, 4), np.int64), np.zeros((0, 0))
     return Clusters(
-        np.arange(bodies), np.zeros(bodies), bodies, none, nobody, nobody, no_rows, np.zeros((0, 0))
+        *(np.arange(bodies), np.zeros(bodies), bodies, none, nobody, nobody, no_rows),
+        *(nobody, no_map, no_map, np.zeros(0)),
     )
 
 
 @kernel
 def _joined(
-    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, mass: Floats
+    left: Ints,
+    right: Ints,
+    gap: Floats,
+    resting: Bools,
+    pressed: Bools,
+    mass: Floats,
+    weights: Floats,
 ) -> tuple[Any, ...]:
     """The fields of `form_clusters`, a plain tuple for callers in Python."""
     members, bodies = np.flatnonzero(resting), mass.size
@@ -130,14 +149,50 @@ def _joined(
     first_node[first_node < 0] = bodies
     second_node[second_node < 0] = bodies
     tail, head = _anchored(first_node, mass), _anchored(second_node, mass)
-    carrying = _forest(tail, head, pressed[members], bodies + 1)
+    points, rests = weights.shape[0], members.size
+    carrying, locked = np.zeros(rests, np.bool_), np.zeros(rests, np.bool_)
+    unique = np.zeros(rests, np.bool_)
+    force_map = np.zeros((rests if points > 0 else 0, bodies))
+    if points == 0:
+        carrying = _forest(tail, head, pressed[members], bodies + 1)
+    elif rests > 0:
+        ends, carry = (left[members], right[members]), pressed[members]
+        examine_rests(Rests(*ends, carry, carrying, locked, unique, force_map), weights)
     of_body, offset, count, elimination = _spread(
         members[carrying], first_node[carrying], second_node[carrying], gap, bodies
     )
-    locked = np.zeros(members.size, np.bool_)
-    if not carrying.all():
-        locked = on_directed_cycles(tail, head, bodies + 1)
-    return of_body, offset, count, members, locked, ~carrying, elimination, np.empty((0, 0))
+    compliance, carried = np.zeros((0, 0)), np.zeros(0)
+    if points > 0:
+        grouped_at = Grouped(of_body, offset, np.zeros((bodies, bodies)), np.zeros(bodies))
+        count = follow(count, mass, weights, grouped_at)
+        compliance = grouped_at.compliance[:count, :count].copy()
+        carried = grouped_at.carried[:count].copy()
+    else:
+        if not carrying.all():
+            locked = on_directed_cycles(tail, head, bodies + 1)
+        unique = _unique(carrying, first_node, second_node, of_body, count)
+    return (
+        *(of_body, offset, count, members, locked, ~carrying, elimination, unique),
+        *(force_map, compliance, carried),
+    )
+
+
+@kernel
+def _unique(
+    carrying: Bools, first_node: Ints, second_node: Ints, of_body: Ints, count: int
+) -> Bools:
+    """Resting contacts whose force is unique, shape (R,): no other in their cluster is redundant.
+
+    `first_node`, `second_node` (R,): their ends, N for ground and barriers.
+    """
+    cluster = np.empty(carrying.size, np.int64)
+    several = np.zeros(count + 1, np.bool_)
+    for i in range(carrying.size):
+        for end in (first_node[i], second_node[i]):
+            # The bodies that stand still count as one cluster, the last.
+            cluster[i] = of_body[end] if end < of_body.size else -1
+            several[cluster[i]] |= not carrying[i]
+    return ~several[cluster]
 
 
 @scalar_kernel

@@ -8,6 +8,8 @@ of bodies a tridiagonal problem, anything else a dense one.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
@@ -20,22 +22,40 @@ LONG_ROW = 24
 """Contacts in one row above which the tridiagonal method is used."""
 
 
-@kernel
-def parts(left: Ints, right: Ints, nodes: int) -> Ints:
-    """Parts of the problem that do not influence each other.
+class Joints(NamedTuple):
+    """Contacts as pairs of n coordinates, and how these answer to forces.
 
-    Parameters
-    ----------
-    left, right : ndarray of int, shape (k,)
-        Masses each contact joins, not both -1, which does not move.
-    nodes : int
-        How many masses there are.
+    left, right (k,): coordinates each contact joins, not both -1, which does not move.
+    inverse_mass (n,): of a coordinate by itself, 1/m (1/kg). compliance (n, n): by how much a
+    force at one accelerates another (1/kg), where some follow others
+    (`eventpound.mechanics.followers`); empty where that is the diagonal 1/m.
+    """
+
+    left: Ints
+    right: Ints
+    inverse_mass: Floats
+    compliance: Floats
+
+
+@kernel
+def of_members(joints: Joints, members: Ints) -> Joints:
+    """Some of the contacts."""
+    left, right = joints.left[members], joints.right[members]
+    return Joints(left, right, joints.inverse_mass, joints.compliance)
+
+
+@kernel
+def parts(joints: Joints) -> Ints:
+    """Parts of the problem that do not influence each other.
 
     Returns
     -------
     ndarray of int, shape (k,)
-        The part of each contact, labelled by one of its masses.
+        The part of each contact, labelled by one of its coordinates.
     """
+    left, right, nodes = joints.left, joints.right, joints.inverse_mass.size
+    if joints.compliance.size > 0:
+        return _coupled_parts(joints)
     parent = np.arange(nodes)
     for j in range(left.size):
         if left[j] >= 0 and right[j] >= 0:
@@ -46,10 +66,44 @@ def parts(left: Ints, right: Ints, nodes: int) -> Ints:
     return label
 
 
+@kernel
+def _coupled_parts(joints: Joints) -> Ints:
+    """`parts` where coordinates answer to forces at others."""
+    left, right = joints.left, joints.right
+    parent = np.arange(left.size)
+    for i in range(left.size):
+        for j in range(i):
+            if coupling(joints, i, j) != 0.0:
+                parent[root(parent, i)] = root(parent, j)
+    label = np.empty(left.size, np.int64)
+    for j in range(left.size):
+        first = root(parent, j)
+        label[j] = left[first] if left[first] >= 0 else right[first]
+    return label
+
+
 @scalar_kernel
-def _coupling(left: Ints, right: Ints, inverse_mass: Floats, i: int, j: int) -> float:
-    """Entry G_ij = Σ_b W_bi W_bj / m_b."""
+def answer(compliance: Floats, node: int, left: int, right: int) -> float:
+    """Acceleration of a coordinate under the force 1 of a contact that pushes its ends apart."""
     total = 0.0
+    if right >= 0:
+        total += compliance[node, right]
+    if left >= 0:
+        total -= compliance[node, left]
+    return total
+
+
+@scalar_kernel
+def coupling(joints: Joints, i: int, j: int) -> float:
+    """Entry G_ij of ``Wᵀ M⁻¹ W`` (1/kg)."""
+    left, right, total = joints.left, joints.right, 0.0
+    inverse_mass = joints.inverse_mass
+    if joints.compliance.size > 0:
+        if right[i] >= 0:
+            total += answer(joints.compliance, right[i], left[j], right[j])
+        if left[i] >= 0:
+            total -= answer(joints.compliance, left[i], left[j], right[j])
+        return total
     if right[i] >= 0:
         if right[i] == right[j]:
             total += inverse_mass[right[i]]
@@ -64,12 +118,12 @@ def _coupling(left: Ints, right: Ints, inverse_mass: Floats, i: int, j: int) -> 
 
 
 @kernel
-def delassus_matrix(left: Ints, right: Ints, inverse_mass: Floats, members: Ints) -> Floats:
+def delassus_matrix(joints: Joints, members: Ints) -> Floats:
     """``G = Wᵀ M⁻¹ W`` of some contacts, the members, shape (k, k) (1/kg)."""
     G = np.empty((members.size, members.size))
     for a in range(members.size):
         for b in range(members.size):
-            G[a, b] = _coupling(left, right, inverse_mass, int(members[a]), int(members[b]))
+            G[a, b] = coupling(joints, int(members[a]), int(members[b]))
     return G
 
 
@@ -103,17 +157,13 @@ def _row_order(left: Ints, right: Ints, members: Ints, nodes: int) -> Ints:
 
 
 @kernel
-def solve_contacts(
-    left: Ints, right: Ints, inverse_mass: Floats, q: Floats, noise: float
-) -> tuple[Floats, Floats, bool]:
+def solve_contacts(joints: Joints, q: Floats, noise: float) -> tuple[Floats, Floats, bool]:
     """Solve ``0 <= Wᵀ M⁻¹ W x + q ⊥ x >= 0``.
 
     Parameters
     ----------
-    left, right : ndarray of int, shape (k,)
-        Masses each contact joins; -1 does not move.
-    inverse_mass : ndarray, shape (nodes,)
-        1/m (1/kg).
+    joints : Joints
+        The contacts.
     q : ndarray, shape (k,)
         What each contact would do without the unknowns.
     noise : float
@@ -126,13 +176,14 @@ def solve_contacts(
     solved : bool
         False where a part has no solution.
     """
+    left, right, inverse_mass = joints.left, joints.right, joints.inverse_mass
     x, w = np.zeros(q.size), np.zeros(q.size)
-    label = parts(left, right, inverse_mass.size)
-    solved = True
+    label = parts(joints)
+    solved, paired = True, joints.compliance.size == 0
     members = np.empty(q.size, np.int64)
     for j in range(q.size):
         # No force moves what lies between two masses that move as they are told to.
-        if _coupling(left, right, inverse_mass, j, j) == 0.0:
+        if coupling(joints, j, j) == 0.0:
             w[j], label[j], solved = max(0.0, q[j]), -1, solved and q[j] >= 0.0
     for start in range(q.size):
         part, count = label[start], 0
@@ -143,23 +194,23 @@ def solve_contacts(
                 members[count], label[j] = j, -1
                 count += 1
         if count == 1:
-            x[start] = max(0.0, -q[start] / _coupling(left, right, inverse_mass, start, start))
+            x[start] = max(0.0, -q[start] / coupling(joints, start, start))
             w[start] = max(0.0, q[start])
             continue
         row = np.empty(0, np.int64)
-        if count > LONG_ROW:
+        if count > LONG_ROW and paired:
             row = _row_order(left, right, members[:count], inverse_mass.size)
         if row.size > 0:
-            coupling = np.zeros(row.size + 1)
+            inverse = np.zeros(row.size + 1)
             for k in range(row.size + 1):
                 mass = left[row[k]] if k < row.size else right[row[-1]]
                 if mass >= 0:
-                    coupling[k] = inverse_mass[mass]
-            found, rate = solve_chain(coupling, q[row])
+                    inverse[k] = inverse_mass[mass]
+            found, rate = solve_chain(inverse, q[row])
             put_numbers(found, row, x)
             put_numbers(rate, row, w)
             continue
-        G, own = delassus_matrix(left, right, inverse_mass, members[:count]), np.empty(count)
+        G, own = delassus_matrix(joints, members[:count]), np.empty(count)
         for a in range(count):
             own[a] = q[members[a]]
         found, rate, part_solved = solve_dense(G, own, noise)

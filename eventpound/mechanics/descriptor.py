@@ -43,7 +43,7 @@ class Descriptor(NamedTuple):
     elongations and gaps, opening (R,) the gaps at u = 0 (m).
     all_gaps (K, N), all_openings (K,): those of every contact.
     inverse_coupling (R, R): of Wᵀ M⁻¹ W (kg).
-    sliders (J,), link_ends (L, 2): of the `Model`.
+    sliders (J,), link_ends (L, 2), weights: of the `Model`, whose points are no unknowns here.
     ledger_weight: factor of the rows of the ledger, which determine nothing else: no such row
     must become the pivot of another unknown, as it does where energies are large numbers.
     """
@@ -68,24 +68,13 @@ class Descriptor(NamedTuple):
     inverse_coupling: Floats
     sliders: Ints
     link_ends: Ints
+    weights: Floats
     ledger_weight: float
 
 
-def directions(first: Ints, second: Ints, bodies: int) -> Floats:
-    """Rows with -1 at the first and +1 at the second end, shape (ends, N); -1 is no body."""
-    # Index -1 is the column of the ground and the barriers.
-    rows = np.zeros((first.size, bodies + 1))
-    np.add.at(rows, (np.arange(first.size), second), 1.0)
-    np.add.at(rows, (np.arange(first.size), first), -1.0)
-    return np.ascontiguousarray(rows[:, :bodies])
-
-
 def contact_rows(model: Model) -> Floats:
-    """Directions of the gaps of all contacts, those at points included, shape (K, N): Wᵀ."""
-    rows = directions(model.left, model.right, model.bodies)
-    if model.points.size > 0:
-        rows[model.points] = model.spread
-    return rows
+    """Directions of the gaps of all contacts in the bodies, shape (K, N): Wᵀ."""
+    return np.ascontiguousarray(model.rates(np.eye(model.bodies)).T)
 
 
 def descriptor_form(
@@ -107,6 +96,7 @@ def descriptor_form(
         Factor of its equations.
     """
     bodies, hysteretic = model.bodies, model.hysteretic.size
+    mass = model.mass[:bodies]
     every = contact_rows(model)
     members = clusters.resting[~clusters.redundant]
     W = every[members]
@@ -119,18 +109,19 @@ def descriptor_form(
         _dependent(W, model.supports),
         clusters.resting,
         members,
-        model.mass,
-        np.where(clusters.of_body < 0, 0.0, 1.0),
+        mass,
+        np.where(clusters.of_body[:bodies] < 0, 0.0, 1.0),
         *model.elastic.on_side(branch),
         LinkLaw(model.law.damping, in_python(memory_on_branches)(model.law.memory, branch)),
-        directions(model.link_ends[:, 0], model.link_ends[:, 1], bodies),
+        np.ascontiguousarray(model.elongations(np.eye(bodies)).T),
         W,
         model.gap[members],
         every,
         model.gap,
-        np.asarray(np.linalg.inv(W / model.mass @ W.T), np.float64),
+        np.asarray(np.linalg.inv(W / mass @ W.T), np.float64),
         model.sliders,
         model.link_ends,
+        model.weights,
         ledger_weight,
     )
 

@@ -17,6 +17,7 @@ from eventpound.mechanics.descriptor_motion import (
     loaded_powers,
 )
 from eventpound.mechanics.elements import link_force
+from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.observables import Observed, observe_friction
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
@@ -48,6 +49,20 @@ def _observe_contacts(d: Descriptor, contact: Floats, contact_rate: Floats, out:
     for i in range(d.carrying.size):
         out.contact_force[0, d.carrying[i]] = contact[i]
         out.contact_force[1, d.carrying[i]] = contact_rate[i]
+
+
+@kernel
+def _observe_points(weights: Floats, out: Observed) -> None:
+    """Displacements, velocities and accelerations of points from those of the bodies."""
+    place_points(weights, out.u)
+    place_points(weights, out.v)
+    place_points(weights, out.a)
+    for row in range(2):
+        acceleration = out.acceleration[row]
+        if weights.shape[0] > 0:
+            acceleration -= out.ground[row]
+            place_points(weights, acceleration)
+            acceleration += out.ground[row]
 
 
 @kernel
@@ -96,6 +111,7 @@ def observe_descriptor(
         out.u[b], out.v[b], out.a[b] = y[b], y[N + b], a[b]
         out.acceleration[0, b] = a[b] + out.ground[0]
         out.acceleration[1, b] = a_rate[b] + out.ground[1]
+    _observe_points(d.weights, out)
     for h in range(H):
         out.z[0, h], out.z[1, h] = y[2 * N + h], rate[2 * N + h]
     if d.ledger >= 0:

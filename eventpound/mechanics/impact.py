@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.contact_problem import solve_contacts
+from eventpound.mechanics.contact_problem import Joints, answer, of_members, solve_contacts
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.tolerances import CANCELLED, QUIET
@@ -20,22 +20,16 @@ from eventpound.tolerances import CANCELLED, QUIET
 
 @kernel
 def impact_law(
-    mass: Floats,
-    left: Ints,
-    right: Ints,
-    restitution: Floats,
-    closed: Bools,
-    gap_rate: Floats,
-    v: Floats,
+    joints: Joints, mass: Floats, restitution: Floats, closed: Bools, gap_rate: Floats, v: Floats
 ) -> tuple[Floats, Bools, float, bool]:
     """Velocities after the impact at the closed contacts.
 
     Parameters
     ----------
+    joints : Joints
+        All contacts, (K,), between N coordinates.
     mass : ndarray, shape (N,)
-        Masses (kg), inf of supports.
-    left, right : ndarray of int, shape (K,)
-        Bodies of the contacts, -1 for a barrier.
+        Their masses (kg), inf of supports.
     restitution : ndarray, shape (K,)
         ε of each contact.
     closed : ndarray of bool, shape (K,)
@@ -43,7 +37,7 @@ def impact_law(
     gap_rate : ndarray, shape (K,)
         γ of every contact (m/s); overwritten with γ⁺.
     v : ndarray, shape (N,)
-        Velocities of the bodies (m/s); overwritten.
+        Velocities of the coordinates (m/s); overwritten.
 
     Returns
     -------
@@ -62,11 +56,15 @@ def impact_law(
     before = gap_rate[members]
     q = (1.0 + restitution[members]) * before
     noise = QUIET * np.max(-before)
-    x, w, solved = solve_contacts(left[members], right[members], 1.0 / mass, q, noise)
-    change = np.zeros(v.size)
+    x, w, solved = solve_contacts(of_members(joints, members), q, noise)
+    change, left, right = np.zeros(v.size), joints.left, joints.right
     for i in range(members.size):
         j = members[i]
         impulse[j] = x[i]
+        if joints.compliance.size > 0:
+            for b in range(v.size):
+                change[b] += answer(joints.compliance, b, left[j], right[j]) * x[i]
+            continue
         if left[j] >= 0:
             change[left[j]] -= x[i] / mass[left[j]]
         if right[j] >= 0:

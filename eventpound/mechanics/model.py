@@ -4,22 +4,23 @@ Equation of motion, coordinates u relative to the ground:
 
     M u'' + C u' + Σ_s B_s F_s(B_sᵀ u, z_s) - W λ = -M 1 a_g(t)
 
-A *link* joins two bodies, or a body and the ground (index -1), and carries a
-spring, a dashpot or both: its elongation is ``x = u_second - u_first`` and its
-force (`eventpound.mechanics.elements`) pulls the ends together. Springs come first,
-in the order of the scene, then dashpots that stand alone, then links without force, each of which
-has the second number of a memory as its z.
+The coordinates are the bodies, and behind them the points between bodies that contacts are at
+(`eventpound.scene.point`), without mass, whose ``u = Σ w_b u_b`` follows. A *link* joins two
+of them, or one and the ground (index -1), and carries a spring, a dashpot or both: its elongation
+is ``x = u_second - u_first`` and its force (`eventpound.mechanics.elements`) pulls the ends
+together. Springs come first, in the order of the scene, then dashpots that stand alone, then links
+without force, each of which has the second number of a memory as its z.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements, elements_of
+from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.link_law import (
     KIND,
     SLIDER,
@@ -30,7 +31,8 @@ from eventpound.mechanics.link_law import (
 )
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.scene.contact import BARRIER
+from eventpound.numerics.compiled import in_python
+from eventpound.scene.contact import BARRIER, End, weights_of
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Hysteretic
@@ -42,12 +44,12 @@ WORK_OF_SUPPORTS = 3
 
 @dataclass(frozen=True)
 class Model:
-    """Arrays of a scene with N bodies, L links, S springs and K contacts.
+    """Arrays of a scene with N coordinates, L links, S springs and K contacts.
 
     Parameters
     ----------
     mass : ndarray, shape (N,)
-        Masses (kg), inf of supports.
+        Masses (kg), inf of supports, none of points.
     u0, v0 : ndarray, shape (N,)
         Initial displacement (m) and velocity (m/s).
     link_ends : ndarray of int, shape (L, 2)
@@ -63,7 +65,7 @@ class Model:
     springs : int
         S; the first S links are the springs.
     left, right : ndarray of int, shape (K,)
-        Bodies of each contact; -1 is a barrier.
+        Coordinates of each contact; -1 is a barrier.
     gap, restitution : ndarray, shape (K,)
         Openings at zero displacement (m) and coefficients of restitution, NaN where none is.
     elements : Elements
@@ -73,11 +75,8 @@ class Model:
         how many links, the last ones, carry loads instead of a law.
     laws : ndarray of int, shape (P,)
         Contacts whose elements are the last P links (`with_elements`).
-    points : ndarray of int, shape (D,)
-        Contacts at points between bodies (`eventpound.scene.point`), whose `left` and `right`
-        are -1.
-    spread : ndarray, shape (D, N)
-        Their columns of W.
+    weights : ndarray, shape (D, N)
+        Of the points, the last D coordinates: the parts w of bodies in each.
     sliders : ndarray of int, shape (J,)
         Links of sliders, whose last J contacts hold them while they stick (`with_sliders`).
     """
@@ -99,14 +98,18 @@ class Model:
     supports: int = 0
     loads: int = 0
     laws: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
-    points: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
-    spread: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    weights: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     sliders: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @property
-    def bodies(self) -> int:
+    def coordinates(self) -> int:
         """N."""
         return self.mass.size
+
+    @property
+    def bodies(self) -> int:
+        """How many of the coordinates, the first ones, are bodies."""
+        return self.mass.size - self.weights.shape[0]
 
     @property
     def links(self) -> int:
@@ -135,8 +138,8 @@ class Model:
 
     @property
     def counts(self) -> tuple[int, int, int, int]:
-        """N, L, K and H: bodies, links, contacts and hysteretic links."""
-        return self.bodies, self.links, self.contacts, self.hysteretic.size
+        """N, L, K and H: coordinates, links, contacts and hysteretic links."""
+        return self.coordinates, self.links, self.contacts, self.hysteretic.size
 
     @property
     def z_of_link(self) -> Ints:
@@ -145,20 +148,24 @@ class Model:
         places[self.hysteretic] = np.arange(self.hysteretic.size)
         return places
 
+    def with_points(self, values: Floats) -> Floats:
+        """Values of the bodies, with or without those of points behind, with those of points."""
+        if self.weights.size == 0:
+            return values
+        own = values[..., : self.bodies]
+        return np.concatenate((own, own @ self.weights[:, : self.bodies].T), axis=-1)
+
     def gaps(self, u: Floats) -> Floats:
-        """Gaps ``g = δ + u_right - u_left`` (m), shape (..., K), for u of shape (..., N)."""
+        """Gaps ``g = δ + u_right - u_left`` (m), shape (..., K), for u of the bodies (m)."""
         return self.gap + self.rates(u)
 
     def rates(self, v: Floats) -> Floats:
-        """``Wᵀ v``, shape (..., K): rates of the gaps for velocities v of shape (..., N)."""
-        found = differences(v, self.left, self.right)
-        if self.points.size > 0:
-            found[..., self.points] = (self.spread @ v[..., None])[..., 0]
-        return found
+        """``Wᵀ v``, shape (..., K): rates of the gaps for velocities v of the bodies (m/s)."""
+        return differences(self.with_points(v), self.left, self.right)
 
     def elongations(self, u: Floats) -> Floats:
-        """Elongations of the links (m), shape (..., L), for u of shape (..., N)."""
-        return differences(u, *self.link_ends.T)
+        """Elongations of the links (m), shape (..., L), for u of the bodies (m)."""
+        return differences(self.with_points(u), *self.link_ends.T)
 
     def link_forces(self, u: Floats, v: Floats, z: Floats) -> tuple[Floats, Floats]:
         """Forces of the links without and with their dashpots (N), shape (..., L) each.
@@ -169,12 +176,15 @@ class Model:
         return springs, springs + self.law.damping * self.elongations(v)
 
     def pulled(self, force: Floats) -> Floats:
-        """Sum of the forces (..., L) of the links on each body (N), shape (..., N)."""
-        total = np.zeros((*force.shape[:-1], self.bodies + 1))
+        """Sum of the forces (..., L) of the links on each body (N), shape (..., bodies)."""
+        total = np.zeros((*force.shape[:-1], self.coordinates + 1))
         for link, (first, second) in enumerate(self.link_ends):
             total[..., first] += force[..., link]
             total[..., second] -= force[..., link]
-        return total[..., :-1]
+        own = total[..., : self.bodies]
+        if self.weights.size > 0:
+            own = own + total[..., self.bodies : -1] @ self.weights[:, : self.bodies]
+        return own
 
 
 def differences(values: Floats, first: Ints, second: Ints) -> Floats:
@@ -272,6 +282,20 @@ def assemble(scene: Scene) -> Model:
     further = dict(zip(two, range(len(ends), len(ends) + len(two)), strict=True))
     ends += [ends[i] for i in two]
     damping += [0.0] * len(two)
+    points: dict[tuple[tuple[str, float], ...], int] = {}
+
+    def coordinate(end: End) -> int:
+        if isinstance(end, str):
+            return index[end]
+        return points.setdefault(weights_of(end), len(scene.bodies) + len(points))
+
+    at = [(coordinate(c.left), coordinate(c.right)) for c in scene.contacts]
+    weights = np.zeros((len(points), len(scene.bodies) + len(points) + 1))
+    for row, own in zip(weights, points, strict=True):
+        for name, weight in own:
+            # The ground's, whose index is -1, is left out.
+            row[index[name]] += weight
+    weights = np.ascontiguousarray(weights[:, :-1])
     motion = scene.motion
     if isinstance(motion, LoadedMotion):
         ends += [(load.body, -1) for load in motion.loads]
@@ -280,16 +304,20 @@ def assemble(scene: Scene) -> Model:
     def column(values: list[float]) -> Floats:
         return np.array(values, dtype=np.float64)
 
-    mass, u0 = (column([getattr(b, key) for b in scene.bodies]) for key in ("mass", "displacement"))
+    no_mass = [0.0] * len(points)
+    mass, u0, v0 = (
+        column([getattr(b, key) for b in scene.bodies] + no_mass)
+        for key in ("mass", "displacement", "velocity")
+    )
+    for values in (u0, v0):
+        in_python(place_points)(weights, values)
     link_ends = np.array(ends, np.int64).reshape(-1, 2)
     start = differences(u0, *link_ends.T)
-    points = np.array([i for i, c in enumerate(scene.contacts) if c.at_point], np.int64)
-    at = [[-1, -1] if c.at_point else [index[name] for name in c.ends] for c in scene.contacts]
     left, right = np.array(at, np.int64).reshape(-1, 2).T.copy()
     return Model(
         mass=mass,
         u0=u0,
-        v0=column([b.velocity for b in scene.bodies]),
+        v0=v0,
         link_ends=link_ends,
         law=link_law(laws, damping, further),
         elastic=as_arrays(laws + [_SLACK] * (len(ends) - len(laws))),
@@ -307,26 +335,16 @@ def assemble(scene: Scene) -> Model:
         elements=elements_of(scene, mass, left, right),
         supports=motion.supports if isinstance(motion, LoadedMotion) else 0,
         loads=len(motion.loads) if isinstance(motion, LoadedMotion) else 0,
-        points=points,
-        spread=_spread(scene, points, index),
+        weights=weights,
     )
 
 
 def shape_of(model: Model) -> tuple[object, ...]:
     """What arrays of two scenes that differ in numbers only have in common, to be compared.
 
-    Of scenes whose contacts follow Newton's law and lie between whole bodies.
+    Of scenes whose contacts follow Newton's law.
     """
     sizes = model.bodies, model.springs, model.supports, model.loads
     kinds = model.law.memory[:, KIND]
-    ends = model.link_ends, model.hysteretic, kinds, model.left, model.right
+    ends = model.link_ends, model.hysteretic, kinds, model.left, model.right, model.weights
     return (*sizes, *((each.size, each.tobytes()) for each in ends))
-
-
-def _spread(scene: Scene, points: Ints, index: Mapping[str, int]) -> Floats:
-    """Columns of W of the contacts at points, shape (D, N); `index` is -1 for what is no body."""
-    spread = np.zeros((points.size, len(scene.bodies) + 1))
-    for row, j in zip(spread, points, strict=True):
-        for name, weight in scene.contacts[j].direction:
-            row[index[name]] += weight
-    return np.ascontiguousarray(spread[:, :-1])

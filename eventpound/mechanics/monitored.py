@@ -40,7 +40,7 @@ SCALES = ("length", "length", "length", "acceleration", "force", "force")
 
 @scalar_kernel
 def places_of(bodies: int, springs: int, contacts: int) -> Places:
-    """Columns of the extremes of a scene with N bodies, S springs and K contacts."""
+    """Columns of the extremes of a scene with N coordinates, S springs and K contacts."""
     displacement = contacts
     elongation = displacement + bodies
     acceleration = elongation + springs
@@ -52,7 +52,7 @@ def places_of(bodies: int, springs: int, contacts: int) -> Places:
 
 def places_in(model: Model) -> Places:
     """Columns of the extremes of an assembled scene."""
-    return in_python(places_of)(model.bodies, model.springs, model.contacts)
+    return in_python(places_of)(model.coordinates, model.springs, model.contacts)
 
 
 class Distances(NamedTuple):
@@ -67,7 +67,7 @@ class Distances(NamedTuple):
 
 def distances_of(model: Model) -> Distances:
     """Gaps, displacements and elongations, in the order of their columns."""
-    bodies, springs = np.arange(model.bodies), model.link_ends[: model.springs]
+    bodies, springs = np.arange(model.coordinates), model.link_ends[: model.springs]
     return Distances(
         np.concatenate((model.left, np.full_like(bodies, -1), springs[:, 0])),
         np.concatenate((model.right, bodies, springs[:, 1])),

@@ -71,6 +71,8 @@ def put_numbers(
                 rows["memory"][:, index, CONSTANTS.index(key)] = column
             else:
                 rows[key][:, index] = column
+    for key in ("u0", "v0"):
+        rows[key][:] = model.with_points(rows[key])
     _put_series(scene, values, rows)
     _put_dashpots(scene, model, values, rows)
 

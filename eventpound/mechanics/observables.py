@@ -2,7 +2,8 @@
 
 With F_l the force of a link (`eventpound.mechanics.elements`) and
 ``f_b = -Σ_l B_bl F_l`` what the links put on a body, the absolute
-acceleration of a cluster is ``Σ f_b / Σ m_b`` and its contact forces balance
+acceleration of a cluster is ``Σ f_b / Σ m_b``, or ``A Σ f_b + (1 - r) a_g`` where some follow
+others (`eventpound.mechanics.followers`), and its contact forces balance
 ``W λ = m (u'' + a_g) - f`` body by body. Each of these is known with its rate.
 """
 
@@ -15,9 +16,9 @@ import numpy as np
 from eventpound.mechanics.clusters import Clusters, is_support
 from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.elements import contact_code, link_force
+from eventpound.mechanics.followers import answers, place_points
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.points import add_points, hold_beside_ground
 from eventpound.mechanics.reduced import Forcing, Reduced, rate_on_ground
 from eventpound.mechanics.reduced_loads import placed
 from eventpound.motion.forcing import ground_taylor
@@ -28,11 +29,11 @@ from eventpound.tolerances import EPS
 
 
 class Bodies(NamedTuple):
-    """Arrays of a mode at the level of bodies (N), links (L), contacts (K), rests (R).
+    """Arrays of a mode at the level of coordinates (N), links (L), contacts (K), rests (R).
 
     z_of_link: below -1 the code of a closed contact element. laws (P,): contacts whose elements
-    are the last P links. points (D,), spread (D, N): contacts at points, and their columns of
-    W. projection: of the `Reduced`. sliders (J,): links of sliders, whose contacts are the last J.
+    are the last P links. weights (D, N): of the `Model`. compliance, carried: of the `Reduced`.
+    sliders (J,): links of sliders, whose contacts are the last J.
     """
 
     mass: Floats
@@ -56,9 +57,9 @@ class Bodies(NamedTuple):
     right: Ints
     gap: Floats
     laws: Ints
-    points: Ints
-    spread: Floats
-    projection: Floats
+    weights: Floats
+    compliance: Floats
+    carried: Floats
     sliders: Ints
 
 
@@ -125,9 +126,9 @@ def bodies_of(
         model.right,
         model.gap,
         model.laws,
-        model.points,
-        model.spread,
-        system.projection,
+        model.weights,
+        system.compliance,
+        system.carried,
         model.sliders,
     )
 
@@ -159,6 +160,8 @@ def bodies_motion(y: Floats, bodies: Bodies, u: Floats, v: Floats) -> None:
         if c >= 0:
             u[b] += y[bodies.iq[c]]
             v[b] = y[bodies.iv[c]]
+    place_points(bodies.weights, u)
+    place_points(bodies.weights, v)
 
 
 @kernel
@@ -249,6 +252,9 @@ def _link_forces(bodies: Bodies, out: Observed) -> None:
 @kernel
 def _accelerations(bodies: Bodies, out: Observed) -> None:
     """Absolute acceleration of every body and its rate: its cluster's."""
+    if bodies.compliance.size > 0:
+        _answer_coupled(bodies, out)
+        return
     # Those of the clusters stand in its first places: no number of a body's is beyond its own.
     total, pull = out.acceleration, out.pull
     total[:] = 0.0
@@ -260,13 +266,29 @@ def _accelerations(bodies: Bodies, out: Observed) -> None:
     for b in range(bodies.mass.size - 1, -1, -1):
         if is_support(b, bodies.mass) and bodies.of_body[b] >= 0:
             total[0, bodies.of_body[b]], total[1, bodies.of_body[b]] = pull[0, b], pull[1, b]
-    if bodies.projection.size > 0:
-        for row in range(2):
-            hold_beside_ground(bodies.projection, out.ground[row], total[row])
     for b in range(bodies.mass.size - 1, -1, -1):
         c = bodies.of_body[b]
         for row in range(2):
             out.acceleration[row, b] = total[row, c] if c >= 0 else out.ground[row]
+
+
+@kernel
+def _answer_coupled(bodies: Bodies, out: Observed) -> None:
+    """`_accelerations` where clusters follow others."""
+    force, found = np.empty(bodies.carried.size), np.empty(bodies.carried.size)
+    for row in range(2):
+        force[:] = 0.0
+        for b in range(bodies.mass.size):
+            if bodies.of_body[b] >= 0:
+                force[bodies.of_body[b]] += out.pull[row, b]
+        answers(bodies.compliance, force, found)
+        for b in range(bodies.mass.size):
+            c = bodies.of_body[b]
+            # What nothing else carries rests on the ground.
+            lifted = 1.0 if c < 0 else 1.0 - bodies.carried[c]
+            out.acceleration[row, b] = lifted * out.ground[row]
+            if c >= 0:
+                out.acceleration[row, b] += found[c]
 
 
 @kernel
@@ -323,10 +345,6 @@ def observe_gaps(bodies: Bodies, out: Observed) -> None:
         out.gap[0, j] = bodies.gap[j] + difference(out.u, bodies.left[j], bodies.right[j])
         out.gap[1, j] = difference(out.v, bodies.left[j], bodies.right[j])
         out.gap[2, j] = difference(out.a, bodies.left[j], bodies.right[j])
-    if bodies.points.size > 0:
-        add_points(bodies.points, bodies.spread, out.u, out.gap[0])
-        add_points(bodies.points, bodies.spread, out.v, out.gap[1])
-        add_points(bodies.points, bodies.spread, out.a, out.gap[2])
 
 
 @kernel

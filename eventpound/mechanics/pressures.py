@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.descriptor import contact_rows
+from eventpound.mechanics.followers import held_closed
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.points import held_closed
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.graph import on_directed_cycles
@@ -44,8 +44,8 @@ def press_locked(gap: Floats, force: Floats, unique: Bools, model: Model) -> Non
 
 def _locked(members: Ints, model: Model) -> Bools:
     """Which of these contacts at rest cannot open."""
-    if np.isin(members, model.points).any():
-        return held_closed(contact_rows(model)[members])
+    if model.weights.size > 0:
+        return in_python(held_closed)(contact_rows(model)[members])
     # All barriers are one node, which stands behind the bodies.
     tail, head = (side[members] % (model.bodies + 1) for side in (model.left, model.right))
     return in_python(on_directed_cycles)(tail, head, model.bodies + 1)

@@ -7,7 +7,8 @@ With the contacts at rest in a mode fixed, the state is
     q' = v,   m v' = -Σ_l B_l F_l - m a_g,   F and z' by `eventpound.mechanics.elements`
 
 of a cluster with a support q, v and v' are what they are said to be (`placed`),
-and bodies at rest on each other share a row, so their gaps cannot drift. The
+and bodies at rest on each other share a row, so their gaps cannot drift. Where clusters follow
+others, ``v' = -A Σ_l B_l F_l - r a_g`` (`eventpound.mechanics.followers`). The
 ledger, where asked for, adds the rates of input ``-Σ m v a_g``, viscous
 ``Σ c x'^2`` and hysteretic work ``Σ Q z x'``, and of the work of each support.
 """
@@ -27,9 +28,9 @@ from eventpound.mechanics.elements import (
     pull_per_z,
     z_rate,
 )
+from eventpound.mechanics.followers import answers
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
-from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced_loads import add_load_coefficients, placed, support_of
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_acceleration
@@ -64,8 +65,7 @@ class Reduced(NamedTuple):
     own. `z_of` (H,) is the place of each z of the model, -1 where it is frozen. `link` (A,) is
     the model's number of each link. `plain`: the links before contact elements, the last.
     `mass` is inf of clusters with supports, `own_mass` that of their other bodies.
-    `projection` (C, C): what resting contacts at points leave of accelerations
-    (`eventpound.mechanics.points`), empty where none rests.
+    `compliance` (C, C) and `carried` (C,): A and r of the `Clusters`, empty without points.
     """
 
     size: int
@@ -85,7 +85,8 @@ class Reduced(NamedTuple):
     z_of: Ints
     link: Ints
     plain: int
-    projection: Floats
+    compliance: Floats
+    carried: Floats
 
 
 class Branches(NamedTuple):
@@ -196,7 +197,8 @@ def _fields(
         z_of,
         active,
         plain,
-        np.zeros((0, 0)),
+        clusters.compliance,
+        clusters.carried,
     )
 
 
@@ -255,9 +257,13 @@ def state_vector(
         y.
     """
     y = np.zeros(system.size)
+    for b in range(mass.size - 1, -1, -1):
+        c = clusters.of_body[b]
+        if c >= 0 and system.mass[c] == 0.0:
+            y[system.iq[c]], y[system.iv[c]] = u[b] - clusters.offset[b], v[b]
     for b in range(mass.size):
         c = clusters.of_body[b]
-        if c >= 0 and not is_support(b, mass):
+        if c >= 0 and mass[b] > 0.0 and not is_support(b, mass):
             share = mass[b] / system.mass[c]
             y[system.iq[c]] += share * (u[b] - clusters.offset[b])
             y[system.iv[c]] += share * v[b]
@@ -276,7 +282,7 @@ def state_vector(
 
 def bandwidth(system: Reduced) -> int:
     """Half bandwidth of the Jacobian of y' (the ledger apart)."""
-    if system.projection.size > 0:
+    if system.compliance.size > 0:
         return system.size
     reach = 1
     for a in range(len(system.ends)):
@@ -360,15 +366,28 @@ def rate_on_ground(
     if forcing.family == LOADED:
         put_in = _add_loads(forcing.start + tau, y, rate, system, forcing)
     for c in range(system.mass.size):
-        given = is_support(c, system.mass)
-        rate[iv[c]] = (rate[iv[c]] if given else rate[iv[c]] / system.mass[c]) - ground
         put_in -= system.own_mass[c] * y[iv[c]] * ground
-    if system.projection.size > 0:
-        hold_at(system.projection, iv, rate)
+    if system.compliance.size > 0:
+        _answer_coupled(ground, system, rate)
+    else:
+        for c in range(system.mass.size):
+            given = is_support(c, system.mass)
+            rate[iv[c]] = (rate[iv[c]] if given else rate[iv[c]] / system.mass[c]) - ground
     if system.ledger >= 0:
         rate[system.ledger] = put_in
         rate[system.ledger + 1] = viscous
         rate[system.ledger + 2] = hysteretic
+
+
+@kernel
+def _answer_coupled(ground: float, system: Reduced, rate: Floats) -> None:
+    """Accelerations where clusters follow others, in the place of the forces in `rate`."""
+    force, found = np.empty(system.mass.size), np.empty(system.mass.size)
+    for c in range(force.size):
+        force[c] = rate[system.iv[c]]
+    answers(system.compliance, force, found)
+    for c in range(force.size):
+        rate[system.iv[c]] = found[c] - system.carried[c] * ground
 
 
 @kernel

@@ -15,8 +15,8 @@ from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents
 from eventpound.mechanics.elements import link_force, pull_per_z, z_coefficient
+from eventpound.mechanics.followers import answers
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
-from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
 from eventpound.mechanics.reduced_loads import add_load_coefficients, place_supports, support_of
 from eventpound.motion.forcing import ground_taylor
@@ -191,7 +191,7 @@ def motion_series(
     ground = np.zeros(order)
     ground_taylor(forcing, forcing.start + tau, order, ground)
     terms = _blank_terms(order, system)
-    force = np.empty(system.mass.size)
+    force, coupled = np.empty(system.mass.size), np.empty(system.compliance.shape[0])
     loads = np.zeros((2, order if forcing.family == LOADED else 0, system.mass.size))
     pushed, driven, taken = loads[0], loads[1], np.zeros(loads[0].shape)
     if forcing.family == LOADED and system.mass.size > 0:
@@ -204,12 +204,14 @@ def motion_series(
             for c in range(force.size):
                 taken[k, c] = system.own_mass[c] * driven[k, c] - force[c] - pushed[k, c]
                 force[c] += pushed[k, c]
+        answers(system.compliance, force, coupled)
         for c in range(system.mass.size):
             Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
+            if coupled.size > 0:
+                Y[k + 1, iv[c]] = (coupled[c] - system.carried[c] * ground[k]) / (k + 1)
+                continue
             free = driven[k, c] if is_support(c, system.mass) else force[c] / system.mass[c]
             Y[k + 1, iv[c]] = (free - ground[k]) / (k + 1)
-        if system.projection.size > 0:
-            hold_at(system.projection, iv, Y[k + 1])
         if system.ledger >= 0:
             out = Y[k + 1, system.ledger : system.ledger + 3]
             _add_ledger(k, system, Y, ground, terms.x_rate, out)

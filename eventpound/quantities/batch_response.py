@@ -179,13 +179,22 @@ def keep_rows(many: BatchResponse, low: int, rows: VariantArrays, kept: Kept) ->
         if ended in MESSAGES:
             mark_failed(many, i, ComputationError(MESSAGES[ended], float(many.t[i])))
     many.success[at] = True
-    many.u[at], many.v[at], many.z[at] = rows.state.u[own], rows.state.v[own], kept.z[own]
+    # Points between bodies are nobody's to ask for.
+    coordinates, bodies = rows.state.u.shape[1], slice(many.u.shape[1])
+    u, v = rows.state.u[own], rows.state.v[own]
+    many.u[at], many.v[at], many.z[at] = u[:, bodies], v[:, bodies], kept.z[own]
     many.impacts[at], many.resting_time[at] = kept.impacts[own], kept.resting_time[own]
     table, elongations = rows.extremes, many.elongation.maximum.shape[1]
-    places = in_python(places_of)(many.u.shape[1], elongations, many.impacts.shape[1])
+    places = in_python(places_of)(coordinates, elongations, many.impacts.shape[1])
     gap = extremes_of("gap", table[own], places)
     many.smallest_gap[at], many.largest_gap[at] = gap.minimum, gap.maximum
-    _keep_extremes(many, at, lambda kind: extremes_of(kind, table[own], places))
+
+    def found(kind: str) -> Extremes:
+        extremes = extremes_of(kind, table[own], places)
+        of_bodies = kind in ("displacement", "acceleration")
+        return extremes.at(np.s_[:, bodies]) if of_bodies else extremes
+
+    _keep_extremes(many, at, found)
     if many.struck is not None:
         largest = np.maximum(extremes_of("contact_force", table, places).maximum, 0.0)
         threshold = many.stated.threshold_speed

@@ -249,14 +249,18 @@ def arrays_of(scene: Scene, start: float = 0.0) -> dict[str, object]:
     C, B = b_links * model.law.damping @ b_links.T, b_links[:, : model.springs]
     W = model.rates(np.eye(model.bodies))
     return {
-        "M": model.mass[count:],
+        "M": model.mass[count : model.bodies],
         "C": C[count:, count:],
         "B": B[count:],
         "W": W[count:],
         **({"C_s": C[count:, :count], "B_s": B[:count], "W_s": W[:count]} if count else {}),
         "gaps": model.gap,
         "restitutions": model.restitution,
-        "initial": {"u": model.u0[count:], "v": model.v0[count:], "z": model.z0},
+        "initial": {
+            "u": model.u0[count : model.bodies],
+            "v": model.v0[count : model.bodies],
+            "z": model.z0,
+        },
     }
 
 

@@ -79,11 +79,6 @@ class Contact:
         return isinstance(self.left, Point) or isinstance(self.right, Point)
 
     @property
-    def plain(self) -> bool:
-        """Whether it is under Newton's law, and no end of it is a point between bodies."""
-        return self.law is None and not self.at_point
-
-    @property
     def ends(self) -> tuple[str, ...]:
         """Names of all that it is between, those of the left end first."""
         return tuple(name for end in (self.left, self.right) for name, _ in weights_of(end))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -322,6 +322,18 @@ class Recording:
     largest_gap: Floats | None = None
     sticks: tuple[Stick, ...] = ()
     unique_z: np.ndarray | None = None
+
+    def of_bodies(self, own: slice) -> Recording:
+        """The same of some of its bodies."""
+        h = self.history
+        return replace(
+            self,
+            u=self.u[own],
+            v=self.v[own],
+            history=replace(h, u=h.u[:, own], v=h.v[:, own], a=h.a[:, own]),
+            displacement=self.displacement.at(own),
+            acceleration=self.acceleration.at(own),
+        )
 
 
 class ReadyTask(Protocol):

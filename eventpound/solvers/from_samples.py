@@ -132,7 +132,7 @@ def _history(task: Task, model: Model, rows: tuple[Floats, Floats, Floats, Float
         u,
         v,
         # The forces of contacts are not known; while one rests they are missing here.
-        model.pulled(total) / model.mass,
+        model.pulled(total) / model.mass[: model.bodies],
         z,
         springs[:, : model.springs],
         model.gaps(u),

@@ -37,6 +37,7 @@ class Ida:
     settings: Mapping[str, str] = {"events": finders(SUNDIALS)}
     counts_steps = True
     takes_supports = True
+    takes_points = True
     memories = frozenset(LawName)
     lists_springs = True
     finest_rtol = FINEST_RTOL / LOCAL_SHARE

@@ -61,19 +61,13 @@ def with_supports(task: Task, solve: Callable[[Task], Recording]) -> Recording:
 
 def own_part(recording: Recording, scene: Scene) -> Recording:
     """A recording without the bodies that stand for supports in the lowered `scene`."""
-    own = len(moving_supports(scene))
-    h = recording.history
-    history = replace(h, u=h.u[:, own:], v=h.v[:, own:], a=h.a[:, own:])
+    recording = recording.of_bodies(np.s_[len(moving_supports(scene)) :])
+    history = recording.history
     motions = [support_motion(s, scene.motion, history.t) for s in scene.supports]
     shape = history.t.size, len(motions)
     s, sv = (np.reshape([m[i] for m in motions], shape[::-1]).T.copy() for i in range(2))
     return replace(
         recording,
-        u=recording.u[own:],
-        v=recording.v[own:],
-        history=history,
-        displacement=recording.displacement.at(np.s_[own:]),
-        acceleration=recording.acceleration.at(np.s_[own:]),
         supports=SupportHistory(s, sv, forces_on_supports(scene, history, sv)) if motions else None,
         energy=_of_all_supports(recording.energy, scene),
     )

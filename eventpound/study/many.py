@@ -41,9 +41,8 @@ def simulate_many(
     """Compute how variants of one scene move.
 
     Every variant is computed exactly as ``simulate(variant, solver="fast")``
-    would, to the last bit, whatever the number of workers. Contacts with laws of their own or at
-    points between bodies are not for that: ``"cvode"`` then, one by one. So are scenes with
-    sliders, by ``"fast"``.
+    would, to the last bit, whatever the number of workers. Contacts with laws of their own are not
+    for that: ``"cvode"`` then, one by one. So are scenes with sliders, by ``"fast"``.
 
     Parameters
     ----------

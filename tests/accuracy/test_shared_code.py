@@ -126,7 +126,7 @@ def test_what_some_scenes_need_is_listed_where_they_do():
     pointed = replace(contact, **{side: Point({body: 1.0})})
     alone = {*SHARED_BY_METHODS}
     for scene, more in (
-        (replace(plain, contacts=(pointed,)), alone | {*SHARED_AT_POINTS}),
+        (replace(plain, contacts=(pointed,)), {*SHARED_AT_POINTS}),
         (
             replace(plain, contacts=(replace(contact, law=ContactLaw("linear", 1e6)),)),
             alone | {*SHARED_WITH_LAWS},

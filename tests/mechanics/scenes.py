@@ -107,7 +107,8 @@ def random_instant(
 def clusters_of(model: Model, resting: list[int]) -> Clusters:
     """The clusters of a model with the given contacts at rest, all of them pressed."""
     rests = np.isin(np.arange(model.contacts), resting)
-    return form_clusters(model.left, model.right, model.gap, rests, rests, model.mass)
+    ends = model.left, model.right, model.gap
+    return form_clusters(*ends, rests, rests, model.mass, model.weights)
 
 
 def reduced(

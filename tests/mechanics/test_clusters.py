@@ -7,14 +7,15 @@ import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from eventpound.mechanics.clusters import Clusters, form_clusters, unique_forces
-from tests.numerics.problems import Contacts, graph
+from eventpound.mechanics.clusters import Clusters, form_clusters
+from tests.numerics.problems import NO_POINTS, Contacts, graph
 
 
 def _form(pairs: list[tuple[int, int]], gap: list[float], bodies: int) -> Clusters:
     left, right = np.array(pairs, np.int64).reshape(-1, 2).T
     every = np.ones(len(pairs), bool)
-    return form_clusters(left.copy(), right.copy(), np.array(gap), every, every, np.ones(bodies))
+    rests = left.copy(), right.copy(), np.array(gap), every, every
+    return form_clusters(*rests, np.ones(bodies), NO_POINTS)
 
 
 def _incidence(pairs: list[tuple[int, int]], bodies: int) -> np.ndarray:
@@ -100,7 +101,8 @@ def test_parallel_contacts_are_not_locked() -> None:
 def test_the_pressed_contact_carries_the_force() -> None:
     left, right = np.array([0, 0]), np.array([1, 1])
     pressed, one = np.array([False, True]), np.ones(2)
-    clusters = form_clusters(left, right, np.array([0.2, 0.2]), np.ones(2, bool), pressed, one)
+    rests = left, right, np.array([0.2, 0.2]), np.ones(2, bool), pressed
+    clusters = form_clusters(*rests, one, NO_POINTS)
     np.testing.assert_array_equal(clusters.redundant, [True, False])
 
 
@@ -124,12 +126,12 @@ def test_supports_are_one_node_and_no_cluster_has_two() -> None:
     left, right = np.array([0, 2, 3, 0, 4]), np.array([2, 3, -1, 4, 1])
     every, mass = np.ones(5, bool), np.array([np.inf, np.inf, 1.0, 1.0, 1.0])
     pressed = np.array([True, True, False, False, True])
-    clusters = form_clusters(left, right, np.zeros(5), every, pressed, mass)
+    clusters = form_clusters(left, right, np.zeros(5), every, pressed, mass, NO_POINTS)
     np.testing.assert_array_equal(clusters.of_body, [0, 1, 0, 0, 1])
     np.testing.assert_array_equal(clusters.redundant, [False, False, True, True, False])
     # From the barrier to the first support nothing leads, from the first to the second one row.
     np.testing.assert_array_equal(clusters.locked, every)
-    assert not unique_forces(clusters, left, right).any()
+    assert not clusters.unique.any()
 
 
 def test_nobody_rests() -> None:
@@ -164,7 +166,7 @@ def test_random_contact_graphs() -> None:
         # Gaps that all close at one position u of the bodies, on a grid that sums exactly.
         place = np.append(rng.integers(-64, 64, bodies) / 64.0, 0.0)
         gap = place[left] - place[right]
-        clusters = form_clusters(left, right, gap, resting, pressed, contacts.mass)
+        clusters = form_clusters(left, right, gap, resting, pressed, contacts.mass, NO_POINTS)
         W, members = contacts.W[:, resting], np.flatnonzero(resting)
         np.testing.assert_array_equal(clusters.resting, members)
 
@@ -193,9 +195,7 @@ def test_random_contact_graphs() -> None:
         inside = strong[left[members]] == strong[right[members]]
         np.testing.assert_array_equal(clusters.locked, inside)
         in_tree = [(weak[left] == label)[members].sum() < (weak == label).sum() for label in weak]
-        np.testing.assert_array_equal(
-            unique_forces(clusters, left, right), np.array(in_tree)[left[members]]
-        )
+        np.testing.assert_array_equal(clusters.unique, np.array(in_tree)[left[members]])
         seen_locked += inside.any()
         seen_redundant += clusters.redundant.any()
     assert seen_locked > 30

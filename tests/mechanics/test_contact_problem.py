@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import nnls
 
 from eventpound.mechanics.contact_problem import LONG_ROW, solve_contacts
-from tests.numerics.problems import Contacts, graph, rounding, row, violation
+from tests.numerics.problems import Contacts, graph, joints, rounding, row, violation
 
 
 def _together(parts: list[Contacts], rng: np.random.Generator) -> Contacts:
@@ -29,7 +29,7 @@ def _together(parts: list[Contacts], rng: np.random.Generator) -> Contacts:
 
 def _check(contacts: Contacts, p: np.ndarray) -> None:
     G, q = contacts.G, contacts.factor.T @ p
-    x, w, solved = solve_contacts(contacts.left, contacts.right, 1.0 / contacts.mass, q, 0.0)
+    x, w, solved = solve_contacts(contacts.joints, q, 0.0)
     assert solved
     assert violation(G, q, x) <= 1.0
     assert (w >= 0.0).all()
@@ -78,13 +78,13 @@ def test_short_row_against_nnls() -> None:
     contacts = row(np.random.default_rng(85), 8, 0.3, "left")
     A = contacts.factor
     p = np.random.default_rng(86).normal(size=8)
-    x, _, _ = solve_contacts(contacts.left, contacts.right, 1.0 / contacts.mass, A.T @ p, 0.0)
+    x, _, _ = solve_contacts(contacts.joints, A.T @ p, 0.0)
     # A row with one barrier has independent contacts: x is unique.
     np.testing.assert_allclose(x, nnls(A, -p)[0], rtol=1e-11, atol=1e-12)
 
 
 def test_no_contacts() -> None:
     none = np.empty(0, np.int64)
-    x, w, solved = solve_contacts(none, none, np.ones(3), np.empty(0), 0.0)
+    x, w, solved = solve_contacts(joints(none, none, np.ones(3)), np.empty(0), 0.0)
     assert solved
     assert x.size == w.size == 0

@@ -9,7 +9,7 @@ import pytest
 
 from eventpound.mechanics.impact import impact_law, inverse_mass, newton, push_apart
 from eventpound.numerics.compiled import by_python
-from tests.numerics.problems import Contacts, graph, row
+from tests.numerics.problems import Contacts, graph, joints, row
 
 EPS = np.finfo(float).eps
 
@@ -42,7 +42,7 @@ def impact(
     rate = np.asarray(contacts.W.T @ v)
     v_after, after = v.copy(), rate.copy()
     impulse, involved, lost, solved = impact_law(
-        contacts.mass, contacts.left, contacts.right, restitution, closed, after, v_after
+        contacts.joints, contacts.mass, restitution, closed, after, v_after
     )
     assert solved
     return Impact(contacts, restitution, closed, rate, v, after, v_after, impulse, involved, lost)
@@ -54,7 +54,9 @@ def test_a_support_is_moved_by_nothing() -> None:
     v, restitution = np.array([0.5, 2.0, -1.0]), np.array([0.6, 0.2])
     rate = np.array([v[0] - v[1], v[2] - v[0]])
     expected = -(1.0 + restitution) * rate * mass[1:]
-    impulse, _, _, solved = impact_law(mass, left, right, restitution, rate <= 0.0, rate, v)
+    impulse, _, _, solved = impact_law(
+        joints(left, right, mass), mass, restitution, rate <= 0.0, rate, v
+    )
     assert solved
     np.testing.assert_allclose(impulse, expected, rtol=4.0 * EPS)
     np.testing.assert_allclose(v, [0.5, 0.5 - 0.6 * 1.5, 0.5 + 0.2 * 1.5], atol=8.0 * EPS)
@@ -237,7 +239,9 @@ def test_a_single_contact_needs_no_problem() -> None:
             continue
         restitution, closed = rng.uniform(size=5), np.arange(5) == j
         u, g = v.copy(), rate.copy()
-        impulse, _, lost, solved = impact_law(mass, left, right, restitution, closed, g, u)
+        impulse, _, lost, solved = impact_law(
+            joints(left, right, mass), mass, restitution, closed, g, u
+        )
         assert solved
         inverse = inverse_mass(left[j], right[j], mass)
         after, *one = newton(rate[j], restitution[j], inverse)
@@ -257,7 +261,12 @@ def test_no_play_leaves_no_speed_of_rounding() -> None:
         mass, v = 10.0 ** rng.uniform(-3.0, 3.0, 1), rng.normal(size=1)
         rate = np.array([v[0], -v[0]])
         _, _, lost, solved = impact_law(
-            mass, left, right, np.array([0.0, 0.0]), np.array([True, True]), rate, v.copy()
+            joints(left, right, mass),
+            mass,
+            np.array([0.0, 0.0]),
+            np.array([True, True]),
+            rate,
+            v.copy(),
         )
         assert solved
         np.testing.assert_array_equal(rate, 0.0)

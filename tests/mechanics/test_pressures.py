@@ -9,8 +9,8 @@ import pytest
 from scipy.optimize import linprog
 
 from eventpound.mechanics.descriptor import contact_rows
+from eventpound.mechanics.followers import held_closed
 from eventpound.mechanics.model import assemble
-from eventpound.mechanics.points import held_closed
 from eventpound.mechanics.pressures import press_locked, smallest_pressures
 from eventpound.scene import BARRIER, Body, Contact, Point, Scene
 from tests.numerics.problems import graph

@@ -6,12 +6,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eventpound.mechanics.contact_problem import Joints
 from eventpound.numerics.arrays import Floats, Ints
 
 EPS = float(np.finfo(np.float64).eps)
 ROUNDING = 1024.0 * EPS
 """The solvers stop where no entry of w lies below 512 roundings of the terms it is
 summed from; as much again is left for the sums of the test."""
+
+
+NO_POINTS = np.zeros((0, 0))
+"""Weights, and compliance, of a scene without points."""
+
+
+def joints(left: Ints, right: Ints, mass: Floats) -> Joints:
+    """Contacts between masses that do not follow each other."""
+    return Joints(left, right, 1.0 / mass, NO_POINTS)
 
 
 @dataclass(frozen=True)
@@ -21,6 +31,11 @@ class Contacts:
     left: Ints
     right: Ints
     mass: Floats
+
+    @property
+    def joints(self) -> Joints:
+        """The same, for the contact problem."""
+        return joints(self.left, self.right, self.mass)
 
     @property
     def W(self) -> Floats:

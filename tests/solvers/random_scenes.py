@@ -25,6 +25,7 @@ from eventpound.scene import (
     Dashpot,
     Force,
     Linear,
+    Point,
     Scene,
     Series,
     Spring,
@@ -150,6 +151,37 @@ def _contacts(
             Contact(f"c{i}", a, b, u[a] - u[b] + opening, float(rng.choice(RESTITUTION)))
         )
     return tuple(contacts)
+
+
+def pointed_scene(seed: int) -> tuple[Scene, float]:
+    """A scene of `random_scene` with one to three contacts at points, and its end (s).
+
+    Points are on two bodies, or on one and the ground; half of the contacts of the row stay.
+    """
+    number = 7919 * (seed + 1)
+    while len(random_scene(number)[0].bodies) < 3:
+        number += 1
+    scene, end = random_scene(number)
+    rng = np.random.default_rng([seed, 58])
+    u = {body.name: body.displacement for body in scene.bodies} | {GROUND: 0.0}
+    size = (
+        max((abs(c.gap) for c in scene.contacts), default=0.0) or max(map(abs, u.values())) or 0.1
+    )
+    contacts = [c for c in scene.contacts if rng.random() < 0.5]
+    for i in range(int(rng.integers(1, 4))):
+        striking, *on = rng.permutation([body.name for body in scene.bodies])[:3].tolist()
+        if rng.random() < 0.3:
+            on[0] = GROUND
+        weight = float(rng.uniform(0.1, 0.9))
+        point = Point({on[0]: weight, on[1]: 1.0 - weight})
+        apart = weight * u[on[0]] + (1.0 - weight) * u[on[1]] - u[striking]
+        opening = 0.0 if rng.random() < 0.2 else size * float(rng.uniform(0.0, 1.0))
+        ends, sign = ((striking, point), 1.0) if rng.random() < 0.5 else ((point, striking), -1.0)
+        gap = opening - sign * apart + 1e-15
+        contacts.append(Contact(f"p{i}", *ends, gap, _plastic(rng)))
+    scene = replace(scene, contacts=tuple(contacts))
+    check_scene(scene)
+    return scene, end
 
 
 def driven_scene(seed: int) -> tuple[Scene, float]:

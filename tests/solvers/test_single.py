@@ -26,6 +26,7 @@ from eventpound.solvers.fast.sdof.body import SdofRun, load_body
 from eventpound.solvers.fast.sdof.exact import fill_table
 from eventpound.solvers.fast.sdof.oscillator import settle_sdof, stays_closed
 from eventpound.tolerances import LAST_SPEED
+from tests.numerics.problems import joints
 from tests.solvers.test_modes import TABLE
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -125,7 +126,12 @@ def test_impact_is_that_of_the_law(side: float, eps: float) -> None:
     rate, v = np.where(np.arange(2) == j, -0.7, 0.7), np.array([side * 0.7])
     ends = np.array([0, -1]), np.array([-1, 0])
     impulse, _, lost, solved = impact_law(
-        np.array([MASS]), *ends, np.full(2, eps), np.arange(2) == j, rate, v
+        joints(*ends, np.array([MASS])),
+        np.array([MASS]),
+        np.full(2, eps),
+        np.arange(2) == j,
+        rate,
+        v,
     )
     event = run.events[0]
     assert solved

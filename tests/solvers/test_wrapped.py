@@ -104,7 +104,8 @@ def _resting_chain() -> Descriptor:
     contacts = (Contact("ab", "a", "b", 0.1, 0.5), Contact("bc", "b", "c", 0.2, 0.5))
     model = assemble(Scene(bodies, (Spring("k", (GROUND, "c"), Linear(2.0)),), (), contacts))
     every = np.ones(2, bool)
-    clusters = form_clusters_of_few(model.left, model.right, model.gap, every, every, model.mass)
+    ends = model.left, model.right, model.gap
+    clusters = form_clusters_of_few(*ends, every, every, model.mass, model.weights)
     return descriptor_form(model, clusters, np.zeros(1, np.int64), ledger=0)
 
 

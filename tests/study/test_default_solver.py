@@ -61,7 +61,7 @@ def written(folder: Path, text: str) -> Path:
 
 @pytest.mark.parametrize(
     ("text", "many"),
-    [(CASE, "fast"), (SOIL, "fast"), (AT_POINT, "cvode"), (WITH_LAW, "cvode"), (SLIDER, "fast")],
+    [(CASE, "fast"), (SOIL, "fast"), (AT_POINT, "fast"), (WITH_LAW, "cvode"), (SLIDER, "fast")],
 )
 def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
     tmp_path: Path, text: str, many: str
@@ -79,7 +79,7 @@ def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
 
 @pytest.mark.parametrize(
     ("text", "solver"),
-    [(AT_POINT, "cvode"), (WITH_LAW, "cvode"), (SLIDER, "fast")],
+    [(AT_POINT, "fast"), (WITH_LAW, "cvode"), (SLIDER, "fast")],
     ids=["at a point", "with a law", "with a slider"],
 )
 def test_what_no_compiled_call_takes_at_once_runs_where_no_solver_is_named(
@@ -105,20 +105,23 @@ def with_gap(case: Case, gap: float) -> Case:
     return replace(case, scene=replace(case.scene, contacts=contacts))
 
 
-@pytest.mark.parametrize("solver", ["fast", "ida"])
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "solver", "said"),
     [
-        (AT_POINT, r"does not take contacts at a point.*accepted: cvode$"),
-        (
-            WITH_LAW,
-            r"does not know the laws of contacts 'joint' \(hertz\); accepted: cvode, penalty",
+        (AT_POINT, "moreau", r"does not take contacts at a point.*accepted: cvode, ida, fast$"),
+        *(
+            (
+                WITH_LAW,
+                solver,
+                r"does not know the laws of contacts 'joint' \(hertz\); accepted: cvode, penalty",
+            )
+            for solver in ("fast", "ida")
         ),
     ],
-    ids=["at a point", "with a law"],
+    ids=["at a point", "with a law, fast", "with a law, ida"],
 )
 def test_a_named_solver_that_does_not_take_the_scene_is_refused_before_anything_runs(
-    tmp_path: Path, text: str, said: str, solver: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, text: str, solver: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     case = load_case(written(tmp_path, text))
     with pytest.raises(InputError, match=f"{solver} {said}"):

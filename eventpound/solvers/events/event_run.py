@@ -8,16 +8,14 @@ from eventpound.contact.cascade import last_speed
 from eventpound.contact.event_rows import EVENT_WIDTH, events_of
 from eventpound.contact.state import Instant, Now, begin
 from eventpound.errors import ComputationError
-from eventpound.mechanics.clusters import unique_forces
+from eventpound.mechanics.clusters import form_clusters_of_few
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
-from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.elements import branch_within
 from eventpound.mechanics.link_law import KIND, SLIDER
 from eventpound.mechanics.model import Model, assemble, with_elements, with_sliders
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.observables import Observed, blank_observed, initial_gaps
-from eventpound.mechanics.points import unique_forces_of
 from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
@@ -70,13 +68,14 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
     z = np.where(slips, np.sign(model.elongations(model.v0)[model.hysteretic]), model.z0)
     elastic, total = model.link_forces(model.u0, model.v0, z)
     force = contact_forces(model.elements, gap, rate, np.zeros(gap.size))
+    own_mass = model.mass[: model.bodies]
     elastic[model.plain :] = total[model.plain :] = -force[model.laws]
     return np.concatenate(
         (
             (task.start, ground_acceleration(_first_piece(task), task.start)),
             model.u0,
             model.v0,
-            model.pulled(total) / model.mass + _loads(task, model),
+            model.with_points(model.pulled(total) / own_mass + _loads(task, model)),
             z,
             elastic[: model.springs],
             gap,
@@ -90,7 +89,7 @@ def _loads(task: Task, model: Model) -> Floats:
     force, driven = np.zeros((2, model.bodies))
     if model.loads:
         add_body_loads(_first_piece(task), task.start, force, driven)
-    return np.asarray(force / model.mass + driven)
+    return np.asarray(force / model.mass[: model.bodies] + driven)
 
 
 def _first_piece(task: Task) -> Forcing:
@@ -156,18 +155,14 @@ class EventRun:
 
     def enter_mode(self) -> None:
         """Bring `mode` up to date with who rests and on which branches links are."""
-        state, model = self.state, self.model
+        state = self.state
         opening = self.arrays.instant.opening
         mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed, opening)
         state.now["stale"][0] = False
         self.table.place_ends(mode, state.u, state.z)
         self.take_closing_speeds(mode)
         if not mode.clusters.tree:
-            if model.points.size > 0:
-                unique = unique_forces_of(contact_rows(model)[mode.clusters.resting])
-            else:
-                unique = unique_forces(mode.clusters, model.left, model.right)
-            self.unique_forces[mode.clusters.resting] &= unique
+            self.unique_forces[mode.clusters.resting] &= mode.clusters.unique
 
     def check_held(self) -> None:
         """See that what the forces of others are to keep closed is closed.
@@ -388,8 +383,12 @@ def _instant_of(
     # None has closed.
     unclosed = model.elements.kind[model.laws] == Element.HERTZ_DAMP
     law.damping[model.plain :][unclosed] = 0.0
+    none = np.zeros(model.contacts, np.bool_)
+    none_rests = model.left, model.right, model.gap, none, none
     return Instant(
         mass=model.mass,
+        weights=model.weights,
+        compliance=form_clusters_of_few(*none_rests, model.mass, model.weights).compliance,
         ends=model.link_ends,
         law=law,
         compression=model.elastic.compression,
@@ -421,7 +420,7 @@ def _instant_of(
 def _run_of(rules: Rules, state: State, record: RunRecord, model: Model) -> Run:
     """All of it with its scratch, with an address."""
     K, L = model.contacts, model.links
-    size = 2 * model.bodies + model.hysteretic.size + model.ledger_entries
+    size = 2 * model.coordinates + model.hysteretic.size + model.ledger_entries
     located = Located(*(np.zeros(n, np.bool_) for n in (K, K, K, L)))
     marks = Marks(*(np.zeros(n, np.bool_) for n in (K, K, L, record.extremes.shape[1])))
     y, rate, atol = np.zeros((3, size))

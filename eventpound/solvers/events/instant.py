@@ -48,10 +48,9 @@ SETTLE, SEARCH, SET_STATE, READY, LAST = range(5)
 """What `proceed` is asked for: all that an instant demands; to search a step of an
 integrator; to make the state vector of the run the present state; to make the present instant
 ready for a step; to put it, the last of a piece, into the history."""
-(OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, IN_PYTHON) = range(20, 25)
+OVER, NEW_MODE, PAUSED, FIRST_BRANCHES = range(20, 24)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
-steps are used up; links have no branch yet; what is to be done is that of
-`eventpound.contact.points`."""
+steps are used up; links have no branch yet."""
 NOT_FINITE, UNENDING = 30, 32
 """How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
 
@@ -172,8 +171,6 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     while ended == DONE:
         if not _has_room(run):
             return FULL
-        if mode.bodies.points.size > 0 and progress.phase <= RESTS:
-            return IN_PYTHON
         if progress.phase == IMPACTS:
             if sliders.size > 0:
                 # The last observation is at the event.

@@ -7,21 +7,18 @@ import numpy as np
 from eventpound.contact.cascade import endless_message, long_message
 from eventpound.contact.impacts import DONE, ENDLESS, FULL, MEANING, NO_FORCES
 from eventpound.contact.instant import no_forces_message
-from eventpound.contact.kinks import choose_branches, choose_clear_branches, lacks_branch
-from eventpound.contact.points import decide_at_points, settle_at_points
+from eventpound.contact.kinks import choose_branches, choose_clear_branches
 from eventpound.contact.rest import ORDER
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import CurrentPiece, ground_onset
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import by_python, in_python
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.event_run import EventRun
 from eventpound.solvers.events.instant import (
     FIRST_BRANCHES,
-    HISTORY,
     IMPACTS,
-    IN_PYTHON,
     LAST,
     NEW_MODE,
     NOT_FINITE,
@@ -35,9 +32,7 @@ from eventpound.solvers.events.instant import (
     UNENDING,
     proceed,
 )
-from eventpound.solvers.events.law_contacts import switch_elements
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.present import forcing_now
 from eventpound.solvers.events.step_search import BROKEN, EVENT
 
 NOWHERE = Dense(np.zeros((1, 1)), 0.0, 0.0, 0.0, NO_FRAME, False, NO_GAPS)
@@ -73,37 +68,12 @@ def settle_instant(run: EventRun, piece: CurrentPiece) -> None:
             most = run.steps + run.steps_left(STEPS_AT_ONCE)
         elif ended == NEW_MODE:
             run.enter_mode()
-        elif ended == IN_PYTHON:
-            ended = _settle_in_python(run, piece)
-        if ended == FULL:
+        elif ended == FULL:
             run.make_room()
         elif ended == FIRST_BRANCHES:
             _choose_branches(run, piece)
-        elif ended not in (OVER, DONE, PAUSED, NEW_MODE):
+        elif ended != OVER:
             raise _failure(ended, run)
-
-
-def _settle_in_python(run: EventRun, piece: CurrentPiece) -> int:
-    """What the present instant demands beside contacts at points; ends as `proceed`.
-
-    This is what `eventpound.solvers.events.instant` does in its first two phases, by other rules.
-    No scene has sliders beside them.
-    """
-    arrays, model = run.arrays, run.model
-    at, progress = arrays.instant, arrays.state.progress[0]
-    with by_python():
-        if progress.phase == IMPACTS:
-            ended = settle_at_points(at, model)
-            if ended != DONE:
-                return ended
-            progress.phase = RESTS
-        if in_python(lacks_branch)(at):
-            return FIRST_BRANCHES
-        in_python(switch_elements)(arrays.laws, at)
-        ended = decide_at_points(arrays.state.z, forcing_now(piece, run.t), at, model)
-        if ended == DONE:
-            progress.phase = HISTORY
-        return ended
 
 
 def _failure(ended: int, run: EventRun) -> ComputationError:

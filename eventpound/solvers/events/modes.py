@@ -18,7 +18,6 @@ from eventpound.mechanics.link_law import STRENGTH, YIELDING
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_in
 from eventpound.mechanics.observables import Bodies, bodies_of
-from eventpound.mechanics.points import with_points
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.by_address import with_address
@@ -125,14 +124,8 @@ class ModeTable:
         memory = in_python(memory_on_branches)(model.law.memory, branch)
         if memory is not model.law.memory:
             model = replace(model, law=model.law._replace(memory=memory))
-        at_points = np.zeros(model.contacts, np.bool_)
-        at_points[model.points] = True
-        ordinary, projection = resting & ~at_points, None
-        clusters = form_clusters_of_few(
-            model.left, model.right, model.gap, ordinary, pressed, model.mass
-        )
-        if (resting & at_points).any():
-            clusters, projection = with_points(model, clusters, resting & at_points, pressed)
+        rests = model.left, model.right, model.gap, resting
+        clusters = form_clusters_of_few(*rests, pressed, model.mass, model.weights)
         branches = Branches(*model.elastic.on_side(branch))
         system = in_python(reduce)(
             model.link_ends,
@@ -143,13 +136,10 @@ class ModeTable:
             branches,
             model.ledger_entries if self.ledger else 0,
         )
-        if projection is not None:
-            system = system._replace(projection=projection)
         frozen = np.zeros(model.hysteretic.size)
         bodies = with_address(bodies_of(model, clusters, system, *branches, frozen))
         system = with_address(system)
         if model.sliders.size > 0 and not clusters.tree:
-            rests = model.left, model.right, model.gap, ordinary
             locked = in_python(locked_beside_sliders)
             clusters = clusters._replace(
                 locked=locked(*rests, model.sliders.size, model.mass, clusters)

@@ -18,14 +18,13 @@ from eventpound.mechanics.observables import (
     difference,
     observe_motion,
 )
-from eventpound.mechanics.points import add_points
 from eventpound.mechanics.reduced import Forcing, Reduced, state_vector
 from eventpound.mechanics.reduced_loads import placed
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.by_address import by_address
-from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.recorder import WRITTEN, write_row
 from eventpound.solvers.events.run import Dynamics, Rules, Run, RunRecord, State
 
@@ -76,19 +75,6 @@ def set_state(y: Floats, t: float, mode: Dynamics, forcing: Forcing, state: Stat
         gap = bodies.gap[j] + difference(state.u, left, right)
         state.gap[j] = 0.0 if resting else gap
         state.gap_rate[j] = 0.0 if resting else difference(state.v, left, right)
-    if bodies.points.size > 0:
-        set_points(bodies, state)
-
-
-@deferred_kernel
-def set_points(bodies: Bodies, state: State) -> None:
-    """The gaps of contacts at points, of which `set_state` has those without displacements."""
-    add_points(bodies.points, bodies.spread, state.u, state.gap)
-    add_points(bodies.points, bodies.spread, state.v, state.gap_rate)
-    for p in range(bodies.points.size):
-        j = bodies.points[p]
-        if state.resting[j]:
-            state.gap[j], state.gap_rate[j] = 0.0, 0.0
 
 
 @scalar_kernel

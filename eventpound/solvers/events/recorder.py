@@ -84,7 +84,7 @@ class RowColumns(NamedTuple):
 
 @scalar_kernel
 def line_of(bodies: int, hysteretic: int, springs: int, contacts: int) -> RowColumns:
-    """Columns of the lines of a scene with N bodies, H of S springs hysteretic, and K contacts."""
+    """Columns of the lines of a scene: N coordinates, H of S springs hysteretic, K contacts."""
     v = 2 + bodies
     a = v + bodies
     z = a + bodies
@@ -95,7 +95,9 @@ def line_of(bodies: int, hysteretic: int, springs: int, contacts: int) -> RowCol
 
 
 def _line_in(model: Model) -> RowColumns:
-    return in_python(line_of)(model.bodies, model.hysteretic.size, model.springs, model.contacts)
+    return in_python(line_of)(
+        model.coordinates, model.hysteretic.size, model.springs, model.contacts
+    )
 
 
 @scalar_kernel
@@ -216,10 +218,12 @@ def kept(table: Floats, events: Sequence[Event], end: float, model: Model) -> di
 
 
 def own_recording(recording: Recording, model: Model) -> Recording:
-    """A recording without the contacts that stand for sliders, and with every z at its end.
+    """A recording of bodies alone, and of contacts without those that stand for sliders.
 
-    What happened at these is `Recording.sticks`.
+    What happened at these is `Recording.sticks`; every z is that at the end.
     """
+    if model.weights.size > 0:
+        recording = recording.of_bodies(np.s_[: model.bodies])
     if model.sliders.size == 0:
         return recording
     own = model.own_contacts

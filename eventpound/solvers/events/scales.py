@@ -39,13 +39,17 @@ amplification of an undamped body by a pulse of one period."""
 
 
 class Attached(NamedTuple):
-    """Links of a scene: ends (L, 2), and laws, stiffnesses and offsets (..., L) in SI."""
+    """Links of a scene: ends (L, 2), and laws, stiffnesses and offsets (..., L) in SI.
+
+    weights (D, N): of its points (`Model.weights`).
+    """
 
     ends: Ints
     law: LinkLaw
     compression: Floats
     extension: Floats
     offset: Floats
+    weights: Floats
 
 
 class InitialState(NamedTuple):
@@ -80,6 +84,7 @@ def attached(model: Model) -> Attached:
         model.link_ends[: model.plain],
         law,
         *model.elastic.first(model.plain),
+        model.weights,
     )
 
 
@@ -92,7 +97,7 @@ def own_scales(
     acceleration: Any,
     shaken: Any,
 ) -> tuple[Floats, Floats]:
-    """Length (m) and speed (m/s) of each body, shape (..., N) each.
+    """Length (m) and speed (m/s) of each body, shape (..., N) each; of a point the least of its.
 
     Parameters
     ----------
@@ -126,7 +131,11 @@ def own_scales(
             own = moving & np.isfinite(mass)
             free_swift = np.where(own, np.sqrt(2.0 * energy / mass), np.inf)
             reach, swift = np.where(shaken, reach, free_reach), np.where(shaken, swift, free_swift)
-    return np.minimum(length, reach), np.minimum(speed, swift)
+    lengths, speeds = np.minimum(length, reach), np.minimum(speed, swift)
+    for d, weights in enumerate(links.weights, mass.shape[-1] - links.weights.shape[0]):
+        for sizes in (lengths, speeds):
+            sizes[..., d] = sizes[..., weights > 0.0].min(axis=-1)
+    return lengths, speeds
 
 
 def _held(links: Attached, mass: Floats) -> _LinkSums:

@@ -69,7 +69,7 @@ def gap_series(
     problem, under the `ground`'s own and with the least that counts (m/s²). `time`: T (s).
     """
     order, gap, gap_rate = Y.shape[0] - 1, state.gap, state.gap_rate
-    of_body = bodies.of_body
+    of_body, first = bodies.of_body, bodies.mass.size - bodies.weights.shape[0]
     C, level = np.zeros((gap.size, order + 1)), np.zeros((gap.size, order + 1))
     for j in range(gap.size):
         # One that rounding has put below zero, and that opens as if by rounding, may close at once.
@@ -81,8 +81,11 @@ def gap_series(
                 own = Y[k, system.iq[of_body[body]]]
                 C[j, k] += sign * own
                 level[j, k] = _with_rounding(level[j, k], k, own, ground, acceleration)
-    if bodies.points.size > 0:
-        add_point_series(Y, system, bodies, ground, acceleration, C, level)
+                for b in range(first if body >= first else 0):
+                    # What a point has errs as the bodies that it is a sum of.
+                    if bodies.weights[body - first, b] != 0.0 and of_body[b] >= 0:
+                        own = Y[k, system.iq[of_body[b]]]
+                        level[j, k] = _with_rounding(level[j, k], k, own, ground, acceleration)
     for j in range(gap.size):
         none = gap_rate[j] > 0.0 or (gap[j] == 0.0 and gap_rate[j] == 0.0)
         for k in range(2, order + 1):
@@ -90,29 +93,6 @@ def gap_series(
             if none:
                 C[j, k] = 0.0
     return C
-
-
-@deferred_kernel
-def add_point_series(
-    Y: Floats,
-    system: Reduced,
-    bodies: Bodies,
-    ground: float,
-    acceleration: float,
-    C: Floats,
-    level: Floats,
-) -> None:
-    """Add the coefficients of `gap_series` of contacts at points, and their rounding."""
-    for p in range(bodies.points.size):
-        j = bodies.points[p]
-        for k in range(2, Y.shape[0]):
-            for b in range(bodies.mass.size):
-                weight, c = bodies.spread[p, b], bodies.of_body[b]
-                if weight == 0.0 or c < 0:
-                    continue
-                own = Y[k, system.iq[c]]
-                C[j, k] += weight * own
-                level[j, k] = _with_rounding(level[j, k], k, own, ground, acceleration)
 
 
 @kernel

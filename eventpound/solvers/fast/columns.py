@@ -122,7 +122,9 @@ def rows_of(variants: Variants, low: int, high: int) -> VariantArrays:
     scales = _scales(variants, model, numbers, low, of_motions, pushes, of_variant)
     mass: Any = numbers["mass"].max(axis=1)
     small: Any = small_difference(task.rtol, law.memory, numbers["mass"], scales.acceleration)
-    contacts = Contacts(model.left, model.right, numbers["gap"], numbers["restitution"])
+    contacts = Contacts(
+        model.left, model.right, numbers["gap"], numbers["restitution"], model.weights
+    )
     motions = _motions(used_motions, of_variant)
     ends: Any = variants.ends[part].copy()
     shaken = (np.array(pushes) > 0.0)[of_variant]
@@ -210,7 +212,8 @@ def _body_tolerances(
     links = Attached(
         model.link_ends,
         LinkLaw(*(numbers[key] for key in LinkLaw._fields)),
-        *(numbers[key] for key in ElasticLaws._fields),
+        *ElasticLaws(*(numbers[key] for key in ElasticLaws._fields)),
+        model.weights,
     )
     start = InitialState(numbers["u0"], numbers["v0"], numbers["z0"], model.hysteretic)
     length, speed = own_scales(

@@ -52,7 +52,7 @@ HYSTERESIS_SHARE = 0.01
 
 def links_of(model: Model) -> Links:
     """Links of an assembled scene."""
-    grounded = np.full(model.bodies, -1, np.int64)
+    grounded = np.full(model.coordinates, -1, np.int64)
     for h, link in enumerate(model.hysteretic):
         if model.link_ends[link].min() < 0:
             grounded[model.link_ends[link].max()] = h
@@ -88,7 +88,8 @@ def small_difference(
     """
     # A strong spring turns a small error of z into a large acceleration.
     force = yielding(memory).force
-    strongest = (force / mass.min(axis=-1, keepdims=True)).max(axis=-1, initial=0.0)
+    lightest = np.where(mass > 0.0, mass, np.inf).min(axis=-1, keepdims=True)
+    strongest = (force / lightest).max(axis=-1, initial=0.0)
     with np.errstate(divide="ignore"):
         weak = np.minimum(1.0, acceleration / strongest)
     return np.maximum(HYSTERESIS_SHARE * rtol * weak, OF_BACKBONE)
@@ -146,7 +147,8 @@ def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_ane
         links=links,
         hysteresis=hysteresis,
         contacts=keep(
-            ("contacts",), lambda: Contacts(model.left, model.right, model.gap, model.restitution)
+            ("contacts",),
+            lambda: Contacts(model.left, model.right, model.gap, model.restitution, model.weights),
         ),
         # These two are equal where all their numbers are the same, which cannot change.
         ground=keep(("ground", motion), ground)
@@ -234,6 +236,7 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
     bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
     hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
     followed = plan.hysteresis.followed.size
+    coupled = bodies if plan.contacts.weights.shape[0] > 0 else 0
     size = plan.limits.order + 3
     most = max(size + MORE_TERMS, REST_TERMS)
     # Each of them is copied into the block.
@@ -256,6 +259,10 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         "curve": np.zeros((hysteretic, CURVE_PLACES)),
         "contact_force": np.zeros((contacts, size)),
         "elimination": np.zeros((contacts, 4), np.int64),
+        "resting": np.zeros(contacts, np.int64),
+        "force_map": np.zeros((contacts, coupled)),
+        **dict.fromkeys(("compliance", "free"), np.zeros((coupled, coupled))),
+        "carried": np.zeros(coupled),
         **dict.fromkeys(("c", "d"), np.zeros(most)),
         "work": in_python(root_work)(most),
         "turns": np.zeros(MOST_TURNS),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.clusters import is_support
+from eventpound.mechanics.followers import place_points
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.by_address import by_address
@@ -37,6 +38,8 @@ def observe_at(tau: float, order: int, ground: float, run: FastRun) -> None:
         elif tau > 0.0:
             change, observed.v[b], series.expected[c] = motion(tau, order, series.X[c])
             observed.u[b] += change
+    place_points(plan.contacts.weights, observed.u)
+    place_points(plan.contacts.weights, observed.v)
     _link_forces(ground, run)
     if tau > 0.0 and follows(run):
         observe_followed(tau, order, run)
@@ -79,13 +82,16 @@ def _add_loads(tau: float, run: FastRun) -> None:
 @compiled
 def _accelerations(run: FastRun) -> None:
     plan, state, series, observed = run.plan, run.state, run.series, run.observed
-    if state.progress[0].resting == 0:
+    if state.progress[0].resting == 0 and series.free.shape[0] == 0:
         for b in range(plan.mass.size):
             if not is_support(b, plan.mass):
                 observed.a[b] = observed.body_force[b] / plan.mass[b]
         return
     total = series.force
     total[:] = 0.0
+    if series.free.shape[0] > 0:
+        _answer_coupled(run)
+        return
     for b in range(plan.mass.size):
         c = series.of_body[b]
         if c >= 0:
@@ -97,6 +103,24 @@ def _accelerations(run: FastRun) -> None:
     for b in range(plan.mass.size):
         c = series.of_body[b]
         observed.a[b] = total[c] if c >= 0 else observed.base[0]
+
+
+@compiled_deferred
+def _answer_coupled(run: FastRun) -> None:
+    """Absolute accelerations where clusters follow others; `series.force` is zero."""
+    series, observed, clusters = run.series, run.observed, run.state.progress[0].clusters
+    ground = observed.base[0]
+    for b in range(observed.a.size):
+        c = series.of_body[b]
+        if c >= 0:
+            series.force[c] += observed.body_force[b]
+    for b in range(observed.a.size):
+        c = series.of_body[b]
+        observed.a[b] = ground
+        if c >= 0:
+            observed.a[b] = (1.0 - series.carried[c]) * ground
+            for d in range(clusters):
+                observed.a[b] += series.compliance[c, d] * series.force[d]
 
 
 @compiled
@@ -138,6 +162,13 @@ def _contact_forces(run: FastRun) -> None:
 def spread_forces(out: Floats, run: FastRun) -> None:
     """Contact forces that put `series.force` (N,) on the bodies; it is overwritten."""
     series, residual = run.series, run.series.force
+    for i in range(run.state.progress[0].resting if series.free.shape[0] > 0 else 0):
+        total = 0.0
+        for b in range(series.force_map.shape[1]):
+            total += series.force_map[i, b] * residual[b]
+        out[series.resting[i]] = total
+    if series.free.shape[0] > 0:
+        return
     for i in range(run.state.progress[0].edges):
         b, parent = series.elimination[i, 0], series.elimination[i, 2]
         out[series.elimination[i, 1]] = series.elimination[i, 3] * residual[b]

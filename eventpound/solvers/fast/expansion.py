@@ -79,6 +79,17 @@ def _add_loads(k: int, mass: Floats, series: FastSeries) -> None:
 
 
 @compiled_noinline
+def _answer_coupled(k: int, scale: float, clusters: int, series: FastSeries) -> None:
+    """Coefficient k + 2 of the displacements where clusters follow others, by `series.force`."""
+    for c in range(clusters):
+        total = 0.0
+        for d in range(clusters):
+            total += series.compliance[c, d] * series.force[d]
+        series.X[c, k + 2] = (total - series.carried[c] * series.ground[k]) * scale
+    series.force[:clusters] = 0.0
+
+
+@compiled_noinline
 def drive_clusters(k: int, mass: Floats, series: FastSeries) -> None:
     """Coefficient k + 2 of the displacements of clusters with a support, which is the first."""
     for b in range(mass.size - 1, -1, -1):
@@ -98,6 +109,7 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
     plan, state, series = run.plan, run.state, run.series
     progress = state.progress[0]
     loaded, following = series.load.shape[0] > 0, follows(run)
+    coupled = series.free.shape[0] > 0
     X, F, acceleration = series.X, series.F, series.force
     clusters, active = progress.clusters, progress.active
     if following:
@@ -125,9 +137,12 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
         if loaded:
             _add_loads(k, plan.mass, series)
         scale = INVERSE[k + 1] * INVERSE[k + 2]
-        for c in range(clusters):
-            X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
-            acceleration[c] = 0.0
+        if coupled:
+            _answer_coupled(k, scale, clusters, series)
+        else:
+            for c in range(clusters):
+                X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
+                acceleration[c] = 0.0
         if loaded:
             drive_clusters(k, plan.mass, series)
         power *= h
@@ -185,9 +200,13 @@ def _last_of_others(order: int, power: float, over: float, run: FastRun) -> floa
 
 @compiled
 def _moves_with_others(b: int, mass: Floats, series: FastSeries) -> bool:
-    """Whether a body rests on another that is not negligible beside it, or on a barrier."""
+    """Whether a body rests on another that is not negligible beside it, or on a barrier.
+
+    In a scene with points any body may.
+    """
     c = series.of_body[b]
-    return bool(c < 0 or series.inverse_mass[c] != 1.0 / mass[b])
+    alone = series.free.shape[0] == 0 and series.inverse_mass[c] == 1.0 / mass[b]
+    return bool(c < 0 or not alone)
 
 
 @compiled

@@ -18,7 +18,7 @@ from eventpound.contact.sliders import (
     locked_beside_sliders,
 )
 from eventpound.contact.state import Instant
-from eventpound.mechanics.clusters import form_clusters, unique_forces
+from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
@@ -51,7 +51,7 @@ def enter_mode(run: FastRun) -> None:
     for j in range(state.resting.size):
         state.unlocked[j] = state.resting[j]
         progress.resting += state.resting[j]
-    if progress.resting == 0:
+    if progress.resting == 0 and plan.contacts.weights.shape[0] == 0:
         progress.clusters = mass.size
         for b in range(mass.size):
             series.of_body[b] = b
@@ -86,26 +86,32 @@ def _enter_rest(run: FastRun) -> None:
 def _form(run: FastRun) -> tuple[int, int]:
     """Clusters, how the forces of the resting contacts follow from the motion, which are unique.
 
-    The bodies of a cluster get one velocity. Returned are the numbers of clusters and of rows of
-    the elimination.
+    The bodies of a cluster get one velocity, those that follow others theirs. Returned are the
+    numbers of clusters and of rows of the elimination.
     """
     contacts, mass, state, series = run.plan.contacts, run.plan.mass, run.state, run.series
-    left, right, bodies = contacts.left, contacts.right, mass.size
-    clusters = form_clusters(left, right, contacts.gap, state.resting, state.pressed, mass)
+    rests = contacts.left, contacts.right, contacts.gap, state.resting
+    clusters = form_clusters(*rests, state.pressed, mass, contacts.weights)
     copy_numbers(clusters.of_body, series.of_body)
     edges = clusters.elimination.shape[0]
     for row in range(edges):
         copy_numbers(clusters.elimination[row], series.elimination[row])
-    unique, locked = unique_forces(clusters, left, right), clusters.locked
+    unique, locked = clusters.unique, clusters.locked
     if any_slider(run):
         sliders = run.plan.links.sliders.size
-        rests = left, right, contacts.gap, state.resting
         locked = locked_beside_sliders(*rests, sliders, mass, clusters)
     for i in range(clusters.resting.size):
         j = clusters.resting[i]
         state.unlocked[j] = not (locked[i] or clusters.redundant[i])
         run.record.unique[j] &= unique[i]
-    put_as_one(clusters.of_body, np.zeros(bodies), mass, state.v)
+    for row in range(clusters.force_map.shape[0]):
+        series.resting[row] = clusters.resting[row]
+        copy_numbers(clusters.force_map[row], series.force_map[row])
+    for c in range(clusters.carried.size):
+        series.carried[c] = clusters.carried[c]
+        for d in range(clusters.carried.size):
+            series.compliance[c, d] = clusters.compliance[c, d]
+    put_as_one(clusters, False, mass, state.v)
     return clusters.count, edges
 
 
@@ -129,6 +135,8 @@ def instant_of(run: FastRun) -> Instant:
     contacts, links, limits = plan.contacts, plan.links, plan.limits
     return Instant(
         plan.mass,
+        contacts.weights,
+        run.series.free,
         links.ends,
         links.law,
         links.compression,
@@ -195,6 +203,9 @@ def start(run: FastRun) -> None:
     for a in range(plan.links.offset.size):
         copy_numbers(plan.links.law.memory[a], series.memory[a])
     enter_mode(run)
+    # Nothing rests yet.
+    for b in range(series.free.shape[0]):
+        copy_numbers(series.compliance[b], series.free[b])
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     hysteresis = plan.hysteresis
     for h in range(hysteresis.link.size):

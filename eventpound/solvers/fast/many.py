@@ -70,7 +70,7 @@ _SHARED = frozenset(
         *("links.ends", "links.z_of_link", "links.springs", "links.grounded"),
         "links.sliders",
         *("hysteresis.link", "hysteresis.tables", "hysteresis.followed"),
-        *("contacts.left", "contacts.right"),
+        *("contacts.left", "contacts.right", "contacts.weights"),
         *("limits.rtol", "limits.order", "limits.ledger", "output_times"),
         *("oscillator.right", "oscillator.left", "distances.first", "distances.second"),
     )

@@ -1,6 +1,6 @@
 """What the compiled stepper works on: constants of a run, its state, and its scratch arrays.
 
-N bodies, L links, H hysteretic links, K contacts, P pieces of ground motion.
+N coordinates, L links, H hysteretic links, K contacts, P pieces of ground motion.
 Nothing here is a Python object inside the loop: groups of arrays only. Beside them, how runs
 end, and when they give up.
 """
@@ -67,12 +67,13 @@ class Links(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Contacts (K,)."""
+    """Contacts (K,), and the weights (D, N) of points, the last coordinates, that they are at."""
 
     left: Ints
     right: Ints
     gap: Floats
     restitution: Floats
+    weights: Floats
 
 
 class Ground(NamedTuple):
@@ -249,6 +250,12 @@ class FastSeries(NamedTuple):
     # Contacts at rest, the first rows; see `eventpound.mechanics.clusters`.
     contact_force: Floats  # (K, p + 3): forces of all contacts (N/s^k)
     elimination: Ints  # (K, 4)
+    # Of a scene with points; see `eventpound.mechanics.followers`.
+    resting: Ints  # (K,): contacts at rest, the first ones
+    force_map: Floats  # (K, N): row by row, of these
+    compliance: Floats  # (N, N): of the clusters, the first rows and columns (1/kg)
+    carried: Floats  # (N,): by how much the ground takes each along
+    free: Floats  # (N, N): compliance of the coordinates, nothing at rest (1/kg)
 
     # Whatever is looked for.
     c: Floats  # (p + 3,): a polynomial

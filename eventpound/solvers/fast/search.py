@@ -150,9 +150,26 @@ def gap_polynomial(j: int, order: int, run: FastRun) -> None:
                 level = max(level, 0.5 * acceleration_level(end, limits, series))
             elif end >= 0:
                 level += GAP_COEFFICIENT * abs(series.X[end, k])
+        if series.free.shape[0] > 0:
+            level = _level_at_points(j, k, level, run)
         if not is_none(k, c[k], level, c[1], limits.time):
             break
         c[k] = 0.0
+
+
+@compiled_noinline
+def _level_at_points(j: int, k: int, level: float, run: FastRun) -> float:
+    """`level` with the rounding of coefficient k of bodies that the points of a gap are sums of."""
+    contacts, series = run.plan.contacts, run.series
+    bodies = run.plan.mass.size - contacts.weights.shape[0]
+    for end in (contacts.left[j], contacts.right[j]):
+        for b in range(bodies if end >= bodies else 0):
+            c = series.of_body[b]
+            if contacts.weights[end - bodies, b] != 0.0 and c >= 0 and k == 2:
+                level = max(level, 0.5 * acceleration_level(c, run.plan.limits, series))
+            elif contacts.weights[end - bodies, b] != 0.0 and c >= 0:
+                level += GAP_COEFFICIENT * abs(series.X[c, k])
+    return level
 
 
 @compiled_noinline

@@ -99,6 +99,7 @@ class Fast:
     settings: Mapping[str, str] = {}
     counts_steps = True
     takes_supports = True
+    takes_points = True
     memories = frozenset(LawName)
     lists_springs = True
 

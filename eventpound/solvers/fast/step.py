@@ -195,7 +195,7 @@ def _contact_force_error(tau: float, order: int, run: FastRun) -> float:
     shows their error where a support moves what rests on it.
     """
     plan, series, forces = run.plan, run.series, run.series.contact_force
-    limits, contacts, mass = plan.limits, plan.contacts, plan.mass
+    limits, contacts = plan.limits, plan.contacts
     largest, worst = 0.0, 0.0
     for a in range(plan.links.offset.size):
         largest = max(largest, abs(series.F[a, 0]))
@@ -204,12 +204,21 @@ def _contact_force_error(tau: float, order: int, run: FastRun) -> float:
         if not run.state.unlocked[j]:
             continue
         force, left, right = run.observed.contact_force[j], contacts.left[j], contacts.right[j]
-        lighter = min(mass[left] if left >= 0 else np.inf, mass[right] if right >= 0 else np.inf)
+        lighter = min(_mass_at(left, run), _mass_at(right, run))
         scale = lighter * limits.length / limits.time**2
         allowed = LOCAL_SHARE * limits.rtol * (scale + abs(force))
         allowed = max(allowed, rounding)
         worst = max(worst, abs(value_and_slope(forces[j, : order - 1], tau)[0] - force) / allowed)
     return worst
+
+
+@compiled
+def _mass_at(end: int, run: FastRun) -> float:
+    """What a contact force has to move at an end by itself (kg), inf at a barrier."""
+    if end < 0:
+        return np.inf
+    free = run.series.free
+    return 1.0 / free[end, end] if free.shape[0] > 0 else float(run.plan.mass[end])
 
 
 @compiled

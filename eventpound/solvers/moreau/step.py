@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.contact.event_rows import DETACHMENT, IMPACT, REST, EventRow, new_group, write_event
-from eventpound.mechanics.contact_problem import solve_contacts
+from eventpound.mechanics.contact_problem import Joints, solve_contacts
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -159,7 +159,8 @@ def _impulses(
     if np.all(band[:, 1:] == 0.0):
         # No link between bodies: masses of their own, and a row of contacts is quickly solved.
         inverse = 1.0 / band[:, 0]
-        p, _, solved = solve_contacts(left, right, inverse, q, noise)
+        joints = Joints(left, right, inverse, np.zeros((0, 0)))
+        p, _, solved = solve_contacts(joints, q, noise)
         for a in range(left.size):
             pull_together(change, left[a], right[a], -p[a])
         return p, change * inverse, solved

@@ -98,8 +98,8 @@ class DescriptorModes:
         algebraic[first : first + d.opening.size] = True
         atol = np.concatenate(
             [
-                np.asarray(self.atol["displacement"]),
-                np.asarray(self.atol["velocity"]),
+                np.asarray(self.atol["displacement"])[:N],
+                np.asarray(self.atol["velocity"])[:N],
                 np.broadcast_to(self.atol["z"], model.hysteretic.size),
                 np.full(d.opening.size, self.rtol * self.scales.force),
                 np.full(d.size - d.ledger if self.ledger else 0, self.atol["energy"]),

@@ -15,6 +15,7 @@ from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor_motion import (
     DescriptorProblem,
     constraint_errors,
+    dot,
     solve_contact_forces,
     to_moving_frame,
 )
@@ -56,7 +57,7 @@ class Followed(NamedTuple):
 @kernel
 def from_clusters(clusters: Floats, system: Reduced, bodies: Bodies, y: Floats) -> None:
     """Positions, velocities, z and ledger of the descriptor form from the loop's state."""
-    N, H = bodies.mass.size, bodies.z_of.size
+    N, H = bodies.mass.size - bodies.weights.shape[0], bodies.z_of.size
     y[:] = 0.0
     for b in range(N):
         c = bodies.of_body[b]
@@ -77,8 +78,13 @@ def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, cluste
 
     `share` of the bodies' offsets in their clusters is in `y`: all, or none of a derivative.
     """
-    N, H = bodies.mass.size, bodies.z_of.size
+    N, H = bodies.mass.size - bodies.weights.shape[0], bodies.z_of.size
     clusters[:] = 0.0
+    for d in range(bodies.weights.shape[0]):
+        c = bodies.of_body[N + d]
+        if c >= 0 and bodies.cluster_mass[c] == 0.0:
+            u, v = dot(bodies.weights[d, :N], y[:N]), dot(bodies.weights[d, :N], y[N : 2 * N])
+            clusters[system.iq[c]], clusters[system.iv[c]] = u - share * bodies.offset[N + d], v
     for b in range(N):
         c = bodies.of_body[b]
         if c >= 0 and not is_support(b, bodies.mass):

@@ -28,6 +28,7 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.tolerances import STILL_GAP_RATE
+from tests.numerics.problems import joints
 from tests.solvers.exact import Oscillator
 from tests.solvers.random_scenes import random_scene
 from tests.solvers.scenes import pounding_pair
@@ -78,7 +79,7 @@ def test_one_impact_of_several_bodies_is_the_impact_law():
         model = assemble(scene)
         rate, after = model.rates(v), v.copy()
         impulse, _, lost, _ = impact_law(
-            mass, model.left, model.right, eps, np.ones(4, bool), rate, after
+            joints(model.left, model.right, mass), mass, eps, np.ones(4, bool), rate, after
         )
         np.testing.assert_allclose(recording.v, after, rtol=0, atol=1e-12)
         events = recording.events

@@ -390,6 +390,7 @@ def oscillators_of(
     fits = (
         model.bodies == 1
         and model.loads == 0
+        and model.weights.size == 0
         and not energy
         and model.hysteretic.size <= 1
         and has_backbone(model.law.memory[model.hysteretic]).all()

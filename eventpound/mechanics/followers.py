@@ -1,0 +1,348 @@
+"""Coordinates that follow others: points between bodies, and what rests at them.
+
+The coordinates of a scene are its bodies and its points (`eventpound.scene.point`), which have no
+mass: ``u_P = Σ w_b u_b``. A contact joins two coordinates, whatever they are. Those that rest make
+clusters of coordinates (`eventpound.mechanics.clusters`), each with one coordinate of its own; and
+then every point is an equation between these. So ``q = N y + q̂``, with N by elimination on the
+equations, as it is for pairs, where N has zeros and ones alone. In the place of a coordinate that
+has a large mass a light one is eliminated, as long as its coefficient is not small.
+
+Of N everybody wants the *compliance* ``A = N (Nᵀ M N)⁻¹ Nᵀ`` alone: clusters accelerate by
+``q'' = A f - r a_g``, with ``r = A M 1``, which is 1 but where points lean on the ground; the
+contact problem has ``Wᵀ A W``; and ``A M q`` puts coordinates on their constraints, moving them the
+least, weighted by mass. ``A f`` keeps ``Wᵀ q`` and ``Wᵀ q'`` but for the rounding of the sums of an
+integrator, some ``ε n^½`` of the motion after n steps; an event begins anew.
+
+Contact forces follow from what they put on the bodies, those with the least sum of squares.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
+from eventpound.numerics.lcp import solve_dense
+from eventpound.tolerances import DEPENDENT, EPS, PIVOT
+
+
+class Rests(NamedTuple):
+    """Resting contacts (R,), and what is to be filled in of them.
+
+    left, right: coordinates, -1 for ground and barriers. pressed: contacts that a solution found
+    so. carrying: those whose forces determine all others'. locked: those that cannot open. unique:
+    those whose force is. force_map (R, N): forces that put what they can of given ones on
+    coordinates.
+    """
+
+    left: Ints
+    right: Ints
+    pressed: Bools
+    carrying: Bools
+    locked: Bools
+    unique: Bools
+    force_map: Floats
+
+
+@kernel
+def place_points(weights: Floats, values: Floats) -> None:
+    """Give points, the last D of N values, the mean of those of bodies; `weights` (D, N)."""
+    first = values.size - weights.shape[0]
+    for d in range(weights.shape[0]):
+        total = 0.0
+        for b in range(first):
+            total += weights[d, b] * values[b]
+        values[first + d] = total
+
+
+@scalar_kernel
+def answers(compliance: Floats, force: Floats, values: Floats) -> None:
+    """``A f`` into `values`, all of the size of the clusters at least."""
+    count = compliance.shape[0]
+    for c in range(count):
+        total = 0.0
+        for d in range(count):
+            total += compliance[c, d] * force[d]
+        values[c] = total
+
+
+@deferred_kernel
+def examine_rests(rests: Rests, weights: Floats) -> None:
+    """Fill in which contacts carry, are locked and have unique forces, and their forces."""
+    rows = _rows(rests, weights)
+    R, first = rows.shape[0], weights.shape[1] - weights.shape[0]
+    basis, parts, order = np.zeros(rows.shape), np.zeros((R, R)), np.zeros(R, np.int64)
+    count = 0
+    for turn in (True, False):
+        for i in range(R):
+            if rests.pressed[i] != turn:
+                continue
+            left = rows[i].copy()
+            for _ in range(2):
+                for k in range(count):
+                    share = _dot(basis[k], left)
+                    parts[i, k] += share
+                    left -= share * basis[k]
+            length = np.sqrt(_dot(left, left))
+            if length > DEPENDENT * np.sqrt(_dot(rows[i], rows[i])):
+                basis[count], parts[i, count], order[count] = left / length, length, i
+                rests.carrying[i] = True
+                count += 1
+    lower = np.zeros((count, count))
+    for a in range(count):
+        lower[a] = parts[order[a], :count]
+    for b in range(first):
+        _solve_transposed(lower, basis[:count, b].copy(), order, rests.force_map[:, b])
+    for d in range(weights.shape[0]):
+        for b in range(first):
+            rests.force_map[:, first + d] += weights[d, b] * rests.force_map[:, b]
+    rests.unique[:] = True
+    parts_of = np.zeros(R)
+    for i in range(R):
+        if not rests.carrying[i]:
+            rests.unique[i] = False
+            _solve_transposed(lower, parts[i, :count].copy(), order, parts_of)
+            for a in range(count):
+                if abs(parts_of[order[a]]) > DEPENDENT:
+                    rests.unique[order[a]] = False
+    if count < R:
+        rests.locked[:] = held_closed(rows)
+
+
+@kernel
+def _rows(rests: Rests, weights: Floats) -> Floats:
+    """Directions of the gaps in the bodies alone, shape (R, bodies)."""
+    first = weights.shape[1] - weights.shape[0]
+    rows = np.zeros((rests.left.size, first))
+    for i in range(rests.left.size):
+        for end, sign in ((rests.left[i], -1.0), (rests.right[i], 1.0)):
+            if end >= first:
+                for b in range(first):
+                    rows[i, b] += sign * weights[end - first, b]
+            elif end >= 0:
+                rows[i, end] += sign
+    return rows
+
+
+@scalar_kernel
+def _dot(a: Floats, b: Floats) -> float:
+    total = 0.0
+    for i in range(a.size):
+        total += a[i] * b[i]
+    return total
+
+
+@kernel
+def _solve_transposed(lower: Floats, given: Floats, order: Ints, found: Floats) -> None:
+    """Solve ``Lᵀ x = given`` (overwritten), entry a of x into the place ``order[a]``."""
+    for a in range(given.size - 1, -1, -1):
+        for b in range(a + 1, given.size):
+            given[a] -= lower[b, a] * given[b]
+        given[a] /= lower[a, a]
+        found[order[a]] = given[a]
+
+
+@kernel
+def held_closed(rows: Floats) -> Bools:
+    """Contacts (R,) that cannot open: pressures of all others balance one on it.
+
+    `rows` (R, bodies): their directions. Which pressures balance it best is a complementarity
+    problem (least squares without negative unknowns).
+    """
+    R, locked = rows.shape[0], np.zeros(rows.shape[0], np.bool_)
+    G, q, x = np.empty((R - 1, R - 1)), np.empty(R - 1), np.zeros(R)
+    for j in range(R):
+        others = np.flatnonzero(np.arange(R) != j)
+        for a in range(R - 1):
+            q[a] = _dot(rows[others[a]], rows[j])
+            for b in range(R - 1):
+                G[a, b] = _dot(rows[others[a]], rows[others[b]])
+        found, _, solved = solve_dense(G, q, 0.0)
+        x[:], x[j] = 0.0, 1.0
+        for a in range(R - 1):
+            x[others[a]] = found[a]
+        left = np.zeros(rows.shape[1])
+        for i in range(R):
+            left += x[i] * rows[i]
+        size = np.sqrt(_dot(rows[j], rows[j]))
+        locked[j] = solved and np.sqrt(_dot(left, left)) <= DEPENDENT * size
+    return locked
+
+
+class Grouped(NamedTuple):
+    """Coordinates (N,) in groups that move alike, C of them; overwritten where some follow others.
+
+    of_body: group of each, -1 of those that stand still. offset: its place in it (m). compliance
+    (N, N): the first n rows and columns are A, n groups that move, those that follow others at
+    last. carried (N,): r.
+    """
+
+    of_body: Ints
+    offset: Floats
+    compliance: Floats
+    carried: Floats
+
+
+@deferred_kernel
+def follow(groups: int, mass: Floats, weights: Floats, out: Grouped) -> int:
+    """Eliminate what points tie of so many groups; how many groups move after all.
+
+    Parameters
+    ----------
+    groups : int
+        C.
+    mass : ndarray, shape (N,)
+        Of the coordinates (kg), none of points.
+    weights : ndarray, shape (D, N)
+        Of the points, the last of them.
+    out : Grouped
+        Overwritten.
+    """
+    total = np.zeros(groups)
+    for b in range(mass.size):
+        if out.of_body[b] >= 0:
+            total[out.of_body[b]] += mass[b]
+    ties = _ties(groups, weights, out)
+    row_of = _eliminate(ties, total)
+    place = _number(ties, row_of)
+    moving = 0
+    for c in range(groups):
+        moving = max(moving, place[c] + 1)
+    N, weighed, free = np.zeros((moving, moving)), np.zeros(moving), 0
+    for c in range(groups):
+        if place[c] >= 0:
+            weighed[place[c]] = total[c]
+        if row_of[c] < 0:
+            free += 1
+            N[place[c], place[c]] = 1.0
+        elif place[c] >= 0:
+            for d in range(groups):
+                if row_of[d] < 0:
+                    N[place[c], place[d]] = -ties[row_of[c], d]
+    _put_compliance(N[:, :free].copy(), weighed, out)
+    for b in range(mass.size):
+        c = out.of_body[b]
+        if c >= 0:
+            out.of_body[b] = place[c]
+            if row_of[c] >= 0:
+                out.offset[b] -= ties[row_of[c], groups]
+    return moving
+
+
+@kernel
+def _ties(groups: int, weights: Floats, at: Grouped) -> Floats:
+    """An equation a point: coefficients of the groups, then what they add up to, less, (D, C + 1).
+
+    ``u_P - Σ w_b u_b = 0``.
+    """
+    ties, first = np.zeros((weights.shape[0], groups + 1)), weights.shape[1] - weights.shape[0]
+    for d in range(ties.shape[0]):
+        for b in range(first + 1):
+            node = b if b < first else first + d
+            factor = -weights[d, b] if b < first else 1.0
+            ties[d, groups] += factor * at.offset[node]
+            if at.of_body[node] >= 0:
+                ties[d, at.of_body[node]] += factor
+    return ties
+
+
+@kernel
+def _eliminate(ties: Floats, mass: Floats) -> Ints:
+    """Solve each equation for a group, and put that into the others; the row of each group, or -1.
+
+    Groups without mass first, which must not be left.
+    """
+    groups = mass.size
+    row_of, done = np.full(groups, -1, np.int64), np.zeros(ties.shape[0], np.bool_)
+    for turn in range(2):
+        for e in range(done.size):
+            largest, best = 0.0, -1
+            for c in range(groups):
+                largest = max(largest, abs(ties[e, c]))
+            for c in range(groups):
+                able = abs(ties[e, c]) > PIVOT * largest
+                if able and (best < 0 or mass[c] < mass[best]):
+                    best = c
+            if done[e] or largest <= DEPENDENT or (turn == 0 and mass[best] > 0.0):
+                continue
+            row_of[best], done[e] = e, True
+            ties[e] /= ties[e, best]
+            for f in range(done.size):
+                factor = ties[f, best]
+                if f != e and factor != 0.0:
+                    for c in range(groups + 1):
+                        change = factor * ties[e, c]
+                        size = abs(ties[f, c]) + abs(change)
+                        ties[f, c] -= change
+                        if c < groups and abs(ties[f, c]) <= 64.0 * EPS * size:
+                            ties[f, c] = 0.0
+                    ties[f, best] = 0.0
+    return row_of
+
+
+@kernel
+def _number(ties: Floats, row_of: Ints) -> Ints:
+    """New numbers of groups (C,): those left, then those that follow them, -1 that stand still."""
+    place, count = np.full(row_of.size, -1, np.int64), 0
+    for c in range(row_of.size):
+        if row_of[c] < 0:
+            place[c] = count
+            count += 1
+    for c in range(row_of.size):
+        follows = False
+        for d in range(row_of.size):
+            follows |= row_of[c] >= 0 and row_of[d] < 0 and ties[row_of[c], d] != 0.0
+        if follows:
+            place[c] = count
+            count += 1
+    return place
+
+
+@kernel
+def _put_compliance(N: Floats, mass: Floats, out: Grouped) -> None:
+    """A and r of n groups with such masses (kg), N of shape (n, those left)."""
+    moving, free = N.shape
+    K = np.zeros((free, free))
+    for c in range(moving):
+        for a in range(free):
+            for b in range(a + 1):
+                K[a, b] += mass[c] * N[c, a] * N[c, b]
+    answer = _solve_definite(K, N.T.copy())
+    out.compliance[:] = 0.0
+    for c in range(moving):
+        out.carried[c] = 0.0
+        for d in range(moving):
+            for a in range(free):
+                out.compliance[c, d] += N[c, a] * answer[a, d]
+            out.carried[c] += out.compliance[c, d] * mass[d]
+        # What leans on no ground is carried by it whole.
+        if abs(out.carried[c] - 1.0) <= 64.0 * moving * EPS:
+            out.carried[c] = 1.0
+
+
+@kernel
+def _solve_definite(K: Floats, right: Floats) -> Floats:
+    """Solve ``K X = right`` with the lower triangle of K (n, n), by ``K = L D Lᵀ``; overwritten.
+
+    Where K is diagonal, a division.
+    """
+    n = K.shape[0]
+    for j in range(n):
+        for k in range(j):
+            K[j, j] -= K[j, k] * K[j, k] * K[k, k]
+        for i in range(j + 1, n):
+            for k in range(j):
+                K[i, j] -= K[i, k] * K[j, k] * K[k, k]
+            K[i, j] /= K[j, j]
+    for c in range(right.shape[1]):
+        for i in range(n):
+            for k in range(i):
+                right[i, c] -= K[i, k] * right[k, c]
+        for i in range(n):
+            right[i, c] /= K[i, i]
+        for i in range(n - 1, -1, -1):
+            for k in range(i + 1, n):
+                right[i, c] -= K[k, i] * right[k, c]
+    return right
