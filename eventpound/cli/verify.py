@@ -1,9 +1,9 @@
 """Bound the error of every peak, event and final value of a case.
 
 Compute a case by independent routes (fast, CVODE Adams and BDF, IDA; under records in
-relative coordinates, too; CVODE alone where contacts have a law of their own or lie at a
-point between floors), each at two tolerances, change the inputs in their last digits,
-and bound the error of every peak, its time, every event and every final value.
+relative coordinates, too; CVODE alone where contacts have a law of their own), each at two
+tolerances, change the inputs in their last digits, and bound the error of every peak, its
+time, every event and every final value.
 
 It writes certificate.json, certificate.txt (the table that is printed) and digits.png, and
 says of every number how many digits are certain, what limits them and how changes of the

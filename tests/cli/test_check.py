@@ -219,7 +219,7 @@ def test_check_refuses_what_run_refuses_of_every_solver(
         assert checked == 2
         assert said(["run", str(case)], 2, capsys) == ("", of_check)
     unknown = {"slider", "degrading", "backfill", "slip", "support", "force", "point"}
-    laws = {"kelvin-voigt", "hertz", "point"}
+    laws = {"kelvin-voigt", "hertz"}
     not_taken = {
         "cvode": {"step"},
         "ida": laws | {"step"},
