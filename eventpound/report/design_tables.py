@@ -46,7 +46,7 @@ _OF_OTHERS = (
     *(_SPRING + "ductility", _PEAK, _RESIDUAL, _SPRING + "slip_path"),
     *(_SPRING + word for word in ("passive_force", "passive_depth", "residual_gap")),
     *(_SPRING + word for word in ("strength_lost", "stiffness_lost", "drift_ratio")),
-    "max_drift",
+    *(_SPRING + "stability_coefficient", "max_drift"),
     *("acceleration.<body>.abs_max", "peaks.<body>.abs_max", "base_shear.abs_max"),
 )
 """Demands that stand in a report."""

@@ -59,7 +59,8 @@ DEMANDS = (
     *(_SPRING + "ductility", *_ELONGATIONS, _SPRING + "slip_path"),
     *(_SPRING + word for word in ("passive_force", "passive_depth", "residual_gap")),
     *(_ENERGY, _SPRING + "strength_lost", _SPRING + "stiffness_lost"),
-    *(_SPRING + "drift_ratio", "max_drift", "max_drift_ratio", "base_shear.abs_max"),
+    *(_SPRING + word for word in ("drift_ratio", "stability_coefficient")),
+    *("max_drift", "max_drift_ratio", "base_shear.abs_max"),
     *("peaks.<body>.abs_max", "residual.<body>", "acceleration.<body>.abs_max"),
 )
 """Quantities that are design numbers, by paths, in their order: those of one owner together."""

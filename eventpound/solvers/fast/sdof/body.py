@@ -396,8 +396,10 @@ def oscillators_of(
         and has_backbone(model.law.memory[model.hysteretic]).all()
         and max(len(to_right), len(to_left)) <= 1
     )
-    # Its bounds and closed forms are of a body that its elastic parts do not push away.
-    alone: Any = np.logical_not(links.kinked) & (links.extension.sum(axis=-1) >= 0.0) & fits
+    alone: Any = np.logical_not(links.kinked) & fits
+    if links.extension.min(initial=0.0) < 0.0:
+        # Its bounds and closed forms are of a body that its elastic parts do not push away.
+        alone &= links.extension.sum(axis=-1) >= 0.0
     if fits and to_right and to_left:
         alone &= has_play(gap, length)
     right, left = (found[0] if found else -1 for found in (to_right, to_left))
