@@ -4,7 +4,7 @@ const DEVELOPERS =
   "speed-against-error|development|walk|dependencies|changelog";
 const WEIGHTS = [
   [/^tutorials\//, 4],
-  [/^generated\/c/, -4], // cases and commands
+  [/^generated\/c|^glossary$/, -4], // cases and commands; the glossary points to pages
   [RegExp(`^(${DEVELOPERS})$|^measured/`), -20],
 ];
 
