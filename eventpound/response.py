@@ -56,6 +56,18 @@ class Response:
         Numbers that some quantities are about.
     in_equilibrium : bool
         Whether the scene was put where its forces hold it, as ``start`` of ``[run]`` says.
+
+    Examples
+    --------
+    >>> ball = Body("ball", "1 kg", velocity="1 m/s")
+    >>> wall = Contact("wall", "ball", "barrier", gap="1 m", restitution=0.5)
+    >>> response = simulate(Scene([ball], contacts=[wall]), "fast", duration="2 s")
+    >>> round(float(response.peaks.loc["ball", "max"]), 9)
+    1.0
+    >>> round(response.quantity("contacts.wall.max_impulse"), 9)
+    1.5
+    >>> list(response.events["kind"])
+    ['impact']
     """
 
     task: Task

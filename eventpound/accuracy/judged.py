@@ -92,6 +92,16 @@ def simulate(
     -----
     AccuracyWarning
         Where the tolerance does not tell a number or an event, or the error is not known.
+
+    Examples
+    --------
+    A ball meets a wall with 1 m/s after one second, and comes back with half of that:
+
+    >>> ball = Body("ball", "1 kg", velocity="1 m/s")
+    >>> wall = Contact("wall", "ball", "barrier", gap="1 m", restitution=0.5)
+    >>> response = simulate(Scene([ball], contacts=[wall]), "fast", duration="2 s")
+    >>> response.impacts, round(response.quantity("final.ball.u"), 9)
+    (1, 0.5)
     """
     case = case_of(case)
     if start is not None:

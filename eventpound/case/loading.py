@@ -77,6 +77,12 @@ def load_case(path: str | Path, suite: str | None = None) -> Case:
     InputError
         With one line for every problem: file, table, key, what was found and
         what is accepted.
+
+    Examples
+    --------
+    >>> case = load_case("cases/bridge-pulse")
+    >>> [body.name for body in case.scene.bodies]
+    ['segment1', 'segment2']
     """
     document, file, source_hash = read_document(path)
     if suite is not None:

@@ -45,7 +45,14 @@ class Sine(SinusoidMotion):
 
 @converting_base()
 class Cosine(SinusoidMotion):
-    """One period of a cosine; jumps to a_p at its start and from a_p at its end."""
+    """One period of a cosine; jumps to a_p at its start and from a_p at its end.
+
+    Examples
+    --------
+    >>> pulse = Cosine("2 m/s^2", "0.8 s")
+    >>> float(pulse.acceleration(0.0)), float(pulse.acceleration(0.9))
+    (2.0, 0.0)
+    """
 
     kind: ClassVar[str] = "cosine"
     """The word a case names it by."""

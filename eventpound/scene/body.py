@@ -21,6 +21,11 @@ class Body:
     displacement, velocity : float
         State at the start of the run, relative to the ground (m, m/s),
         positive to the right.
+
+    Examples
+    --------
+    >>> Body("deck", mass="1301 t").mass
+    1301000.0
     """
 
     name: str

@@ -47,6 +47,11 @@ class Contact:
         follows from.
     law : ContactLaw, optional
         A contact element in the place of Newton's law, under which the gap stays ``g >= 0``.
+
+    Examples
+    --------
+    >>> Contact("joint", "deck", "barrier", gap="1 cm", restitution=0.6).gap
+    0.01
     """
 
     name: str

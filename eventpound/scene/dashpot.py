@@ -49,6 +49,11 @@ class Dashpot:
         ------
         InputError
             Where a string is no such number, or a product is negative.
+
+        Examples
+        --------
+        >>> round(Dashpot.from_ratio(("ground", "deck"), "5 %", "100 MN/m", "1000 t").coefficient)
+        1000000
         """
         k = number("stiffness", stiffness, Dimension.STIFFNESS)
         m = number("mass", mass, Dimension.MASS)

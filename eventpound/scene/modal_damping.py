@@ -74,6 +74,14 @@ def modal_damping(
     ------
     InputError
         Where a ratio is negative, there are more than modes, or springs do not join the group.
+
+    Examples
+    --------
+    >>> deck = Body("deck", "1000 t")
+    >>> piers = Spring("piers", ("ground", "deck"), Linear("100 MN/m"))
+    >>> (dashpot,) = modal_damping([deck], [piers], "5 %")
+    >>> round(dashpot.coefficient)
+    1000000
     """
     given = [ratio] if isinstance(ratio, float | int | str) else ratio
     ratios = [number("ratio", each, Dimension.NUMBER) for each in given]

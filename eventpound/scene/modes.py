@@ -146,6 +146,16 @@ def rayleigh(
     ------
     InputError
         Where not just one of modes and periods is given, or they are not such.
+
+    Examples
+    --------
+    >>> bodies = [Body("floor", "100 t"), Body("roof", "100 t")]
+    >>> storeys = [
+    ...     Spring("lower", ("ground", "floor"), Linear("50 MN/m")),
+    ...     Spring("upper", ("floor", "roof"), Linear("50 MN/m")),
+    ... ]
+    >>> [dashpot.between for dashpot in rayleigh(bodies, storeys, "5 %", modes=(1, 2))]
+    [('ground', 'floor'), ('ground', 'roof'), ('ground', 'floor'), ('floor', 'roof')]
     """
     if (modes is None) == (periods is None):
         raise InputError("rayleigh: accepted: one of modes and periods")
@@ -206,6 +216,14 @@ def stiffness_proportional(
     InputError
         Where not just one of mode and period is given, there are no such springs, one does not
         resist at rest, or they hold too little of the mode's strain energy for it to be theirs.
+
+    Examples
+    --------
+    >>> deck = Body("deck", "1000 t")
+    >>> piers = Spring("piers", ("ground", "deck"), Linear("100 MN/m"))
+    >>> (beside,) = stiffness_proportional([deck], [piers], ["piers"], "5 %", mode=1)
+    >>> round(beside.coefficient)
+    1000000
     """
     springs = at_rest(Scene(tuple(bodies), tuple(springs))).springs
     by_name = {spring.name: spring for spring in springs}

@@ -32,6 +32,17 @@ class Scene:
         Ends that move otherwise than the ground.
     forces : sequence of Force
         What acts on bodies.
+
+    Examples
+    --------
+    >>> scene = Scene(
+    ...     [Body("deck", "1000 t")],
+    ...     springs=[Spring("piers", ("ground", "deck"), Linear("100 MN/m"))],
+    ...     contacts=[Contact("joint", "deck", "barrier", gap="1 cm", restitution=0.6)],
+    ...     motion=Cosine("0.4 g", "0.8 s"),
+    ... )
+    >>> [spring.name for spring in scene.springs]
+    ['piers']
     """
 
     bodies: Given[tuple[Body, ...], Iterable[Body]]

@@ -82,6 +82,11 @@ class Linear:
     stiffness : float
         k (N/m). Negative only where all springs of the scene together resist at rest, as the
         couplings of a condensed frame do.
+
+    Examples
+    --------
+    >>> Linear("12 MN/m").stiffness
+    12000000.0
     """
 
     word: ClassVar[LawName] = LawName.LINEAR
@@ -297,6 +302,12 @@ class BoucWen(Hysteretic):
         ------
         InputError
             Naming what is out of its range.
+
+        Examples
+        --------
+        >>> law = BoucWen.from_yield("200 MN/m", "3.6 MN", "5 %")
+        >>> round(law.yield_displacement, 6), round(law.stiffness)
+        (0.018, 10000000)
         """
         from eventpound.scene.bouc_wen_parameters import OF_LAW, Parameter, bouc_wen_parameters
 
@@ -684,6 +695,12 @@ class Spring:
     frame : str, optional
         Name of the frame that it is a coupling of (`eventpound.frame`): it counts as any other
         spring, but tables and histories leave it out.
+
+    Examples
+    --------
+    >>> piers = Spring("piers", ("ground", "deck"), Linear("12 MN/m"))
+    >>> piers.between
+    ('ground', 'deck')
     """
 
     name: str

@@ -80,6 +80,15 @@ def simulate_many(
     ------
     InputError
         Where a key, a value or an option cannot be used; then nothing is run.
+
+    Examples
+    --------
+    >>> ball = Body("ball", "1 kg", velocity="1 m/s")
+    >>> wall = Contact("wall", "ball", "barrier", gap="1 m", restitution=0.5)
+    >>> scene = Scene([ball], contacts=[wall])
+    >>> many = simulate_many(scene, {"contact.wall.restitution": [0.0, 0.5, 1.0]}, duration="2 s")
+    >>> [round(u, 9) for u in many.table["final.ball.u"]]
+    [1.0, 0.5, 0.0]
     """
     solver = solver_of(case, rtol)
     case = case_of(case)

@@ -78,6 +78,15 @@ def prepare(
     ------
     InputError
         Where the scene or an option cannot be run.
+
+    Examples
+    --------
+    >>> ball = Body("ball", "1 kg", velocity="1 m/s")
+    >>> wall = Contact("wall", "ball", "barrier", gap="1 m", restitution=0.5)
+    >>> ready = prepare(Scene([ball], contacts=[wall]), "fast", duration="2 s")
+    >>> response = ready.run({"contact.wall.gap": "50 cm"})
+    >>> round(float(response.peaks.loc["ball", "max"]), 9)
+    0.5
     """
     check_case(case)
     run, options = options_of(case, duration=duration, output_step=output_step, energy=energy)

@@ -66,6 +66,17 @@ class Study:
     ------
     InputError
         With one line for every problem; nothing is run then.
+
+    Examples
+    --------
+    >>> ball = Body("ball", "1 kg", velocity="1 m/s")
+    >>> wall = Contact("wall", "ball", "barrier", gap="1 m", restitution=0.5)
+    >>> axes = {"contact.wall.gap": ["50 cm", "1 m"], "contact.wall.restitution": [0.0, 1.0]}
+    >>> study = Study(
+    ...     Scene([ball], contacts=[wall]), axes, quantities=["final.ball.u"], duration="2 s"
+    ... )
+    >>> [round(u, 9) for u in study.run().table["final.ball.u"]]
+    [0.5, -1.0, 1.0, 0.0]
     """
 
     @checked
