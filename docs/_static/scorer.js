@@ -1,7 +1,7 @@
 // Order of what a search finds: tutorials first, then what uses a word, the developers' pages last.
 const DEVELOPERS =
   "method|accuracy|steppers|promises|paper|league|" +
-  "speed-against-error|development|walk|dependencies|changelog";
+  "development|walk|dependencies|changelog";
 const WEIGHTS = [
   [/^tutorials\//, 4],
   [/^generated\/c|^glossary$/, -4], // cases and commands; the glossary points to pages

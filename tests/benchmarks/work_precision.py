@@ -1,4 +1,4 @@
-"""Speed against error of every solver: table and picture of docs/speed-against-error.md.
+"""Speed against error of every solver: table and picture of docs/performance.md.
 
     python -m tests.benchmarks.work_precision            # all problems, into the table
     python -m tests.benchmarks.work_precision P3 pair    # the rows of these two

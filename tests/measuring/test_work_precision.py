@@ -1,4 +1,4 @@
-"""The command behind docs/speed-against-error.md, on one small problem."""
+"""The command behind docs/performance.md, on one small problem."""
 
 from __future__ import annotations
 
