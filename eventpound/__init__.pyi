@@ -35,6 +35,7 @@ from eventpound.scene import Force as Force
 from eventpound.scene import Linear as Linear
 from eventpound.scene import Point as Point
 from eventpound.scene import Scene as Scene
+from eventpound.scene import Seat as Seat
 from eventpound.scene import Series as Series
 from eventpound.scene import Slider as Slider
 from eventpound.scene import Spring as Spring

@@ -13,7 +13,9 @@ import numpy as np
 from eventpound.basics.given import checked, number, positive
 from eventpound.case.run_options import DEFAULTS, Stated
 from eventpound.errors import EventpoundError, InputError
+from eventpound.motion.base import GroundMotion
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
+from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.apart import avoiding_gaps
 from eventpound.quantities.base import SIX, TakenFrom, pi_unit
@@ -174,8 +176,8 @@ class Response:
         """Each record of a sequence by itself, one row a shock; of one record none.
 
         Every shock is run from the state in which this run has it begin up to the beginning of
-        the next. Columns shock (from 1), start and end (s), failed (why it could not be run), then
-        what `summary` holds.
+        the next. Columns shock (from 1), start and end (s), record and its scale, failed (why it
+        could not be run), then what `summary` holds.
         """
         import pandas as pd
 
@@ -187,6 +189,7 @@ class Response:
         rows: list[dict[str, Any]] = []
         for task, state in shocks_of(self.task, self._rerun):
             row: dict[str, Any] = {"shock": len(rows) + 1, "start": task.start, "end": task.end}
+            row |= _shock_at(self.scene.motion, task.start)
             try:
                 scene = self.scene if state is None else continued(self.scene, state, task.start)
                 own = replace(self, in_equilibrium=self.in_equilibrium and state is None)
@@ -557,6 +560,15 @@ class Response:
             for e in self.recording.events
             if e.kind in (EventKind.IMPACT, EventKind.ACCUMULATION)
         )
+
+
+def _shock_at(motion: GroundMotion, t: float) -> dict[str, Any]:
+    """Name and factor of the record of a sequence that is going on at a time (s)."""
+    if not isinstance(motion, Record) or not motion.shocks:
+        return {}
+    number = max(int(np.searchsorted(motion.begins, t, "right")) - 1, 0)
+    name, factor = motion.shocks[number]
+    return {"record": name, "scale": factor}
 
 
 class _MadeWhenAsked:

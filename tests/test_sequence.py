@@ -12,11 +12,22 @@ import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
-from eventpound import InputError, Record, Response, load_case, read_record, results, simulate
+from eventpound import (
+    InputError,
+    Record,
+    Response,
+    load_case,
+    read_record,
+    results,
+    simulate,
+    simulate_suite,
+)
 from eventpound.case.loading import read_case
 from eventpound.cli import main
 from eventpound.motion.sequence import in_sequence
 from eventpound.numerics.arrays import Floats
+from eventpound.report.run_figures import view_of_run
+from eventpound.scene.periods import longest_period
 
 CASE = """
 [excitation]
@@ -136,7 +147,7 @@ def test_the_files_of_a_run_tell_each_shock(
     assert main(["check", str(folder)]) == 0
     assert "samples every 0.01 s, records from 0, 7.99 s on" in capsys.readouterr().out
     assert main(["run", str(folder), "--no-figures"]) == 0
-    assert "shock 2   from 7.99 s: largest |u| " in capsys.readouterr().out
+    assert "shock 2   from 7.99 s, aftershock.csv times 1: largest |u| " in capsys.readouterr().out
     shocks = pd.read_csv(folder / "results" / "shocks.csv")
     assert shocks["end"].tolist() == [7.99, shocks["t_final"][1]]
     manifest = results.read(folder / "results").manifest
@@ -217,3 +228,97 @@ def test_the_page_tells_the_shocks_of_a_bridge() -> None:
         numbers = f"{1e3 * peak:.0f} mm | {row['springs.frame1.ductility']:.1f} | "
         numbers += f"{1e3 * opening:.0f} mm | {row['impacts']:.0f} |"
         assert f"| {row['shock']} | {numbers}" in page
+
+
+def with_sizes(folder: Path, sizes: str) -> Path:
+    """The sequence of a folder with other sizes of its shocks."""
+    text = CASE.replace('rest = "2 s"', f'rest = "2 s"\n{sizes}')
+    (folder / "case.toml").write_text(text)
+    return folder
+
+
+def shocks_as_scaled(motion: Record) -> list[Floats]:
+    """Samples of each shock (m/s²)."""
+    starts = np.rint((motion.begins - motion.start) / motion.time_step).astype(int)
+    return np.split(motion.values, starts[1:])
+
+
+def test_each_shock_has_the_size_that_it_is_given(folder: Path) -> None:
+    plain = load_case(folder).scene.motion
+    assert isinstance(plain, Record)
+    whole = shocks_as_scaled(plain)
+    motion = load_case(with_sizes(folder, "scale = [1.5, 0.4]")).scene.motion
+    assert isinstance(motion, Record)
+    for own, shock, factor in zip(whole, shocks_as_scaled(motion), (1.5, 0.4), strict=True):
+        assert_allclose(shock, factor * own, rtol=1e-15)
+    assert [factor for _, factor in motion.shocks] == [1.5, 0.4]
+    assert motion.largest_factor == 1.5
+    motion = load_case(with_sizes(folder, 'pga = ["0.3 g", "2 m/s2"]')).scene.motion
+    assert isinstance(motion, Record)
+    peaks = [np.abs(shock).max() for shock in shocks_as_scaled(motion)]
+    assert peaks == pytest.approx([0.3 * 9.80665, 2.0], rel=1e-14)
+    # Sa(T1) of each by itself, which a record alone is scaled to as well.
+    sizes = 'psa = ["0.2 g", "0.1 g"]\npsa_period = "T1"'
+    case = load_case(with_sizes(folder, sizes))
+    motion, period = case.scene.motion, longest_period(case.scene)
+    assert isinstance(motion, Record)
+    for shock, wanted in zip(shocks_as_scaled(motion), (0.2, 0.1), strict=True):
+        alone = Record(shock, motion.time_step, psa=wanted * 9.80665, psa_period=period)
+        assert alone.factor == pytest.approx(1.0, rel=1e-12)
+    again = read_case(case.understood, folder / "case.toml").scene.motion
+    assert_allclose(again.values, motion.values, rtol=1e-15)
+
+
+def test_shocks_are_named_with_their_factors(folder: Path) -> None:
+    with_sizes(folder, "scale = [1.5, 0.4]")
+    assert main(["run", str(folder)]) == 0
+    shocks = pd.read_csv(folder / "results" / "shocks.csv")
+    assert shocks["record"].tolist() == ["mainshock.csv", "aftershock.csv"]
+    assert shocks["scale"].tolist() == [1.5, 0.4]
+    view = view_of_run(folder / "results")
+    begins = load_case(folder).scene.motion.begins
+    assert [t for t, _ in view.shocks] == begins.tolist()
+    assert [name for _, name in view.shocks] == ["mainshock.csv ×1.5", "aftershock.csv ×0.4"]
+
+
+@pytest.mark.parametrize(
+    ("sizes", "said"),
+    [
+        ("scale = [1.0, 0.4, 0.2]", "scale: found 3 numbers for 2 records; accepted: a list"),
+        ("scale = [1.0, -0.4]", "scale: found [1.0, -0.4]; accepted: a list of a positive number"),
+        ('pga = ["0.3 g", "2 s"]', "pga: found '2 s'"),
+        ("scale = []", "scale: found []; accepted: a list of a positive number"),
+        ('psa = ["0.3 g", "0.2 g"]', "psa_period: missing"),
+        ('scale = [1, 2]\npga = "1 g"', "accepted: one of scale, pga, psa, target"),
+    ],
+)
+def test_sizes_that_do_not_fit_are_refused(folder: Path, sizes: str, said: str) -> None:
+    with pytest.raises(InputError) as error:
+        load_case(with_sizes(folder, sizes))
+    assert said in str(error.value)
+
+
+def test_a_suite_of_sequences_has_the_numbers_of_each(folder: Path) -> None:
+    (folder / "list.csv").write_text(
+        "file\nmainshock.csv; aftershock.csv\naftershock.csv;mainshock.csv\nmainshock.csv\n"
+    )
+    files = '["mainshock.csv", "aftershock.csv"]'
+    text = CASE.replace(f"file = {files}", 'suite = "list.csv"')
+    (folder / "case.toml").write_text(text.replace("rtol = 1e-11", 'name = "fast"\nrtol = 1e-9'))
+    table = simulate_suite(load_case(folder))
+    assert table["failed"].tolist() == [""] * 3
+    for row, order in zip(
+        table.to_dict("records"), (files, '["aftershock.csv", "mainshock.csv"]'), strict=False
+    ):
+        (folder / "case.toml").write_text(CASE.replace(files, order))
+        one = simulate(load_case(folder), "fast", rtol=1e-9)
+        for name in ("peaks.a.abs_max", "springs.a.ductility", "contacts.joint.sum_impulse"):
+            assert row[name] == pytest.approx(one.quantity(name), rel=1e-6), name
+    # Without a rest, and with numbers for another count of shocks.
+    for old, new, said in (
+        ('rest = "2 s"\n', "", "needs rest in [excitation]"),
+        ('rest = "2 s"', 'rest = "2 s"\nscale = [1, 0.5]', "found 2 numbers for 1 records"),
+    ):
+        (folder / "case.toml").write_text(text.replace(old, new))
+        failed = simulate_suite(load_case(folder))["failed"].tolist()
+        assert any(said in each for each in failed)

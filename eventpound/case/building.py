@@ -74,6 +74,7 @@ def building_tables(
         forces = _values(table, "yield_force", Dimension.FORCE, storeys, weights)
     hardening = table.quantity("hardening", Dimension.NUMBER, 0.05) if forces else None
     ends = [on, *(f"{name}{i}" for i in range(1, storeys + 1))]
+    capacity = {"capacity": table.data["capacity"]} if table.has("capacity") else {}
     springs: list[object] = []
     for i, k in enumerate(stiffnesses):
         spring: dict[str, object] = {"between": ends[i : i + 2], "name": f"storey-{ends[i + 1]}"}
@@ -82,7 +83,7 @@ def building_tables(
             spring["hardening"] = hardening
         else:
             spring |= {"law": "linear", "stiffness": k}
-        spring |= {"height": heights[i]} if heights else {}
+        spring |= ({"height": heights[i]} if heights else {}) | capacity
         springs.append(spring | ({"weight": carried[i]} if carried else {}))
     bodies: list[object] = [
         {"name": end, "mass": mass} for end, mass in zip(ends[1:], masses, strict=True)

@@ -63,7 +63,7 @@ class Case:
     suite : Suite or None
         The records the scene is to run under, one after the other. The motion of
         the scene is then none, and times of `run` that each record sets are NaN.
-    figure : Figure or None
+    figures : tuple of Figure
         What is drawn.
     pi : PiTable or None
         The Π-terms of a case that is written in them.
@@ -84,7 +84,7 @@ class Case:
     warnings: tuple[str, ...]
     understood: dict[str, object]
     suite: Suite | None = None
-    figure: Figure | None = None
+    figures: tuple[Figure, ...] = ()
     pi: PiTable | None = None
     carried: Mapping[str, float] = field(default_factory=dict)
     largest_scale: float = LARGEST_SCALE

@@ -11,6 +11,7 @@ from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact, End
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw
 from eventpound.scene.point import Point
+from eventpound.scene.seat import Seat
 from eventpound.units import Dimension
 
 _ENDS = (
@@ -48,6 +49,16 @@ def read_contacts(tables: Sequence[Table]) -> tuple[Contact, ...]:
         contacts.append(Contact(name, left, right, gap, *_read_law(table)))
         table.close()
     return tuple(contacts)
+
+
+def read_seats(tables: Sequence[Table]) -> tuple[Seat, ...]:
+    """Seats from the ``[[seat]]`` tables, those without a name named after their ends."""
+    accepted = 'two ends, the left one first: bodies, supports or "ground"'
+    ends = [table.pair("between", accepted) for table in tables]
+    names = read_names(tables, ends)
+    for table in tables:
+        table.close()
+    return tuple(map(Seat, names, ends))
 
 
 def _read_ends(table: Table) -> tuple[End, End]:

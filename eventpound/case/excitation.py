@@ -56,6 +56,8 @@ class Excitation:
     record: RecordData | None = None
     suite: Suite | None = None
     largest_scale: float = LARGEST_SCALE
+    options: RecordOptions | None = None
+    """How the records of a sequence are scaled, each for itself."""
 
 
 def read_excitation(table: Table, directory: Path) -> Excitation | None:
@@ -97,11 +99,14 @@ def for_scene(excitation: Excitation, scene: Scene) -> Excitation:
     InputError
         Where the scene has no such period.
     """
-    suite, motion = excitation.suite, excitation.motion
+    suite, motion, each = excitation.suite, excitation.motion, excitation.options
+    if each is not None and each.size.psa_at and excitation.record is not None:
+        own = replace(each, size=each.size.for_scene(scene))
+        return replace(excitation, motion=own.motion(excitation.record), options=own)
     if suite is not None and suite.options.size.psa_at:
         size = suite.options.size.for_scene(scene)
-        own = replace(suite, options=replace(suite.options, size=size))
-        return replace(excitation, suite=own)
+        scaled = replace(suite, options=replace(suite.options, size=size))
+        return replace(excitation, suite=scaled)
     if isinstance(motion, Record) and motion.psa_at:
         period = period_called(scene, motion.psa_at)
         return replace(excitation, motion=motion.like(psa_period=period))
@@ -174,8 +179,9 @@ def _read_sequence(
         return None
     data = in_sequence([options.read(find_record(file, directory)) for file in files], rest)
     said = {"file": list(files), "rest": rest, **options.said(), **options.understood()}
-    largest = options.size.largest
-    return Excitation(options.motion(data), {"kind": "record", **said}, data, None, largest)
+    largest, each = options.size.largest, options if options.size.each else None
+    table_said = {"kind": "record", **said}
+    return Excitation(options.motion(data), table_said, data, None, largest, each)
 
 
 def record_excitation(file: str, path: Path, options: RecordOptions) -> Excitation:

@@ -1,13 +1,17 @@
-"""``[figure]``: what a case draws of its suite, and the numbers that the figure needs.
+"""``[figure]``, or several ``[[figure]]``: what a case draws, and the numbers that it needs.
 
-=====================  ===========================================================
-kind                   draws
-=====================  ===========================================================
-record-scales          two records with their scales, the first with its pulse
-similarity-contours    contours of Pi_delta and Pi_uy, the suite as lines
-bridge-response        the response to the first record in dimensionless terms
-suite-spectrum         the peaks of every body against L_e
-=====================  ===========================================================
+=====================  =========  ================================================================
+kind                   of         draws
+=====================  =========  ================================================================
+curves                 a study    columns of its table over each other (`eventpound.study.figure`)
+map                    a study    one of them in colours over two axes
+record-scales          a suite    two records with their scales, the first with its pulse
+similarity-contours    a suite    contours of Pi_delta and Pi_uy, the suite as lines
+bridge-response        a suite    the response to the first record in dimensionless terms
+suite-spectrum         a suite    the peaks of every body against L_e
+=====================  =========  ================================================================
+
+All have ``name``, that of the file, ``claim``, ``note`` and ``title``.
 """
 
 from __future__ import annotations
@@ -15,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from typing import Any
 
 from eventpound.case.table import Table
 from eventpound.errors import InputError
@@ -26,6 +31,8 @@ from eventpound.units import Dimension, quantity
 class FigureKind(StrEnum):
     """What a figure shows."""
 
+    CURVES = "curves"
+    MAP = "map"
     RECORD_SCALES = "record-scales"
     SIMILARITY_CONTOURS = "similarity-contours"
     BRIDGE_RESPONSE = "bridge-response"
@@ -35,6 +42,48 @@ class FigureKind(StrEnum):
     def needs_scene(self) -> bool:
         """Whether bodies have to move for it."""
         return self in (FigureKind.BRIDGE_RESPONSE, FigureKind.SUITE_SPECTRUM)
+
+
+OF_STUDIES = (FigureKind.CURVES, FigureKind.MAP)
+OF_SUITES = (
+    *(FigureKind.SUITE_SPECTRUM, FigureKind.RECORD_SCALES),
+    *(FigureKind.SIMILARITY_CONTOURS, FigureKind.BRIDGE_RESPONSE),
+)
+"""Kinds, the first of each what is drawn where a figure does not say."""
+
+
+def read_kind(table: Table, kinds: Sequence[FigureKind], of: str) -> FigureKind | None:
+    """What a figure shows; None where that is wrong, which is noted.
+
+    Parameters
+    ----------
+    table : Table
+        Of the figure.
+    kinds : sequence of FigureKind
+        What there can be.
+    of : str
+        Of what these are, for messages.
+    """
+    given = table.text("kind", "the kind of a figure", kinds[0].value)
+    if given in kinds:
+        return FigureKind(given)
+    if given:
+        accepted = f"{', '.join(kind.value for kind in kinds)}, which are drawn of {of}"
+        table.reject("kind", accepted)
+    return None
+
+
+def one_or_several(top: Table, key: str) -> list[Table]:
+    """The tables of a key, ``[key]`` or several ``[[key]]``."""
+    if not top.has(key):
+        return []
+    return top.tables(key) if isinstance(top.data[key], list) else [top.table(key)]
+
+
+def common_words(table: Table) -> dict[str, str]:
+    """Texts that every figure may have."""
+    words = ("title", "claim", "note")
+    return {key: table.text(key, "some text") if table.has(key) else "" for key in words}
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +146,10 @@ class Figure:
         Of similarity contours: gaps and yield displacements.
     motions : tuple of NamedMotion
         Of similarity contours: lines with a name.
+    name : str
+        Of its file, without the ending.
+    title : str
+        Above it; that of the case where it is empty.
     claim : str
         What the figure is held against, for the page of all figures.
     note : str
@@ -113,12 +166,14 @@ class Figure:
     joints: tuple[LengthRange, ...] = field(default=())
     isolators: tuple[LengthRange, ...] = field(default=())
     motions: tuple[NamedMotion, ...] = field(default=())
+    name: str = ""
+    title: str = ""
     claim: str = ""
     note: str = ""
 
 
 def read_figure(table: Table, bodies: Sequence[str]) -> Figure | None:
-    """Read ``[figure]``.
+    """Read a figure of a suite.
 
     Parameters
     ----------
@@ -132,12 +187,11 @@ def read_figure(table: Table, bodies: Sequence[str]) -> Figure | None:
     Figure or None
         None where there are problems; they are noted.
     """
-    word = table.choice("kind", [kind.value for kind in FigureKind])
-    if not word:
+    kind = read_kind(table, OF_SUITES, "a suite")
+    if kind is None:
         return None
-    kind = FigureKind(word)
     figure: Figure | None = Figure(kind)
-    words = {key: table.text(key, "some text") for key in ("claim", "note") if table.has(key)}
+    words: dict[str, Any] = common_words(table) | {"name": table.file_name("name", kind.value)}
     match kind:
         case FigureKind.RECORD_SCALES:
             figure = _read_scales(table, kind)
@@ -145,10 +199,8 @@ def read_figure(table: Table, bodies: Sequence[str]) -> Figure | None:
             figure = _read_contours(table, kind)
         case FigureKind.SUITE_SPECTRUM:
             figure = _read_spectrum(table, kind, bodies)
-        case FigureKind.BRIDGE_RESPONSE:
-            pass
     table.close()
-    return figure and replace(figure, claim=words.get("claim", ""), note=words.get("note", ""))
+    return figure and replace(figure, **words)
 
 
 def _read_spectrum(table: Table, kind: FigureKind, bodies: Sequence[str]) -> Figure | None:

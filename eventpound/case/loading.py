@@ -13,12 +13,13 @@ from pathlib import Path
 
 from eventpound.basics.given import checked
 from eventpound.basics.input_files import read_bytes
+from eventpound.case.capacity import read_capacities, with_capacities
 from eventpound.case.case import Case
 from eventpound.case.damping import read_damping
 from eventpound.case.dashpots import given_ratios, read_dashpot
-from eventpound.case.elements import read_body, read_contacts
+from eventpound.case.elements import read_body, read_contacts, read_seats
 from eventpound.case.excitation import Excitation, bare_accelerations, for_scene, read_excitation
-from eventpound.case.figure import Figure, read_figure
+from eventpound.case.figure import Figure, one_or_several, read_figure
 from eventpound.case.pi import OF_SCENE, read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.record_scaling import large_scales
@@ -172,7 +173,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     InputError
         With one line for every problem.
     """
-    document = written_out(document, file)
+    document = with_capacities(written_out(document, file), file)
     problems: list[CaseProblem] = []
     top = Table(with_unit_scales(document), "", problems)
     start = _start_time(top)
@@ -183,7 +184,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
             f"{file}: [study]: is many runs; `eventpound study` makes them, `run` makes one"
         )
     excitation = _excitation(top, file.parent)
-    figure = _figure(top, excitation)
+    figures = _figures(top, excitation)
     pi, run_table, warnings, carried = None, top.table("run"), list[str](), dict[str, float]()
     driven, sources = Driven(), dict[str, list[str]]()
     if top.has("pi"):
@@ -191,7 +192,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         scene = scene_of_pi(top, pi, excitation)
         run_table = with_periods(run_table, pi, scene)
     else:
-        needed = figure is None or figure.kind.needs_scene
+        needed = not figures or any(figure.kind.needs_scene for figure in figures)
         scene, warnings, carried, driven, sources = _read_scene(
             top, excitation, problems, needed, run_table, file.parent
         )
@@ -202,10 +203,13 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     suite = _suite(top, excitation, driven, file.parent)
     sound = not problems and excitation is not None
     run = read_run(run_table, scene if sound else None, suite is not None)
+    capacities, fractile = read_capacities(top)
     solver = read_solver(top.table("solver"), default_solver([scene], many=suite is not None))
     top.close()
     if problems or excitation is None or run is None:
         raise InputError([f"{file}: {problem}" for problem in problems])
+    stated = replace(run.stated, capacities=capacities, fractile=fractile or run.stated.fractile)
+    run = replace(run, stated=stated)
     warnings += support_warnings(scene, run.start_time + run.duration)
     if pi is None and scene.bodies:
         damped = [
@@ -226,9 +230,9 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         warnings=tuple(f"{file}: {warning}" for warning in warnings),
         understood=understood_case(title, excitation.table, scene, run, solver, sources)
         | dict(driven.tables)
-        | ({} if figure is None else {"figure": document["figure"]}),
+        | ({"figure": document["figure"]} if figures else {}),
         suite=suite,
-        figure=figure,
+        figures=figures,
         pi=pi,
         carried=carried,
         largest_scale=excitation.largest_scale,
@@ -310,14 +314,20 @@ def _with_suite(document: Mapping[str, object], file: Path, pattern: str) -> dic
     return {**document, "excitation": with_suite(excitation, own)}
 
 
-def _figure(top: Table, excitation: Excitation | None) -> Figure | None:
-    if not top.has("figure"):
-        return None
-    table = top.table("figure")
-    if excitation is not None and excitation.suite is None:
-        table.report("", "draws records; accepted: [excitation] with suite or synthetic")
+def _figures(top: Table, excitation: Excitation | None) -> tuple[Figure, ...]:
+    tables = one_or_several(top, "figure")
     bodies = [body.data.get("name") for body in Table(top.data, "", []).tables("body")]
-    return read_figure(table, [name for name in bodies if isinstance(name, str)])
+    names = [name for name in bodies if isinstance(name, str)]
+    found, files = [], set[str]()
+    for table in tables:
+        if excitation is not None and excitation.suite is None:
+            table.report("", "draws records; accepted: [excitation] with suite or synthetic")
+        if (figure := read_figure(table, names)) is not None:
+            if figure.name in files:
+                table.report("name", f"found {figure.name!r} twice; accepted: a name of its own")
+            files.add(figure.name)
+            found.append(figure)
+    return tuple(found)
 
 
 def _read_scene(
@@ -349,6 +359,7 @@ def _read_scene(
         motion=NoMotion() if excitation is None else excitation.motion,
         supports=driven.supports,
         forces=driven.forces,
+        seats=read_seats(tables["seat"]),
     )
     start = _start_time(top)
     wrong = scene_problems(scene, None)

@@ -41,10 +41,10 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
     """
     scene = replace(member.on(case.scene), motion=member.options.motion(data))
     run = case.run.completed(scene)
-    read = member.options.of_file(member.file, data)
+    read = member.of_file(data)
     sources = sources_of(case.understood)
     understood = understood_case(case.title, read, scene, run, case.solver, sources)
-    records = {name: own.options.of_file(own.file, own.read()) for name, own in member.supports}
+    records = {name: own.of_file(own.read()) for name, own in member.supports}
     driven: dict[str, Any] = {
         key: case.understood[key] for key in ("support", "force") if key in case.understood
     }
@@ -60,6 +60,6 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
         run=run,
         record=data,
         suite=None,
-        figure=None,
+        figures=(),
         understood=understood | driven,
     )

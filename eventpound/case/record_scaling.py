@@ -1,6 +1,7 @@
 """How large a case wants its records: a factor, a peak, one ordinate of a spectrum, or all of it.
 
 scale = 1.5                                              # factor on the samples
+scale = [1.0, 0.8]                                       # of each record of a sequence; pga, psa
 pga = "0.4 g"                                            # their peak
 psa = "0.5 g"                                            # PSA at one period
 psa_period = "1.2 s"                                     # or "T1", "T1 of deck": of the scene
@@ -26,7 +27,8 @@ from eventpound.case.record_file import find_record
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.motion import Record, RecordData
-from eventpound.motion.scaling import DAMPING, Target, factor_to
+from eventpound.motion.scaling import DAMPING, Target, factor_to, psa_of
+from eventpound.motion.sequence import records_of, times_each
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.periods import T_1, period_called
 from eventpound.scene.scene import Scene
@@ -67,6 +69,10 @@ class RecordScaling:
         Spectrum that they are brought close to.
     largest : float
         Factor beyond which is warned.
+    each : tuple of float
+        Numbers of `each_of` for the records of a sequence, one each.
+    each_of : str
+        ``"scale"``, ``"pga"`` or ``"psa"``.
     """
 
     scale: float | None = None
@@ -77,6 +83,8 @@ class RecordScaling:
     target: Target | None = None
     psa_at: str = ""
     largest: float = LARGEST_SCALE
+    each: tuple[float, ...] = ()
+    each_of: str = ""
 
     def for_scene(self, scene: Scene) -> RecordScaling:
         """The same with the period of a scene, where the case leaves it to that.
@@ -92,6 +100,9 @@ class RecordScaling:
 
     def of(self, data: RecordData, reverse: bool, start: float) -> Record:
         """The ground motion of a file that was read."""
+        if self.each:
+            data = times_each(data, self._factors(data))
+            return Record(data.acceleration, data.time_step, 1.0, None, reverse, start, data)
         scale = 1.0 if self.scale is None else self.scale
         if self.target is not None:
             scale = factor_to(self.target, data.acceleration, data.time_step)
@@ -103,11 +114,45 @@ class RecordScaling:
             psa_at=self.psa_at,
         )
 
+    def _factors(self, data: RecordData) -> list[float]:
+        """On each record of a sequence."""
+        if len(data.shocks) != len(self.each):
+            raise InputError(
+                f"{self.each_of}: found {len(self.each)} numbers for {len(data.shocks) or 1} "
+                "records; accepted: a list of as many as a sequence has, or one number"
+            )
+        if self.each_of == "scale":
+            return list(self.each)
+        records = records_of(data)
+        if self.each_of == "pga":
+            sizes = [float(np.abs(record).max()) for record in records]
+        else:
+            damping = DAMPING if self.psa_damping is None else self.psa_damping
+            at = np.array([self.psa_period], dtype=np.float64)
+            sizes = [float(psa_of(r, data.time_step, at, damping)[0]) for r in records]
+        return [to / of if of else 1.0 for to, of in zip(self.each, sizes, strict=True)]
+
+    def wanted(self, period: float) -> float:
+        """PSA (m/s^2) that records are brought to at a period (s); NaN where that is not said."""
+        here = math.isclose(self.psa_period or 0.0, period, rel_tol=1e-6)
+        if here and (self.psa is not None or self.each_of == "psa"):
+            return self.psa or max(self.each)
+        if self.target is not None:
+            periods, psa = map(np.log, self.target.points)
+            return float(np.exp(np.interp(math.log(period), periods, psa)))
+        return math.nan
+
     def words(self, acceleration: Callable[[float], str] = _in_g) -> str:
         """What is done to the size of every record; empty where nothing is.
 
         `acceleration` writes one (m/s^2) with its unit.
         """
+        if self.each:
+            shown = [f"{x:g}" if self.each_of == "scale" else acceleration(x) for x in self.each]
+            named = f"{self.psa_at} = " * bool(self.psa_at)
+            at = f" at {named}{self.psa_period:.4g} s" if self.each_of == "psa" else ""
+            word = {"scale": "times", "pga": "to a PGA of", "psa": "to a PSA of"}[self.each_of]
+            return f"shocks {word} {', '.join(shown)}{at} ({self.each_of} in [excitation])"
         if self.pga is not None:
             return f"every record to a PGA of {acceleration(self.pga)} (pga in [excitation])"
         if self.psa is not None:
@@ -134,6 +179,10 @@ class RecordScaling:
                 "target_periods": [self.target.low, self.target.high],
                 "target_damping": self.target.damping,
             }
+        if self.each:
+            of_psa = {"psa_period": self.psa_at or self.psa_period}
+            of_psa["psa_damping"] = self.psa_damping or DAMPING
+            return {self.each_of: list(self.each), **(of_psa if self.each_of == "psa" else {})}
         given = {"pga": self.pga, "psa": self.psa, "psa_period": self.psa_period}
         found: dict[str, object] = {key: v for key, v in given.items() if v is not None}
         if self.psa_period is not None:
@@ -164,7 +213,12 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
         "psa": Dimension.ACCELERATION,
     }
     positive = "a positive number; reverse turns a motion round"
-    scale, pga, psa = (table.optional_quantity(*each, positive) for each in dimensions.items())
+    each_of = next((way for way in dimensions if isinstance(table.data.get(way), list)), "")
+    each = _read_each(table, each_of, dimensions[each_of], positive) if each_of else ()
+    scale, pga, psa = (
+        None if way == each_of else table.optional_quantity(way, of, positive)
+        for way, of in dimensions.items()
+    )
     at = _own_period(table)
     # The scene is not known yet; `for_scene` puts its period in this place.
     period = 1.0 if at else table.optional_quantity("psa_period", Dimension.TIME, positive)
@@ -179,7 +233,7 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
         for key in ("psa_period", "psa_damping"):
             if table.has(key):
                 table.reject(key, "a psa beside it")
-    if psa is not None and period is None:
+    if (psa is not None or each_of == "psa") and period is None:
         table.report_missing("psa_period", 'the period of psa (s), or "T1" for that of the scene')
         return None
     target = _read_target(table, directory)
@@ -187,7 +241,22 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
     limit = LARGEST_SCALE if given_limit is None else given_limit
     numbers = [value for value in (scale, pga, psa, period, damping, limit) if value is not None]
     wrong = any(math.isnan(n) or n < 0.0 for n in numbers) or (table.has("target") and not target)
-    return None if wrong else RecordScaling(scale, pga, psa, period, damping, target, at, limit)
+    if wrong or (each_of and not each):
+        return None
+    return RecordScaling(scale, pga, psa, period, damping, target, at, limit, each, each_of)
+
+
+def _read_each(table: Table, key: str, dimension: Dimension, accepted: str) -> tuple[float, ...]:
+    """Numbers of the records of a sequence; empty where one is wrong, which is noted."""
+    assert table.has(key)
+    try:
+        given: Any = table.data[key]
+        found = tuple(quantity(value, dimension) for value in given)
+    except InputError as error:
+        table.report(key, str(error))
+        return ()
+    table.require(key, bool(found) and min(found, default=0.0) > 0.0, f"a list of {accepted}")
+    return found if min(found, default=0.0) > 0.0 else ()
 
 
 def large_scales(factors: Sequence[tuple[str, float]], limit: float) -> str:

@@ -80,9 +80,17 @@ def _springs_missing(words: Sequence[str], scene: Scene) -> Iterator[str]:
             yield f"found {word!r}, which needs a spring of the law {law!r}; there is none"
 
 
+DEMAND_OVER_CAPACITY = "demand_over_capacity"
+"""The quantity that is the largest of all demands over their capacities."""
+
+
 @dataclass(frozen=True, slots=True)
 class Stated:
-    """What ``[run]`` says of quantities: which are wanted, and numbers that some are about."""
+    """What ``[run]`` says of quantities: which are wanted, and numbers that some are about.
+
+    ``[capacity]`` gives `capacities`, what quantities may not exceed (SI), by their names, and the
+    `fractile` of the demands over records that are held against them (per cent).
+    """
 
     quantities: tuple[str, ...] = texts(
         '[quantities](quantities.md) that take further runs, `["velocity.<body>.abs_max"]`',
@@ -139,6 +147,8 @@ class Stated:
         of_scene=_springs_missing,
         holds=_TOLD_OF_ONE,
     )
+    capacities: tuple[tuple[str, float], ...] = ()
+    fractile: float = 84.0
 
     def named(self) -> Iterator[tuple[str, str]]:
         """Names and paths of all quantities that are wanted, each after the option that says so."""
@@ -146,6 +156,9 @@ class Stated:
             value = getattr(self, option)
             if value != usual:
                 yield from ((option, name) for name in key.asks(value))
+        yield from (("capacity", name) for name, _ in self.capacities)
+        if self.capacities:
+            yield "capacity", DEMAND_OVER_CAPACITY
 
 
 DEFAULTS = Stated()

@@ -7,6 +7,7 @@ A list is a CSV file as `eventpound.motion.record_list` says.
 from __future__ import annotations
 
 import hashlib
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -20,8 +21,10 @@ from eventpound.case.table import Table
 from eventpound.errors import InputError, told_of
 from eventpound.motion import Record, RecordData
 from eventpound.motion.record_list import ListedRecord, read_list
+from eventpound.motion.sequence import in_sequence
 from eventpound.motion.synthetic import synthetic_motion
 from eventpound.scene.scene import Scene
+from eventpound.units import Dimension
 
 KEPT = 128
 """Records that are kept when they have been read."""
@@ -49,6 +52,10 @@ class Member:
         Why it cannot be read, where its line in a list says nonsense.
     supports : tuple of (str, Member)
         The record of each support that has one in a suite of its own, by its name.
+    files : tuple of str
+        Of a sequence, all of them; else empty.
+    rest : float
+        Between the records of a sequence (s).
     """
 
     name: str
@@ -57,6 +64,8 @@ class Member:
     synthetic: tuple[int, int] | None = None
     problem: str = ""
     supports: tuple[tuple[str, Member], ...] = ()
+    files: tuple[str, ...] = ()
+    rest: float = math.nan
 
     def read(self) -> RecordData:
         """Read or generate it.
@@ -70,7 +79,17 @@ class Member:
             raise InputError(self.problem)
         if self.synthetic is not None:
             return self.options.processing.apply(synthetic_motion(*self.synthetic).record)
+        if self.files:
+            read = [self.options.read(Path(file), as_needed=True) for file in self.files]
+            return in_sequence(read, self.rest)
         return self.options.read(Path(self.file), as_needed=True)
+
+    def of_file(self, data: RecordData) -> dict[str, object]:
+        """``[excitation]`` of it by itself, in SI with the defaults filled in."""
+        if not self.files:
+            return self.options.of_file(self.file, data)
+        given = {"kind": "record", "file": list(self.files), "rest": self.rest}
+        return {**given, **self.options.said(), **self.options.understood()}
 
     def motion(self) -> Record:
         """Its ground motion; the last ones are kept, as long as their files stay as they are.
@@ -81,11 +100,11 @@ class Member:
             Where it cannot be read or used.
         """
         try:
-            status = os.stat(self.file)
-            stamp = (status.st_ino, status.st_mtime_ns, status.st_size)
+            found = [os.stat(file) for file in self.files or (self.file,)]
+            stamp = tuple((s.st_ino, s.st_mtime_ns, s.st_size) for s in found)
         except OSError:
             # A synthetic motion has no file, and what is wrong with another reading it says.
-            stamp = (0, 0, 0)
+            stamp = ()
         return _motion(self, stamp)
 
     def at_support(self, name: str) -> Record:
@@ -113,7 +132,9 @@ class Member:
 
     def described(self) -> Mapping[str, object]:
         """What decides the motion: its name, the hash of its file or its seed, how it is used."""
-        content = None if self.synthetic is not None else _hash(Path(self.file))
+        content: object = None if self.synthetic is not None else _hash(Path(self.file))
+        if self.files:
+            content = [self.rest, *(_hash(Path(file)) for file in self.files)]
         response = self.options.response_path
         return {
             "record": self.name,
@@ -139,12 +160,15 @@ class Suite:
         What all of them have in common.
     supports : tuple of (str, Suite)
         Those of supports that have records of their own, by the name of the support.
+    rest : float or None
+        Between the records of sequences (s).
     """
 
     pattern: str | None
     synthetic: tuple[tuple[int, int], ...]
     options: RecordOptions
     supports: tuple[tuple[str, Suite], ...] = ()
+    rest: float | None = None
 
     def members(self, directory: Path) -> list[Member]:
         """The motions, in order of their files, each with that of the same place for a support.
@@ -192,7 +216,8 @@ class Suite:
             raise InputError(f"suite: found {self.pattern!r}, but no file matches it in {root}")
         listed = len(paths) == 1 and paths[0].suffix.lower() == ".csv"
         if listed and (rows := read_list(paths[0])) is not None:
-            return _unique_names([_listed(row, paths[0].parent, self.options) for row in rows])
+            folder = paths[0].parent
+            return _unique_names([_listed(r, folder, self.options, self.rest) for r in rows])
         common = Path(os.path.commonpath([path.parent for path in paths]))
         return [
             Member(path.relative_to(common).as_posix(), str(path), self.options) for path in paths
@@ -200,7 +225,7 @@ class Suite:
 
 
 @lru_cache(KEPT)
-def _motion(member: Member, _stamp: tuple[int, int, int]) -> Record:
+def _motion(member: Member, _stamp: tuple[tuple[int, int, int], ...]) -> Record:
     """The motion of a record, which parts of a study have in common."""
     return member.options.motion(member.read())
 
@@ -242,12 +267,15 @@ def read_suite(table: Table, options: RecordOptions | None) -> Suite | None:
         return None
     if options is None or not (pattern or synthetic):
         return None
-    return Suite(pattern, synthetic, options)
+    rest = table.optional_quantity("rest", Dimension.TIME, "a positive time (s)")
+    if rest is not None and not (pattern or "").endswith(".csv"):
+        table.reject("rest", "none, but beside a list of sequences (a CSV file)")
+    return Suite(pattern, synthetic, options, rest=rest)
 
 
 def with_suite(excitation: Mapping[str, object], pattern: str) -> dict[str, object]:
     """``[excitation]`` with the records of a pattern in the place of its own."""
-    own = ("file", "rest", "suite", "synthetic")
+    own = ("file", "suite", "synthetic", *([] if pattern.endswith(".csv") else ["rest"]))
     kept = {k: v for k, v in excitation.items() if k not in own}
     return {**kept, "suite": pattern}
 
@@ -256,7 +284,8 @@ def understood_suite(suite: Suite) -> Mapping[str, object]:
     """``[excitation]`` of a suite in SI with every default filled in."""
     said = suite.options.said()
     if suite.pattern is not None:
-        chosen: dict[str, object] = {"suite": suite.pattern}
+        rest = {} if suite.rest is None else {"rest": suite.rest}
+        chosen: dict[str, object] = {"suite": suite.pattern, **rest}
     else:
         seed, first = suite.synthetic[0]
         chosen = {"synthetic": {"seed": seed, "first": first, "count": len(suite.synthetic)}}
@@ -277,15 +306,24 @@ def _read_synthetic(table: Table) -> tuple[tuple[int, int], ...]:
     return tuple((numbers["seed"], n) for n in range(first, first + numbers["count"]))
 
 
-def _listed(row: ListedRecord, directory: Path, common: RecordOptions) -> Member:
-    """The record of one line of a list in a directory."""
+def _listed(
+    row: ListedRecord, directory: Path, common: RecordOptions, rest: float | None
+) -> Member:
+    """The record, or the sequence, of one line of a list in a directory."""
     options = replace(
         common,
         units=row.units or common.units,
         component=row.component or common.component,
         time_step=common.time_step if row.time_step is None else row.time_step,
     )
-    return Member(row.file, str(directory / row.file), options, None, row.problem)
+    if len(row.files) == 1:
+        return Member(row.file, str(directory / row.file), options, None, row.problem)
+    problem = row.problem
+    if rest is None:
+        problem = problem or 'needs rest in [excitation], the time between two shocks, "30 s"'
+    files = tuple(str(directory / file) for file in row.files)
+    whole = Member(row.file, "; ".join(files), options, None, problem, files=files)
+    return whole if rest is None else replace(whole, rest=rest)
 
 
 def _unique_names(members: Sequence[Member]) -> list[Member]:

@@ -13,6 +13,8 @@ from eventpound.scene.contact import Contact, written
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import law_keys, storey_keys
 
+_OF_CAPACITY = "capacities", "fractile"
+"""Of what is stated: it has a table of its own."""
 SOURCED = ("body", "spring", "contact")
 """Tables of a case that may say where their numbers are from."""
 
@@ -86,6 +88,10 @@ def understood_case(
             **solver.settings,
         },
     }
+    if scene.seats:
+        found["seat"] = [{"name": s.name, "between": list(s.between)} for s in scene.seats]
+    if run.stated.capacities:
+        found["capacity"] = {"fractile": run.stated.fractile, **dict(run.stated.capacities)}
     for kind, said in sources.items():
         for row, source in zip(found[kind], said, strict=True):
             row |= {"source": source} if source else {}
@@ -114,4 +120,5 @@ def _run(run: RunOptions) -> dict[str, object]:
     # What a suite leaves to each record is no number.
     options = {key: v for key, v in given.items() if v == v}
     usual = asdict(DEFAULTS)
-    return options | {key: v for key, v in asdict(run.stated).items() if v != usual[key]}
+    stated = {key: v for key, v in asdict(run.stated).items() if key not in _OF_CAPACITY}
+    return options | {key: v for key, v in stated.items() if v != usual[key]}

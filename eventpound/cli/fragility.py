@@ -16,7 +16,7 @@ Examples
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,8 +33,8 @@ _RECORDS = ("excitation.file", "record")
 """Columns that may name the record of a row."""
 _FRAGILITY = "fragility"
 """Of the files."""
-_SHOWN = 8
-"""Values that a message lists."""
+_SHOWN, _MOST_CURVES = 8, 12
+"""Values that a message lists; that have a curve each."""
 
 
 def add(commands: Commands) -> None:
@@ -48,11 +48,14 @@ def add(commands: Commands) -> None:
     command.option("--counts", "count the runs, do not follow each record")
     rows = 'these rows only, as contact.joint.gap="5 cm"'
     command.option("--where COLUMN=VALUE", rows, default=[], **several)
+    command.option("--by COLUMN", "a curve for each of its values, as of an axis")
     command.out("where the results are and the curves go (CASE/results)")
     command.paper()
 
 
 def _fragility(options: Options) -> int:
+    import pandas as pd
+
     from eventpound.report.fragility_figure import fragility_figure
     from eventpound.report.style import on_paper
     from eventpound.report.symbols import dimension_of
@@ -65,12 +68,19 @@ def _fragility(options: Options) -> int:
     table = _where(table, options.where, out)
     of_demand = dimension_of(options.demand)
     limits = [number("--limit", text, of_demand) for text in options.limit]
-    records = None if options.counts else _records(table, options.measure)
-    with told_of(f"{out}: "):
-        curves = fragility_table(table, options.measure, options.demand, limits, records)
+    by = options.by
+    groups = {None: table} if by is None else dict(iter(_by(table, by, out)))
+    parts = []
+    for value, rows in groups.items():
+        records = None if options.counts else _records(rows, options.measure)
+        said = "" if by is None else f"{by} = {value}: "
+        with told_of(f"{out}: {said}"):
+            part = fragility_table(rows, options.measure, options.demand, limits, records)
+        parts.append(part if by is None else part.assign(**{by: value}))
+    curves = pd.concat(parts, ignore_index=True)
     at = {psa_at(excitation) for excitation in excitations} if options.measure == PSA else {""}
     at_one = at.pop() if len(at) == 1 else ""
-    figure = fragility_figure(curves, table, options.measure, options.demand, at_one)
+    figure = fragility_figure(curves, table, (options.measure, options.demand), at_one, by or "")
     units = [f" {dimension_of(key).unit}".rstrip() for key in (options.measure, options.demand)]
     for _, row in curves.iterrows():
         found = row["note"] or (
@@ -79,7 +89,8 @@ def _fragility(options: Options) -> int:
             f"beta {row['beta']:.4g} ({row['error_beta']:.2g})"
         )
         counts = f"{row['exceeded']} of {row['count']} exceed"
-        print(f"limit {row['limit']:.5g}{units[1]}: {counts}; {found}")
+        where = "" if by is None else f"{by} = {_shown(row[by])}, "
+        print(f"{where}limit {row['limit']:.5g}{units[1]}: {counts}; {found}")
     if left := int(curves["left_out"].max()):
         print(f"{left} rows without a demand, as of runs that failed, are left out")
     of = {"measure": options.measure, "demand": options.demand, "rows": "; ".join(options.where)}
@@ -88,6 +99,21 @@ def _fragility(options: Options) -> int:
     figures = on_paper({f"{_FRAGILITY}.png": figure}, paper)
     arguments.write(out, {f"{_FRAGILITY}.csv": made} | figures)
     return 0
+
+
+def _by(table: pd.DataFrame, name: str, out: Path) -> Iterable[tuple[Any, pd.DataFrame]]:
+    """Rows of each value of a column."""
+    if name not in table.columns:
+        raise InputError(f"--by: found {name!r}; accepted: of {out}: {', '.join(table.columns)}")
+    groups = table.groupby(name, sort=False)
+    if groups.ngroups > _MOST_CURVES:
+        found = f"--by: found {name!r}, which has {groups.ngroups} values"
+        raise InputError(f"{found}; accepted: a column of at most {_MOST_CURVES}")
+    return groups
+
+
+def _shown(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _set_aside(out: Path, made: bytes) -> None:
@@ -141,7 +167,7 @@ def _where(table: pd.DataFrame, wanted: list[str], out: Path) -> pd.DataFrame:
         else:
             there = column.astype(str) == value
         if not there.any():
-            values = [f"{v:.6g}" if isinstance(v, float) else str(v) for v in column.unique()]
+            values = [_shown(v) for v in column.unique()]
             some = ", ".join(values[:_SHOWN] + ["..."] * (len(values) > _SHOWN))
             raise InputError(f"--where: no row has {text!r}; accepted: {name} of {some}")
         table = table[there]

@@ -39,6 +39,7 @@ def add(commands: Commands) -> None:
     apart = "draw the same run without contact beside it, pale; it is computed for this"
     plot.option("--without-contact", apart)
     plot.option("--beside DIR", "other results, drawn beside these, pale", Path)
+    plot.option("--zoom", "one page that zooms, with events to click, instead: motion.html")
     plot.option("--pi", "axes in Π-terms: L_e, 1/ω_g, m a_g")
     plot.paper()
 
@@ -58,6 +59,10 @@ def _plot(options: Options) -> int:
         _plot_model(options.case, out, paper)
         return 0
     if kind is Kind.RUN:
+        if options.zoom:
+            options.refuse_others("--zoom --out", "is not for --zoom")
+            arguments.write(out, _zoom(out))
+            return 0
         pi = options.pi or "pi" in document
         drawn = plot(out, out, paper, options.xlim, _beside(options, out), pi)
     else:
@@ -68,6 +73,20 @@ def _plot(options: Options) -> int:
     for path in drawn:
         print(path)
     return 0
+
+
+def _zoom(out: Path) -> dict[str, bytes]:
+    """The page that zooms."""
+    from eventpound.case.run_options import Stated
+    from eventpound.report.run_figures import view_of_run
+    from eventpound.report.zoom import ZOOM_PAGE, zoom_page
+    from eventpound.results.trade import Trade, trade_of
+
+    view = view_of_run(out)
+    title = str((view.results.manifest.get("case") or {}).get("title", "")) or out.name
+    stated = (view.results.manifest.get("case") or {}).get("run", {}).get("units", ())
+    trade = Trade() if view.scene is None else trade_of(view.scene, Stated(units=tuple(stated)))
+    return {ZOOM_PAGE: zoom_page(view, title, trade)}
 
 
 def _beside(options: Options, out: Path) -> tuple[Path | Response, str] | None:

@@ -62,7 +62,7 @@ def _suite_entry(directory: Path, out: Path) -> GalleryEntry:
     results = out / directory.name
     table = simulate_suite(case, folder=results)
     files = [results / SUITE_TABLE, *plot_suite(case, table, results)]
-    claims = [case.figure.claim] if case.figure and case.figure.claim else []
+    claims = [figure.claim for figure in case.figures if figure.claim]
     return GalleryEntry(
         directory.name, "run", case.title, about_case(directory), len(table),
         [file.relative_to(out) for file in files], claims,

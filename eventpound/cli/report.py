@@ -5,11 +5,13 @@ touches anywhere ("separation needed"), then contacts, springs, storeys and bodi
 50 and 84 % fractiles over the records, the largest, and its record. What each row is: the page
 "design" of the documentation.
 
-Files, in CASE/results/report: report.pdf, two pages of A4 (of a study one); report.html, these
-pages and an appendix with all figures, tables and quantities; report.csv, a row a demand (of a
-study: for each combination of its axes), which a spreadsheet opens; beside it all that the runs
-gave. Further runs are made for it: one without contact, and one for each contact. A suite or a
-study that was stopped goes on. Records alone and a study in Π-terms have the appendix only.
+Files, in CASE/results/report: report.pdf, two pages of A4; report.html, these
+pages and an appendix with all figures, tables and quantities; report.xlsx, all numbers in the
+units of the report; report.csv, a row a demand (of a study: for each combination of its axes), SI;
+motion.html, histories, gaps and loops that zoom, with events to click;
+beside it all that the runs gave. Further runs are made for it: one without contact, and one for
+each contact. A suite or a study that was stopped goes on. Records alone and a study in Π-terms have
+the appendix only.
 
 Of a folder of cases: a report each, in FOLDER/reports, and a page with links to them.
 
@@ -21,7 +23,7 @@ Examples
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,10 +39,11 @@ if TYPE_CHECKING:
     from eventpound.case import Case
     from eventpound.report.html import Section
     from eventpound.report.sheets import Sheet
+    from eventpound.results.workbook import Row
     from eventpound.study.design import DesignRuns
     from eventpound.study.reading import StudyCase
 
-_FOLDER, _FOLDERS, PRINTED = "report", "reports", "report.pdf"
+_FOLDER, _FOLDERS, PRINTED, WORKBOOK = "report", "reports", "report.pdf", "report.xlsx"
 
 
 def add(commands: Commands) -> None:
@@ -76,8 +79,6 @@ def _report(options: Options) -> int:
 
 def _one(options: Options, out: Path) -> str:
     """Make the report of one case; its title."""
-    from eventpound.report.html import PAGE
-    from eventpound.report.sheets import as_html, as_pdf
     from eventpound.results.tables import table_csv
     from eventpound.study.design import DESIGN_TABLE
     from eventpound.study.kinds import Kind, kind_of
@@ -85,36 +86,58 @@ def _one(options: Options, out: Path) -> str:
     if kind_of(options.case)[0] is Kind.STUDY:
         options.refuse(["--suite"], "is for a case without a [study]")
         study = arguments.load_study(options.case)
-        title, table, parts = study.study.title, *_of_study(study, options, out)
+        title, table, pages = study.study.title, *_of_study(study, options, out)
     else:
         case = arguments.load(options.case, options.suite)
         arguments.check_solver_of(case)
         made = _of_run(case, out) if case.suite is None else _of_suite(case, out)
-        print("\n".join(_lines(case, made.table)))
+        print("\n".join(_lines(case, made)))
         title, table = case.title, made.table
-        parts = () if options.no_pages else (_sheets(made), _appendix(made, options, out))
+        pages = {} if options.no_pages else _pages_of(made, options, out)
     files = {DESIGN_TABLE: table_csv(table)} if len(table) else {}
-    if parts:
-        say("draw the report")
-        sheets, sections = parts
-        files |= {PAGE: as_html(title, sheets, sections)}
-        files |= {PRINTED: as_pdf(title, sheets)} if sheets else {}
-    arguments.write(out, files)
+    arguments.write(out, files | pages)
     return title
 
 
-def _sheets(made: DesignRuns) -> list[Sheet]:
-    """The two sheets; of a suite with the motion under the governing record."""
-    from eventpound.report.design_report import Told, design_sheets, governing_record, motion_under
+def _pages(
+    title: str,
+    sheets: Sequence[Sheet],
+    sections: Sequence[Section],
+    tables: Mapping[str, Sequence[Row]],
+) -> dict[str, bytes]:
+    """The files of a report."""
+    from eventpound.report.html import PAGE
+    from eventpound.report.sheets import as_html, as_pdf
+    from eventpound.results.workbook import workbook
+
+    files = {PAGE: as_html(title, sheets, sections)}
+    files |= {PRINTED: as_pdf(title, sheets)} if sheets else {}
+    return files | ({WORKBOOK: workbook(tables)} if tables else {})
+
+
+def _pages_of(made: DesignRuns, options: Options, out: Path) -> dict[str, bytes]:
+    """The report of a run or a suite, and a page of the motion under what governs."""
+    from eventpound.report import design_report as report
+    from eventpound.report.view import View
+    from eventpound.report.zoom import ZOOM_PAGE, zoom_page
+    from eventpound.results import gather
 
     case, response, record = made.case, made.response, ""
     assert case is not None
+    appendix = _appendix(made, options, out)
+    say("draw the report")
     if made.table.empty:
-        return []
+        return _pages(case.title, [], appendix, {})
     if response is None:
-        record = governing_record(case.scene, made.table)
-        response = motion_under(case, record)
-    return design_sheets(Told(case, made.table, made.runs, response, record))
+        record = report.governing_record(case.scene, made.table)
+        response = report.motion_under(case, record)
+    told = report.Told(case, made.table, made.runs, response, record)
+    sections = [report.all_numbers(told), *appendix]
+    tables = report.sheets_of_workbook(told)
+    files = _pages(case.title, report.design_sheets(told), sections, tables)
+    title = ": ".join(filter(None, [case.title, told.names.get(record, "")]))
+    view = View(gather(response, case), response.scene)
+    return files | {ZOOM_PAGE: zoom_page(view, title, told.trade)}
 
 
 def _appendix(made: DesignRuns, options: Options, out: Path) -> list[Section]:
@@ -160,9 +183,10 @@ def _of_suite(case: Case, out: Path) -> DesignRuns:
 
 def _of_study(
     case: StudyCase, options: Options, out: Path
-) -> tuple[pd.DataFrame, tuple[list[Sheet], list[Section]] | tuple[()]]:
-    """Make the runs of a study; its design numbers, its sheets and what stands behind them."""
-    from eventpound.report.design_study import study_cells, study_sheet
+) -> tuple[pd.DataFrame, dict[str, bytes]]:
+    """Make the runs of a study; its design numbers and the files of its report."""
+    from eventpound.report.design_study import study_cells, study_sheets, study_workbook
+    from eventpound.report.design_tables import capacity_words
     from eventpound.report.study_appendix import study_sections
     from eventpound.results.cells import lines_of
     from eventpound.results.trade import trade_of
@@ -181,22 +205,27 @@ def _of_study(
     first = case.study.bases[0].at_first().case
     trade = trade_of(first.scene, first.run.stated)
     if len(made.table):
+        print("\n".join(capacity_words(made.table, first.run.stated.fractile)))
         print("\n".join(lines_of(study_cells(plan, made.table, trade))))
     if options.no_pages:
-        return made.table, ()
-    sheets = [study_sheet(plan, made.table, trade)] if len(made.table) else []
+        return made.table, {}
+    sheets = study_sheets(plan, made.table, trade, case.warnings) if len(made.table) else []
     sections = study_sections(case, made.runs, read_manifest(runs) or {})
-    return made.table, (sheets, sections)
+    tables = study_workbook(made.table, trade)
+    return made.table, _pages(plan.title, sheets, sections, tables)
 
 
-def _lines(case: Case, table: pd.DataFrame) -> Iterator[str]:
+def _lines(case: Case, made: DesignRuns) -> Iterator[str]:
     """What an engineer asks, to be read: a table a part, in units of the trade."""
-    from eventpound.report.design_tables import design_cells, scaling_words
+    from eventpound.report.design_tables import capacity_words, screen_tables
+    from eventpound.report.record_tables import record_names, scaling_words
     from eventpound.results.cells import lines_of
     from eventpound.results.trade import trade_of
 
-    trade = trade_of(case.scene, case.run.stated)
+    trade, table = trade_of(case.scene, case.run.stated), made.table
+    names = {} if made.runs is None else record_names(made.runs)
     if scaling := scaling_words(case, trade):
         yield f"scaling   {scaling}"
-    for heading, cells in design_cells(case.scene, table, trade) if len(table) else ():
+    yield from capacity_words(table, case.run.stated.fractile)
+    for heading, cells in screen_tables(case.scene, table, names, trade) if len(table) else ():
         yield from ("", heading, *lines_of(cells))

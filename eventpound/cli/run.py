@@ -211,7 +211,8 @@ def _summary(response: Response) -> Iterator[str]:
         if not told:
             peak = max(shock[f"peaks.{body.name}.abs_max"] for body in scene.bodies)
             told = f"largest |u| {peak:.6e} m, {shock['impacts']:.0f} impacts"
-        yield f"shock {shock['shock']:<3} from {shock['start']:.6g} s: {told}"
+        of = f", {shock['record']} times {shock['scale']:.3g}" if "record" in shock else ""
+        yield f"shock {shock['shock']:<3} from {shock['start']:.6g} s{of}: {told}"
     work = response.work
     by = f"({response.solver}, rtol {response.task.rtol:g})"
     yield f"work      {work.steps} steps, {work.rhs} right-hand sides, {work.seconds:.3f} s {by}"

@@ -157,6 +157,19 @@ class Record:
         return self.start + self.time_step * np.array(begins, dtype=np.float64)
 
     @property
+    def shocks(self) -> list[tuple[str, float]]:
+        """What the records of a sequence are called, and the factor on each; of one record none."""
+        if self.source is None or not self.source.shocks:
+            return []
+        names, each = self.source.shocks, self.source.factors or (1.0,) * len(self.source.shocks)
+        return [(name, abs(f * self.factor)) for name, f in zip(names, each, strict=True)]
+
+    @property
+    def largest_factor(self) -> float:
+        """The largest factor on any of its records, in size."""
+        return max((factor for _, factor in self.shocks), default=abs(self.factor))
+
+    @property
     def factor(self) -> float:
         """What the samples are multiplied by."""
         factor = self.scale

@@ -2,7 +2,7 @@
 
 A column ``file`` (relative to the list) and perhaps ``units``, ``time_step`` (s;
 also ``dt_s``) and, of several in a file, ``component``. An empty cell says nothing;
-other columns are passed over.
+other columns are passed over. Files with semicolons between them are a sequence.
 """
 
 from __future__ import annotations
@@ -40,6 +40,11 @@ class ListedRecord:
     component: str | None
     time_step: float | None
     problem: str
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The files of a sequence, else the one."""
+        return tuple(file.strip() for file in self.file.split(";"))
 
 
 def read_list(path: Path) -> list[ListedRecord] | None:

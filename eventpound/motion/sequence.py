@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import PurePath
 
 import numpy as np
@@ -53,7 +54,29 @@ def in_sequence(records: Sequence[RecordData], rest: float) -> RecordData:
         sha256=hashlib.sha256(hashes.encode()).hexdigest(),
         notes=tuple(note for record in records for note in record.notes),
         begins=tuple(begins),
+        event=" + ".join(record.event or PurePath(record.file).stem for record in records),
+        shocks=tuple(record.called for record in records),
     )
+
+
+def times_each(sequence: RecordData, factors: Sequence[float]) -> RecordData:
+    """A sequence with each of its records multiplied by a factor of its own.
+
+    Parameters
+    ----------
+    sequence : RecordData
+        As `in_sequence` made it.
+    factors : sequence of float
+        One for each record.
+    """
+    sizes = np.diff([*sequence.begins, sequence.acceleration.size])
+    samples = sequence.acceleration * np.repeat(factors, sizes)
+    return replace(sequence, acceleration=samples, factors=tuple(factors))
+
+
+def records_of(sequence: RecordData) -> list[Floats]:
+    """Samples of each record of a sequence, with the rest before the next (m/s^2)."""
+    return np.split(sequence.acceleration, sequence.begins[1:])
 
 
 def _at_step(record: RecordData, dt: float) -> Floats:

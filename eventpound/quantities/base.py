@@ -32,10 +32,11 @@ class TakenFrom(StrEnum):
     FREE = "one more run, without contact, where named"
     APART = "one more run, in which no contact can close, where named"
     APART_ALONE = "one more run for each joint that is named, in which it cannot close"
+    CAPACITIES = "the quantities that have a capacity"
 
 
-FROM_FURTHER = (TakenFrom.FREE, TakenFrom.APART, TakenFrom.APART_ALONE)
-"""What needs a run of another scene."""
+FROM_FURTHER = (TakenFrom.FREE, TakenFrom.APART, TakenFrom.APART_ALONE, TakenFrom.CAPACITIES)
+"""What needs a run of another scene, or quantities that may."""
 FROM_ONE = (TakenFrom.FORCES, TakenFrom.LAWS, TakenFrom.ENERGY, TakenFrom.BETWEEN)
 """What needs all of a run, not its extremes only."""
 

@@ -91,6 +91,10 @@ class BatchResponse(Runs):
     def _repr_html_(self) -> str:
         return f"<p>{escape(repr(self))}</p>" + str(self.table.to_html(max_rows=10, max_cols=12))
 
+    def values_of(self, name: str) -> Floats | None:
+        """Values of a quantity by its name, shape (n,); None where the scene has no such one."""
+        return values_of(self, name)
+
     @property
     def table(self) -> pd.DataFrame:
         """Everything as one table, a row a variant.

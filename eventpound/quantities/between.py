@@ -143,6 +143,10 @@ def signals_of(scene: Scene, run: Recording) -> dict[str, Floats]:
             found[f"springs.{spring.name}.*_force"] = h.force[:, i]
     rate = {end: v for end, (v, _) in _motions(scene, run).items()}
     ground = {GROUND} | {support.name for support in scene.supports if not support.moves_apart}
+    u = _displacements(scene, run) if scene.seats else {}
+    for seat in scene.seats:
+        left, right = seat.between
+        found[f"seats.{seat.name}.*_opening"] = u[right] - u[left]
     for group in structures_of(scene):
         shear = link_force_on(ground, scene, h.force, rate, group)
         found[f"structures.{group[0]}.*_base_shear"] = shear
@@ -180,6 +184,16 @@ def _cells(t: Floats, values: Floats, slopes: Floats) -> Floats:
     """Integrals between rows."""
     h = np.diff(t)
     return h * (values[:-1] + values[1:]) / 2.0 + h**2 * (slopes[:-1] - slopes[1:]) / 12.0
+
+
+def _displacements(scene: Scene, run: Recording) -> dict[str, Floats]:
+    """Of all ends of seats, relative to the ground (m)."""
+    found = {GROUND: np.zeros_like(run.history.t)}
+    found |= {body.name: run.history.u[:, i] for i, body in enumerate(scene.bodies)}
+    for i, support in enumerate(scene.supports):
+        assert run.supports is not None
+        found[support.name] = run.supports.s[:, i]
+    return found
 
 
 def _motions(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:

@@ -88,12 +88,23 @@ LISTED: tuple[Quantity, ...] = (
              "P-Delta: theta = P D/(V h) of a storey with a weight P and a height h, D its largest "
              "drift and V what its backbone resists there; P/(k h) of a linear one.",
              v.stability_coefficient, only=v.has_weight),
+    Quantity(_SPRING + "slack_left", "slack left", D.LENGTH,
+             "What is left of the slack of a spring that only pulls, of the gap of one that only "
+             "pushes.", v.slack_left, only=v.goes_slack),
     Quantity("max_drift", "largest drift", D.LENGTH,
              "Largest elongation of either sign of all storeys, the springs with a height.",
              v.largest_drift, only=v.has_storeys),
     Quantity("max_drift_ratio", "largest drift ratio", D.NUMBER,
              "Largest drift ratio of all storeys, the springs with a height.",
              v.largest_drift_ratio, only=v.has_storeys),
+    Quantity("structures.<structure>.roof_drift", "roof drift", D.LENGTH,
+             "Largest displacement, relative to the ground, of the floors that carry no storey.",
+             v.roof_drift, only=v.has_floors),
+    Quantity("structures.<structure>.storey_drift_ratio", "largest storey drift", D.NUMBER,
+             "Largest drift ratio of the storeys of a structure.", v.storey_drift_ratio,
+             only=v.has_floors),
+    *six_of("seats.<seat>.*_opening", "opening", D.LENGTH,
+            ": how far the right end of a seat has moved away from the left one"),
     *six_of("base_shear.*", "base shear", D.FORCE,
             ": sum of the forces of springs and dashpots on the ground, positive to the right",
             "base_shear", TakenFrom.ACCELERATIONS),
@@ -198,6 +209,9 @@ LISTED: tuple[Quantity, ...] = (
                f"Peak displacement over that of the same scene without contact, {whose}.",
                v.amplification, TakenFrom.FREE, tabled=False)
       for owner, whose in _EACH),
+    Quantity("demand_over_capacity", "demand over capacity", D.NUMBER,
+             "The largest demand over its capacity, of all that have one in the case: above 1 one "
+             "of them is exceeded.", v.demand_over_capacity, TakenFrom.CAPACITIES, tabled=False),
     Quantity("scales.a_g", "$a_g$", D.ACCELERATION, "Amplitude of a pulse, else PGA.",
              v.of_scales("a_g"), tabled=False),
     Quantity("scales.omega_g", r"$\omega_g$", D.ANGULAR_FREQUENCY,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eventpound.case.run_options import RunOptions, Stated
+from eventpound.case.run_options import DEMAND_OVER_CAPACITY, RunOptions, Stated
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError, told_of
 from eventpound.numerics.arrays import Floats
@@ -123,7 +123,8 @@ def asked(parts: Iterable[tuple[Scene, Stated]]) -> list[str]:
                 there.add((option, word))
             except InputError as error:
                 needs = f"{option}: needs a contact, and there is none"
-                missing[option, word] = str(error) if option == "quantities" else needs
+                said = str(error).replace("quantities: ", f"{option}: ")
+                missing[option, word] = said if option in ("quantities", "capacity") else needs
     problems = [text for key, text in missing.items() if key not in there]
     if problems:
         raise InputError(problems)
@@ -198,6 +199,8 @@ def chosen(scene: Scene, wanted: Sequence[str], stated: Stated | None = None) ->
 
 def unstated(name: str, stated: Stated) -> str:
     """What is missing for a quantity to be about anything, as a problem; empty if nothing is."""
+    if name == DEMAND_OVER_CAPACITY and not stated.capacities:
+        return f"quantities: {name!r} needs capacities in the case"
     if not name.endswith(".estimated_force") or stated.contact_stiffness is not None:
         return ""
     return f"quantities: {name!r} needs contact_stiffness in [run] of a case"

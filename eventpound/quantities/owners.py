@@ -12,7 +12,12 @@ from eventpound.scene.structures import structures_of
 
 def owners(scene: Scene, kind: str) -> Sequence[str]:
     """Names of the parts of a scene that are of a kind; one without a name for the run."""
-    parts = {"body": scene.bodies, "spring": scene.springs, "contact": scene.contacts}
+    parts = {
+        "body": scene.bodies,
+        "spring": scene.springs,
+        "contact": scene.contacts,
+        "seat": scene.seats,
+    }
     named: Sequence[Any] | None = (parts | {"support": scene.supports}).get(kind)
     if named is not None:
         return [part.name for part in named]

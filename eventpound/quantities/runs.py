@@ -178,6 +178,10 @@ class Runs:
     stated: Stated = DEFAULTS
     struck: ContactNumbers | None = None
 
+    def values_of(self, name: str) -> Floats | None:
+        """Values of a quantity by its name, shape (n,), which the list of quantities gives."""
+        raise NotImplementedError
+
     @cached_property
     def contact_numbers(self) -> ContactNumbers:
         """Numbers of the contacts; NaN where impacts were not kept."""

@@ -51,6 +51,73 @@ def has_height(scene: Scene, i: int) -> bool:
     return scene.springs[i].height is not None
 
 
+def storeys_of_structure(scene: Scene, i: int) -> list[int]:
+    """Springs with a height of structure i."""
+    group = set(structures_of(scene)[i])
+    springs = enumerate(scene.springs)
+    return [k for k, s in springs if s.height is not None and group.intersection(s.between)]
+
+
+def has_floors(scene: Scene, i: int) -> bool:
+    """Whether structure i has storeys."""
+    return bool(storeys_of_structure(scene, i))
+
+
+def storey_drift_ratio(many: Runs, i: int) -> Floats:
+    """Largest drift ratio of the storeys of structure i."""
+    storeys = storeys_of_structure(many.scene, i)
+    return np.asarray(np.max([peak_drift_ratio(many, k) for k in storeys], axis=0))
+
+
+def roof_drift(many: Runs, i: int) -> Floats:
+    """Largest displacement of the floors of structure i that carry no storey (m)."""
+    scene, level = many.scene, _levels(many.scene)
+    storeys = [scene.springs[k].between for k in storeys_of_structure(scene, i)]
+    # The end that is farther from the ground stands on the other, in whichever order they are.
+    pairs = [sorted(ends, key=lambda end: level.get(end, len(level))) for ends in storeys]
+    carrying = {low for low, _ in pairs}
+    floors = {high for _, high in pairs}
+    roofs = (floors - carrying) or floors
+    names = [body.name for body in scene.bodies]
+    return np.asarray(np.max([_peak(many.displacement, names.index(r)) for r in roofs], axis=0))
+
+
+def _levels(scene: Scene) -> dict[str, int]:
+    """How many springs stand between the ground and each end of one, at least."""
+    found = dict.fromkeys((GROUND, *(support.name for support in scene.supports)), 0)
+    fresh = list(found)
+    while fresh:
+        beside = [s.between for s in scene.springs if set(fresh) & set(s.between)]
+        fresh = list({end for between in beside for end in between if end not in found})
+        found |= dict.fromkeys(fresh, max(found.values()) + 1)
+    return found
+
+
+def goes_slack(scene: Scene, i: int) -> bool:
+    """Whether spring i pulls only or pushes only."""
+    law = scene.springs[i].law
+    own = None if isinstance(law, Hysteretic) else reduced(law)
+    return own is not None and (own.compression == 0.0) != (own.extension == 0.0)
+
+
+def slack_left(many: Runs, i: int) -> Floats:
+    """What is left of the slack of a spring that pulls only, of the gap of one that pushes (m)."""
+    left = np.empty(many.t.shape)
+    for n in range(left.size):
+        own = reduced(_law_of(many, i, n))
+        x = many.elongation
+        pulled, pushed = own.offset - x.maximum[n, i], x.minimum[n, i] - own.offset
+        left[n] = pulled if own.compression == 0.0 else pushed
+    return np.where(left < 0.0, 0.0, left)
+
+
+def demand_over_capacity(many: Runs, _: int) -> Floats:
+    """The largest of all demands over their capacities; NaN where one of them is not known."""
+    found = ((many.values_of(name), capacity) for name, capacity in many.stated.capacities)
+    parts = [np.abs(values) / capacity for values, capacity in found if values is not None]
+    return np.asarray(np.max(parts, axis=0)) if parts else many.t * np.nan
+
+
 def has_storeys(scene: Scene, _: int) -> bool:
     """Whether a scene has storeys."""
     return any(spring.height is not None for spring in scene.springs)

@@ -13,20 +13,21 @@ from matplotlib.figure import Figure
 from eventpound.quantities.lookup import Named
 from eventpound.quantities.owners import owners
 from eventpound.report import style
-from eventpound.report.design_tables import NEEDED, joint_names
-from eventpound.report.markers import draw_circles
+from eventpound.report.design_tables import joint_names
+from eventpound.report.markers import draw_circles, draw_shocks
 from eventpound.report.view import View
 from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact
 from eventpound.scene.scene import Scene
+from eventpound.study.demands import NEEDED
 from eventpound.study.design import FRACTILES
 from eventpound.study.records import FAILED
 from eventpound.units import Dimension
 
 _WIDE, _HIGH = 7.4, 2.3
 """Inches."""
-_MOST_LINES, MOST_LEVELS = 6, 2
-"""Contacts or springs in one panel; those whose fractiles are drawn."""
+_MOST_LINES = 6
+"""Contacts or springs in one panel."""
 _NAMES: Any = {"fontsize": 6.5, "ncols": 2, "columnspacing": 1.0, "handletextpad": 0.2}
 
 
@@ -38,7 +39,11 @@ _ABOVE: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.96), **_NAMES, "b
 
 @style.styled()
 def demand_figure(
-    scene: Scene, runs: pd.DataFrame, panels: Sequence[Sequence[Named]], trade: Trade
+    scene: Scene,
+    runs: pd.DataFrame,
+    panels: Sequence[Sequence[Named]],
+    trade: Trade,
+    size: tuple[str, float] | None = None,
 ) -> Figure:
     """Draw demands over the numbers of the records.
 
@@ -52,22 +57,29 @@ def demand_figure(
         Demands of one kind each, of several owners.
     trade : Trade
         Units.
+    size : tuple of str and float, optional
+        What the size of the records is called, in a panel of its own, and what it was to be
+        (m/s^2), NaN where that is not said.
     """
     figure = style.new_figure(_WIDE, _HIGH)
     numbers = np.arange(1, len(runs) + 1)
     shown = runs.where(runs[FAILED] == "")
-    for axes, demands in zip(np.atleast_1d(figure.subplots(1, len(panels))), panels, strict=True):
+    every = list(np.atleast_1d(figure.subplots(1, len(panels) + (size is not None))))
+    if size is not None:
+        _draw_sizes(every.pop(0), runs, size, trade)
+    for axes, demands in zip(every, panels, strict=True):
         quantity = demands[0].quantity
-        name, size = trade.unit(quantity.dimension.unit, quantity.path)
+        name, of = trade.unit(quantity.dimension.unit, quantity.path)
         drawn = _largest(shown, demands)
+        # Lines of all are told apart by nobody.
+        governs = shown[[named.name for named in drawn]].abs().quantile(FRACTILES[-1] / 100.0)
         for named, color in zip(drawn, style.colors(len(drawn)), strict=True):
-            values = shown[named.name].abs().to_numpy(float) / size
+            values = shown[named.name].abs().to_numpy(float) / of
             joint = joint_names(scene).get(named.i) if quantity.path == NEEDED else None
             label = style.literal(joint or owners(scene, quantity.owner)[named.i])
             axes.plot(numbers, values, "o", markersize=3.0, color=color, label=label)
-            # Lines of more are told apart by nobody.
-            few = FRACTILES if len(demands) <= MOST_LEVELS else ()
-            for fractile, line in zip(few, (":", "--"), strict=False):
+            of_largest = FRACTILES if named.name == governs.idxmax() else ()
+            for fractile, line in zip(of_largest, (":", "--"), strict=False):
                 level = np.nanpercentile(values, fractile) if np.isfinite(values).any() else np.nan
                 axes.axhline(level, color=color, linestyle=line, linewidth=0.8)
         axes.set(xlabel="record", xlim=(0.0, len(runs) + 1.0))
@@ -80,6 +92,19 @@ def demand_figure(
             look = _NAMES | {"fontsize": fitting}
             axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), **look)
     return figure
+
+
+def _draw_sizes(axes: Axes, runs: pd.DataFrame, size: tuple[str, float], trade: Trade) -> None:
+    """Draw Sa of each record, and what it was to be."""
+    called, wanted = size
+    unit, of = trade.unit(Dimension.ACCELERATION.unit)
+    values = runs["Sa_T1"].to_numpy(float) / of
+    axes.plot(np.arange(1, len(runs) + 1), values, "o", markersize=3.0, color="#444444")
+    if wanted == wanted:
+        axes.axhline(wanted / of, color=style.PALETTE[1], linewidth=0.8, label="wanted")
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), **_NAMES)
+    axes.set(xlabel="record", xlim=(0.0, len(runs) + 1.0), ylabel=f"{called} ({unit})")
+    axes.set_ylim(0.0, 1.05 * axes.get_ylim()[1])
 
 
 def _largest(runs: pd.DataFrame, demands: Sequence[Named]) -> list[Named]:
@@ -114,6 +139,7 @@ def governing_figure(view: View, contact: Contact | None, body: str, trade: Trad
     unit, size = trade.unit(Dimension.ACCELERATION.unit)
     ground.plot(view.t, view.column("a_g") / size, color="#444444", linewidth=0.7)
     ground.set_ylabel(f"ground ({unit})")
+    draw_shocks(ground, view)
     unit, size = trade.unit(Dimension.LENGTH.unit)
     for name, color in zip(ends, style.colors(len(ends)), strict=True):
         line = view.displacement(name) / size

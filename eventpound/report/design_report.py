@@ -5,7 +5,7 @@ In units of the trade with three digits, so that it can be handed on as it is.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,18 +15,19 @@ from eventpound.case.case import Case
 from eventpound.case.member import member_case, member_of
 from eventpound.motion.record import Record
 from eventpound.quantities.lookup import Named
-from eventpound.report.design_figures import MOST_LEVELS, demand_figure, governing_figure
+from eventpound.report.design_figures import demand_figure, governing_figure
 from eventpound.report.design_tables import (
-    NEEDED,
+    capacity_words,
     contact_words,
     joint_names,
+    kind_tables,
     lacking_contacts,
-    record_cells,
-    record_names,
-    report_cells,
-    scaling_words,
+    page_cells,
+    shock_cells,
 )
+from eventpound.report.html import Section, table_of, text_part
 from eventpound.report.model_figure import model_figure
+from eventpound.report.record_tables import record_cells, record_names, scaling_words
 from eventpound.report.sheets import WIDTH, Block, Columns, Head, Picture, Sheet, Words, share_of
 from eventpound.report.view import View
 from eventpound.response import Response
@@ -36,27 +37,33 @@ from eventpound.results.input_tables import input_tables, rest_words
 from eventpound.results.inputs import inputs_of
 from eventpound.results.manifest import sha256, told_of, versions
 from eventpound.results.trade import Trade, three_digits, trade_of
-from eventpound.scene.at_rest import told_at_rest
+from eventpound.results.workbook import Row
+from eventpound.scene.at_rest import at_rest, told_at_rest
+from eventpound.scene.periods import longest_period
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, Slider
 from eventpound.simulation import simulate
-from eventpound.study.design import FRACTILES, demands_of
+from eventpound.study.demands import NEEDED, demands_of
+from eventpound.study.design import FRACTILES
 from eventpound.study.large_scales import large_scales_of
 from eventpound.study.records import FAILED
 from eventpound.units import TOLD, Dimension
 
 _PANELS = (
-    *(NEEDED, "contacts.<contact>.seat_used", "springs.<spring>.ductility"),
+    *(NEEDED, "seats.<seat>.max_opening", "springs.<spring>.ductility"),
+    "contacts.<contact>.seat_used",
     *("springs.<spring>.drift_ratio", "contacts.<contact>.max_impulse", "peaks.<body>.abs_max"),
 )
 """Demands that are drawn over the records, the first three that there are."""
 _MOST_PANELS, _MOST_LISTED, _MOST_WARNINGS = 3, 4, 4
-_ROOM = ((4, 7, 2), (3, 5, 2), (2, 4, 1), (1, 3, 1))
-"""Springs or bodies of one demand, those with the largest; parts in a table of the model; modes of
-structures: the first with which the sheet holds its sketch at `_LEAST` of its size at least."""
+_ROOM = ((2, 7, 2), (1, 5, 2), (1, 4, 1), (1, 3, 1))
+"""Largest elements of a kind for each demand; parts in a table of the model; modes of structures:
+the first with which the sheet holds its sketch at `_LEAST` of its size at least."""
 _LEAST = 0.8
 _SKETCH = WIDTH / 25.4, 3.6
 """Inches of the sketch."""
+_MOST_OF_SHOCKS = 14
+"""Demands that are told by shock."""
 _MOTION, _DEMAND = 95.0, 58.0
 """Heights of pictures (mm)."""
 _WIDE = 6
@@ -97,8 +104,8 @@ class Told:
         Its design numbers.
     runs : DataFrame, optional
         Table of a suite.
-    response : Response
-        The run, of a suite that under the governing record.
+    response : Response or None
+        The run, of a suite that under the governing record; None of a study.
     record : str
         Which that is; empty of a single run.
     """
@@ -106,7 +113,7 @@ class Told:
     case: Case
     design: pd.DataFrame
     runs: pd.DataFrame | None
-    response: Response
+    response: Response | None
     record: str
 
     @property
@@ -146,9 +153,48 @@ def motion_under(case: Case, record: str) -> Response:
     return simulate(member_case(case, member, member.read()))
 
 
+def all_numbers(told: Told) -> Section:
+    """All design numbers, as a section of the appendix: a table for each kind of elements."""
+    tables = kind_tables(told.scene, told.design, told.names, told.trade)
+    parts = [table_of(table.cells) for table in tables]
+    if told.response is not None and (shocks := told.response.shock_rows):
+        under = f"Under {told.names[told.record]}, " if told.record else ""
+        parts += [text_part(f"{under}by shock:"), table_of(_by_shock(told, shocks))]
+    return "Design numbers", parts
+
+
+def _by_shock(told: Told, shocks: Sequence[Mapping[str, Any]]) -> Cells:
+    return shock_cells(shocks, told.design, told.trade)
+
+
+def sheets_of_workbook(told: Told) -> dict[str, list[Row]]:
+    """All design numbers and the records, as sheets of a workbook in the units of the report."""
+    tables = kind_tables(told.scene, told.design, told.names, told.trade)
+    found: dict[str, list[Row]] = {t.name: [t.headings, *t.rows] for t in tables}
+    if told.response is not None and (shocks := told.response.shock_rows):
+        cells = _by_shock(told, shocks)
+        found["Shocks"] = [
+            cells.headings,
+            *([a, b, c, *map(_value, v)] for a, b, c, *v in cells.rows),
+        ]
+    if told.runs is not None:
+        records = record_cells(told.scene, told.runs, told.trade, len(told.runs))
+        rows = [row for part in records for row in part.rows]
+        found["Records"] = [records[0].headings, *([n, *map(_value, v)] for n, *v in rows)]
+    return found
+
+
+def _value(text: str) -> str | float:
+    """A cell of a table as a number, where it is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def design_sheets(told: Told) -> list[Sheet]:
     """The two sheets of a report."""
-    sketch = Picture(model_figure(told.scene, trade=told.trade, within=_SKETCH), _SKETCH[1] * 25.4)
+    sketch = _sketch(told)
     firsts = (list(_first(told, sketch, *room)) for room in _ROOM)
     first = next(firsts)
     while share_of(first) < _LEAST and (shorter := next(firsts, None)) is not None:
@@ -161,12 +207,23 @@ def _first(told: Told, sketch: Picture, most: int, parts: int, structures: int) 
     yield Head(told.case.title, title=True)
     yield Words(tuple(_asked(told)))
     yield Head("Design numbers")
-    numbers = report_cells(told.scene, told.design, told.names, told.trade, most)
+    numbers = page_cells(told.scene, told.design, told.names, told.trade, most)
     # Of a run they are narrow.
     beside = Columns(tuple((table,) for table in numbers))
     yield from (beside,) if told.runs is None else numbers
     yield Head("Model")
     yield from _model(told, sketch, parts, structures)
+
+
+def _sketch(told: Told) -> Picture:
+    figure = model_figure(told.scene, trade=told.trade, within=_SKETCH)
+    return Picture(figure, _SKETCH[1] * 25.4)
+
+
+def model_blocks(told: Told) -> Iterator[Block]:
+    """The sketch and the tables of the parts, with room for most of them."""
+    _, parts, structures = _ROOM[0]
+    yield from _model(told, _sketch(told), 3 * parts, structures)
 
 
 def _model(told: Told, sketch: Picture, parts: int, structures: int) -> Iterator[Block]:
@@ -194,29 +251,47 @@ def _inputs(case: Case, most: int) -> dict[str, Any]:
 
 def _second(told: Told) -> Iterator[Block]:
     """Under what, when, and how sure."""
+    assert told.response is not None
     scene, peaks = told.scene, told.response.peaks["abs_max"]
+    scene_of_run = told.response.scene
     worst = scene.contacts[lacking_contacts(scene, told.design)[0]] if scene.contacts else None
     under = ""
     if told.runs is not None:
         (factor,) = told.runs.loc[told.runs["record"] == told.record, "scale"]
-        under = f" under record {told.names[told.record]}, which governs, times {factor:.3g}"
+        each = [f for _, f in getattr(scene_of_run.motion, "shocks", ())] or [factor]
+        times = ", ".join(f"{f:.3g}" for f in each)
+        under = f" under record {told.names[told.record]}, which governs, times {times}"
     view = View(gather(told.response, told.case), told.response.scene)
     yield Head(f"Motion{under}")
     motion = governing_figure(view, worst, str(peaks.idxmax()), told.trade)
     yield Picture(motion, _MOTION)
+    if shocks := told.response.shock_rows:
+        yield Head("Demands by shock")
+        yield shock_cells(shocks, told.design, told.trade, most=_MOST_OF_SHOCKS)
     if told.runs is not None:
         yield Head("Demand over the records")
         panels, (low, high) = _panels(told), FRACTILES
-        yield Picture(demand_figure(scene, told.runs, panels, told.trade), _DEMAND)
-        lines = f" Dotted lines: {low:g} %, dashed: {high:g} % of them."
-        drawn = any(len(panel) <= MOST_LEVELS for panel in panels)
-        yield Words((f"Numbers of records as below.{lines * drawn}",))
+        figure = demand_figure(scene, told.runs, panels, told.trade, _sizes(told))
+        yield Picture(figure, _DEMAND)
+        lines = f"Dotted lines: {low:g} %, dashed: {high:g} % of them, of several the largest."
+        yield Words((f"Numbers of records as below. {lines}",))
         yield Head("Records")
         yield Columns(tuple((table,) for table in record_cells(scene, told.runs, told.trade)))
     yield Head("Limits and warnings")
-    yield Words(tuple(f"• {text}" for text in _limits(told)))
+    yield Words(tuple(f"• {text}" for text in limits(told)))
     yield Head("Origin")
     yield Words(tuple(_origin(told)))
+
+
+def _sizes(told: Told) -> tuple[str, float] | None:
+    """What Sa of the records is called, and what it was to be; None where it is not known."""
+    period = longest_period(at_rest(told.scene, told.case.run.start_time))
+    suite, runs = told.case.suite, told.runs
+    if period is None or suite is None or runs is None:
+        return None
+    if "Sa_T1" not in runs or runs["Sa_T1"].isna().all():
+        return None
+    return f"Sa({period:.3g} s)", suite.options.size.wanted(period)
 
 
 def _asked(told: Told) -> Iterator[str]:
@@ -229,8 +304,8 @@ def _asked(told: Told) -> Iterator[str]:
         yield f"Under {int((runs[FAILED] == '').sum())} records; {scaling}."
     for i in lacking_contacts(told.scene, design)[:_MOST_LISTED]:
         contact = told.scene.contacts[i]
-        rows = design[design["quantity"].str.startswith(f"contacts.{contact.name}.")]
-        yield f"Contact {contact_words(contact, rows, told.trade)}."
+        yield f"Contact {contact_words(contact, design, told.trade)}."
+    yield from capacity_words(design, told.case.run.stated.fractile)
 
 
 def _motion(told: Told) -> str:
@@ -268,15 +343,15 @@ def _three(cell: str, nothing: float) -> str:
 
 def _panels(told: Told) -> list[list[Named]]:
     """Demands that are drawn, those of one kind together."""
-    found = demands_of(told.scene, told.case.run.stated)
+    found = [demand.named for demand in demands_of(told.scene, told.case.run.stated)]
     groups = ([n for n in found if n.quantity.path == path] for path in _PANELS)
     needed = joint_names(told.scene)
     groups = ([n for n in group if n.quantity.path != NEEDED or n.i in needed] for group in groups)
     return [group for group in groups if group][:_MOST_PANELS]
 
 
-def _limits(told: Told) -> Iterator[str]:
-    """What is not in the numbers, and what the case was warned of."""
+def limits(told: Told, warnings: Sequence[str] = ()) -> Iterator[str]:
+    """What is not in the numbers, and what the case was warned of, those that matter first."""
     yield from LIMITS
     laws = {type(spring.law) for spring in told.scene.springs}
     yield from (text for law, text in _OF_LAWS.items() if law in laws)
@@ -293,8 +368,23 @@ def _limits(told: Told) -> Iterator[str]:
             yield f"{large}."
         for row in failed.head(_MOST_WARNINGS).to_dict("records"):
             yield f"Left out, because it failed: {row['record']}: {row[FAILED]}."
-    for warning in told.case.warnings[:_MOST_WARNINGS]:
-        yield warning.partition(".toml: ")[2] or warning
+    yield from _warnings(warnings or told.case.warnings)
+
+
+def _warnings(given: Sequence[str]) -> Iterator[str]:
+    """Warnings without the name of the file, those of one kind together."""
+    alike: dict[str, list[str]] = {}
+    for warning in given:
+        text = warning.partition(".toml: ")[2] or warning
+        where, _, said = text.partition(": ")
+        alike.setdefault(said or text, []).append(where)
+    # A warning of its own says more than one that many springs have.
+    kinds = sorted(alike.items(), key=lambda item: len(item[1]))
+    for said, places in kinds[:_MOST_WARNINGS]:
+        more = f" and {len(places) - 2} more" if len(places) > 2 else ""
+        yield f"{', '.join(places[:2])}{more}: {said}"
+    if len(kinds) > _MOST_WARNINGS:
+        yield f"{len(kinds) - _MOST_WARNINGS} more warnings, which `eventpound check` shows."
 
 
 def _origin(told: Told) -> Iterator[str]:

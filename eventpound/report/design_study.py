@@ -1,8 +1,8 @@
-"""The report of a study: one sheet with its demands over the axes, the largest of all owners."""
+"""The report of a study: its demands over the axes, the largest of all elements; its model."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,16 +10,22 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from eventpound.report import style
-from eventpound.report.design_report import LIMITS
+from eventpound.report.design_report import Told, limits, model_blocks
+from eventpound.report.design_tables import NUMBERS, capacity_words
 from eventpound.report.sheets import Block, Head, Picture, Sheet, Words
 from eventpound.report.symbols import axis_label, display_unit, value_label
 from eventpound.results.cells import Cells, headed
+from eventpound.results.manifest import versions
 from eventpound.results.trade import Trade
-from eventpound.study.design import FRACTILES
+from eventpound.results.workbook import Row
+from eventpound.study.design import FRACTILES, MOST_CLOSE
 from eventpound.study.large_scales import large_scales_of
 from eventpound.study.plan import RECORD, Plan
 
-_SHOWN = ("separation_needed", "seat_used", "max_impulse", "ductility", "drift_ratio")
+_SHOWN = (
+    *("separation_needed", "ductility", "max_opening", "seat_used", "max_impulse"),
+    *("storey_drift_ratio", "abs_max_force"),
+)
 """Demands, by the last words of their quantities."""
 _MOST_ROWS, _MOST_CURVES, _MOST_PANELS = 40, 6, 3
 _WIDE, _HIGH, _TALL = 7.4, 2.6, 66.0
@@ -27,13 +33,29 @@ _WIDE, _HIGH, _TALL = 7.4, 2.6, 66.0
 
 
 def study_cells(study: Plan, design: pd.DataFrame, trade: Trade) -> Cells:
-    """The largest demands of all contacts, springs or bodies, a row a point of the study."""
+    """The largest demands of all elements of a kind, a row a point of the study."""
     values, called = _largest(study, design)
     return _table(values, _axes(study), called, trade)
 
 
-def study_sheet(study: Plan, design: pd.DataFrame, trade: Trade) -> Sheet:
-    """The sheet of a study.
+def study_workbook(design: pd.DataFrame, trade: Trade) -> dict[str, list[Row]]:
+    """All design numbers of a study as sheets of a workbook, one a kind of elements."""
+    sheets: dict[str, list[Row]] = {}
+    for kind, part in design.groupby("kind", sort=False) if len(design) else ():
+        shown = part.dropna(axis="columns", how="all").drop(columns=["kind"])
+        rows = sheets[str(kind)] = [[*map(str, shown.columns)]]
+        for row in shown.to_dict("records"):
+            unit, size = trade.unit(str(row["unit"]), str(row["quantity"]))
+            scaled = {key: row[key] / size for key in NUMBERS if key in row} | {"unit": unit}
+            cells = (scaled.get(str(key), value) for key, value in row.items())
+            rows.append([x if isinstance(x, str) else float(x) for x in cells])
+    return sheets
+
+
+def study_sheets(
+    study: Plan, design: pd.DataFrame, trade: Trade, warnings: Sequence[str]
+) -> list[Sheet]:
+    """The two sheets of a study: its numbers; its model, limits and origin.
 
     Parameters
     ----------
@@ -43,8 +65,10 @@ def study_sheet(study: Plan, design: pd.DataFrame, trade: Trade) -> Sheet:
         Its design numbers, a row a demand at each combination of the axes.
     trade : Trade
         Units.
+    warnings : sequence of str
+        Of its case.
     """
-    return list(_blocks(study, design, trade))
+    return [list(_first(study, design, trade)), list(_second(study, design, warnings))]
 
 
 def _axes(study: Plan) -> list[str]:
@@ -64,39 +88,71 @@ def _largest(study: Plan, design: pd.DataFrame) -> tuple[pd.DataFrame, dict[str,
         word: rows.groupby(at, sort=False, dropna=False)[column].max()
         for word, rows in found.items()
     }
+    if "demand/capacity" in design:
+        ratios = design.groupby(at, sort=False, dropna=False)["demand/capacity"]
+        values["ratio"] = ratios.max()
+        found["ratio"] = pd.DataFrame(
+            [{"demand": "demand/capacity", "unit": "", "quantity": "demand_over_capacity"}]
+        )
     return pd.DataFrame(values).reset_index(), {word: rows.iloc[0] for word, rows in found.items()}
 
 
-def _blocks(study: Plan, design: pd.DataFrame, trade: Trade) -> Iterator[Block]:
+def _first(study: Plan, design: pd.DataFrame, trade: Trade) -> Iterator[Block]:
     axes = _axes(study)
     yield Head(study.title, title=True)
+    stated = study.bases[0].case.run.stated
     records, (_, high) = int(design["records"].max()), FRACTILES
     under = f"the {high:g} % fractile over {records} records" if records > 1 else "one motion"
-    said = f"Each number is the largest of all contacts, springs or bodies, under {under}."
-    yield Words((said, *filter(None, [large_scales_of(study.bases)])))
+    said = [f"Each number is the largest of all elements of its kind, under {under}."]
+    if records > 1 and "demand/capacity" in design:
+        said.append(f"Demand over capacity is at {stated.fractile:g} % of the records.")
+    said += [*capacity_words(design, stated.fractile), large_scales_of(study.bases)]
+    if study.size > MOST_CLOSE:
+        said.append(f"Forces that take rows close together are left out of {study.size} runs.")
+    yield Words(tuple(filter(None, said)))
     values, called = _largest(study, design)
     numeric = [axis for axis in axes if values[axis].dtype.kind == "f"]
     if numeric:
         yield Head("Demand over the axes")
-        yield Picture(_figure(values, axes, numeric, called, trade), _TALL)
+        yield Picture(_figure(study, values, numeric, called, trade), _TALL)
     yield Head("Design numbers")
     yield _table(values, axes, called, trade)
-    yield Head("Limits and origin")
-    by = f"Solver {study.solver}, relative tolerance {study.rtol:g}; study {study.digest[:16]}."
-    yield Words((*(f"• {text}" for text in LIMITS), by))
+
+
+def _second(study: Plan, design: pd.DataFrame, warnings: Sequence[str]) -> Iterator[Block]:
+    base = study.bases[0]
+    told = Told(base.at_first().case, design, None, None, "")
+    yield Head("Model of the first run")
+    yield from model_blocks(told)
+    if base.records:
+        yield Head("Records")
+        yield Words((f"{len(base.records)}: {', '.join(r.name for r in base.records)}.",))
+    yield Head("Limits and warnings")
+    yield Words(tuple(f"• {text}" for text in limits(told, warnings)))
+    yield Head("Origin")
+    by = ", ".join(f"{name} {version}" for name, version in versions().items() if version)
+    solver = f"Solver {study.solver}, relative tolerance {study.rtol:g}. {by}."
+    yield Words((solver, f"SHA-256: study {study.digest[:16]}."))
+
+
+def _together(study: Plan, x: str) -> set[str]:
+    """Axes that vary together with one, row by row; it is one of them."""
+    words = {axis.key: axis.together for base in study.bases for axis in base.axes}
+    return {x} | {key for key, word in words.items() if word and word == words.get(x)}
 
 
 @style.styled()
 def _figure(
+    study: Plan,
     values: pd.DataFrame,
-    axes: list[str],
     numeric: list[str],
     called: dict[str, pd.Series],
     trade: Trade,
 ) -> Figure:
     """Demands over the axis of most values, a curve for each combination of the others."""
     x = max(numeric, key=lambda axis: values[axis].nunique())
-    others = [axis for axis in axes if axis != x]
+    with_x = _together(study, x)
+    others = [axis for axis in _axes(study) if axis not in with_x]
     unit = display_unit(x, float(values[x].abs().max()))
     shown = list(called)[:_MOST_PANELS]
     figure = style.new_figure(_WIDE, _HIGH)

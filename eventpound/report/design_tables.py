@@ -1,68 +1,77 @@
-"""Design numbers as tables to be read, in units of the trade: all of them, or those of a report."""
+"""Design numbers as tables to be read, in units of the trade: all, or those of two pages."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from eventpound.quantities.lookup import Named, find
 from eventpound.results.cells import Cells, headed
 from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact, weights_of
 from eventpound.scene.joints import joints_of
-from eventpound.scene.periods import longest_period
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Hysteretic, Slider
+from eventpound.study.demands import NEEDED
 from eventpound.study.design import FRACTILES
-from eventpound.study.records import FAILED
-from eventpound.units import Dimension
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eventpound.case.case import Case
 
 _Row: TypeAlias = "Mapping[Any, Any]"
-_NUMBERS = ("value", *(f"{p:g} %" for p in FRACTILES), "largest")
+NUMBERS = ("value", *(f"{p:g} %" for p in FRACTILES), "largest")
 """Columns of numbers, of a run or of many."""
-_OTHERS = {"spring": "Springs", "body": "Bodies", "": "Whole"}
-_CONTACT, _SPRING = "contacts.<contact>.", "springs.<spring>."
-NEEDED = _CONTACT + "separation_needed"
-"""The gap with which nothing touches, of a joint."""
-_OF_ONE = tuple(_CONTACT + word for word in ("avoiding_gap", "avoiding_gap_alone"))
-"""Gaps of one contact, which may be the same."""
-_PEAK, _RESIDUAL = _SPRING + "abs_max_elongation", _SPRING + "residual_elongation"
-_OWN: dict[str, type] = {_PEAK: Slider, _RESIDUAL: Hysteretic}
-"""Laws of which a demand is told: others have ductility, drift, or none that stays."""
-_OF_CONTACTS = (
-    *_OF_ONE,
-    *(_CONTACT + word for word in ("absolute_sum", "srss", "cqc", "seat_used")),
-    *(_CONTACT + word for word in ("impacts_faster", "fastest_closing", "max_impulse")),
-    *(_CONTACT + word for word in ("estimated_force", "max_force")),
-)
-_OF_OTHERS = (
-    *(_SPRING + "ductility", _PEAK, _RESIDUAL, _SPRING + "slip_path"),
-    *(_SPRING + word for word in ("passive_force", "passive_depth", "residual_gap")),
-    *(_SPRING + word for word in ("strength_lost", "stiffness_lost", "drift_ratio")),
-    *(_SPRING + "stability_coefficient", "max_drift"),
-    *("acceleration.<body>.abs_max", "peaks.<body>.abs_max", "base_shear.abs_max"),
-)
-"""Demands that stand in a report."""
+_HELD = ("capacity", "demand/capacity", "passes")
+"""Columns of a demand that has a capacity."""
+_JOINTS, _CONTACTS = "Joints", "Contacts"
 _MOST_JOINTS, _MOST_OF_CONTACTS = 6, 3
-"""Joints in a report, and contacts with the rest of their numbers."""
-_MOST_RECORDS, _IN_ONE_COLUMN = 44, 12
-_LONGEST = 44
-"""Letters of the name of a record."""
+"""Joints in a report, and contacts with their numbers."""
+_NOT_IN_PAGES = ("dissipated_energy", "largest_gap", ".impacts")
+"""Ends of quantities that the two pages have no room for."""
 _SAME = 5e-3
 """Part by which two separations may differ and be told as one."""
-_SIZES = (("scale", "scale", ""), ("PGA", "PGA", "m/s^2"), ("T_m", "T_m", "s"))
-"""Numbers of a record: columns of a suite, what they are called and units (SI)."""
+_AVOIDING = "contacts.<contact>.avoiding_gap"
+_GAPS = (".avoiding_gap", ".avoiding_gap_alone")
+"""Ends of the names of gaps of one contact, which may be those of its joint."""
+Cell = str | float
+"""Of a table of one kind: a text, or a number in its unit."""
 
 
-def design_cells(scene: Scene, table: pd.DataFrame, trade: Trade) -> Iterator[tuple[str, Cells]]:
-    """Headings and tables of the design numbers of a run or a suite.
+@dataclass(frozen=True)
+class KindTable:
+    """Elements of one kind, a row each, with all that is asked of them.
+
+    Parameters
+    ----------
+    name : str
+        Of the kind.
+    headings : tuple of str
+        The element, then for each demand its numbers with the unit.
+    rows : tuple of tuple
+        Numbers in these units, NaN where there is none.
+    texts : tuple of tuple of str
+        The same as it is read.
+    """
+
+    name: str
+    headings: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    texts: tuple[tuple[str, ...], ...]
+
+    @property
+    def cells(self) -> Cells:
+        """As a table to be read."""
+        rows = self.rows or ((),)
+        words = tuple(isinstance(cell, str) for cell in rows[0])
+        return Cells(self.headings, self.texts, words)
+
+
+def kind_tables(
+    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], trade: Trade
+) -> list[KindTable]:
+    """All design numbers, a table for each kind of elements.
 
     Parameters
     ----------
@@ -70,35 +79,92 @@ def design_cells(scene: Scene, table: pd.DataFrame, trade: Trade) -> Iterator[tu
         Whose they are.
     table : DataFrame
         As `eventpound.design_numbers` gives it.
+    names : mapping of str to str
+        What records are called, by their names in the table.
     trade : Trade
         Units.
     """
-    kinds = table["quantity"].map(lambda name: _found(scene, name).quantity.owner)
-    if scene.contacts:
-        joints = type(table)(_of_joints(scene, _by_name(table)))
-        yield "Joints, opened until nothing touches anywhere", _cells(joints, trade, whose=True)
-    for contact in scene.contacts:
-        rows = table[(kinds == "contact") & (table["of"] == contact.name)]
-        shown = rows[rows["quantity"] != _of(NEEDED, contact)]
-        yield f"Contact {contact_words(contact, rows, trade)}", _cells(shown, trade, whose=False)
-    for kind, heading in _OTHERS.items():
-        rows = table[kinds == kind]
-        if len(rows):
-            yield heading, _cells(rows, trade, whose=bool(kind))
-
-
-def _found(scene: Scene, name: str) -> Named:
-    """A quantity of a table of the scene."""
-    found = find(scene, name)
-    assert found is not None, name
+    rows = _by_name(table)
+    found = []
+    for kind, part in table.groupby("kind", sort=False):
+        own = [rows[name] for name in part["quantity"]]
+        own = _of_joints(scene, rows) if kind == _JOINTS else own
+        found.append(_kind_table(str(kind), own, names, trade))
     return found
 
 
+def _kind_table(
+    kind: str, rows: Sequence[_Row], names: Mapping[str, str], trade: Trade
+) -> KindTable:
+    """A row an element, with the numbers of each demand side by side."""
+    demands = list(dict.fromkeys(str(row["demand"]) for row in rows))
+    by_place = {(row["of"], row["demand"]): row for row in rows}
+    headings, columns, texts = [kind], list[list[Cell]](), list[list[str]]()
+    elements = list(dict.fromkeys(str(row["of"]) for row in rows))
+    for demand in demands:
+        own = [by_place.get((of, demand), {}) for of in elements]
+        first = next(row for row in own if row)
+        unit, size = trade.unit(str(first["unit"]), str(first["quantity"]))
+        for key in _columns(own):
+            number = key in (*NUMBERS, "capacity")
+            named = headed(demand, unit) if number else demand
+            headings.append(named if key == "value" else f"{named}: {key}")
+            texts.append([_text(row, key, names, trade) for row in own])
+            columns.append([_cell(row, key, size if number else 1.0, names) for row in own])
+    return KindTable(
+        kind,
+        tuple(headings),
+        tuple(zip(elements, *columns, strict=True)),
+        tuple(zip(elements, *texts, strict=True)),
+    )
+
+
+def _columns(rows: Sequence[_Row]) -> list[str]:
+    """Columns that some rows of a demand have."""
+    keys = (*NUMBERS, "under", "at", *_HELD)
+    return [key for key in keys if any(_word(row.get(key, "")) for row in rows)]
+
+
+def _text(row: _Row, key: str, names: Mapping[str, str], trade: Trade) -> str:
+    """A cell as it is read."""
+    if key == "under":
+        return _under(row, names)
+    value = row.get(key, "")
+    if key in (*NUMBERS, "capacity") and row:
+        # What may be held is no gap to be built.
+        name = "" if key == "capacity" else str(row["quantity"])
+        unit = str(row["unit"])
+        percent = key == "capacity" and str(row["quantity"]).endswith("drift_ratio")
+        if value != value:
+            return "" if key == "capacity" else trade.number(float(value), unit, name)
+        return trade.number(float(value), unit, "drift_ratio" if percent else name)
+    return f"{value:.2f}" if isinstance(value, float) and value == value else _word(value)
+
+
+def _cell(row: _Row, key: str, size: float, names: Mapping[str, str]) -> Cell:
+    """A cell as a number in its unit, or as a text."""
+    if key == "under":
+        return _under(row, names)
+    value = row.get(key, np.nan)
+    if key in ("at", "passes"):
+        return _word(value)
+    return float(value) / size
+
+
+def _under(row: _Row, names: Mapping[str, str]) -> str:
+    """The record that governs, with its factor."""
+    record = _word(row.get("under", ""))
+    scale = row.get("scale", np.nan)
+    factor = f" ×{scale:.3g}" if record and scale == scale and scale != 1.0 else ""
+    return names.get(record, record) + factor
+
+
 def contact_words(contact: Contact, rows: pd.DataFrame, trade: Trade) -> str:
-    """A contact, its ends and gap, and how often it is struck, by the rows of its numbers."""
+    """A contact, its ends and gap, and how often it is struck, by the table of its numbers."""
     ends = (contact.left, contact.right)
     names = " | ".join(" + ".join(name for name, _ in weights_of(end)) for end in ends)
     text = f"{contact.name}: {names}, gap {trade.words(contact.gap, 'm')}"
+    rows = rows[(rows["kind"] == _CONTACTS) & (rows["of"] == contact.name)]
     if rows.empty:
         return text
     if "pounding" in rows:
@@ -108,20 +174,52 @@ def contact_words(contact: Contact, rows: pd.DataFrame, trade: Trade) -> str:
     return f"{text}, struck {trade.number(count, '', name)} times"
 
 
-def _cells(rows: pd.DataFrame, trade: Trade, whose: bool) -> Cells:
+def screen_tables(
+    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], trade: Trade
+) -> Iterator[tuple[str, Cells]]:
+    """Headings and tables of the design numbers of a run or a suite, a line a demand.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose they are.
+    table : DataFrame
+        As `eventpound.design_numbers` gives it.
+    names : mapping of str to str
+        What records are called, by their names in the table.
+    trade : Trade
+        Units.
+    """
+    for kind, part in table.groupby("kind", sort=False):
+        if kind == _JOINTS:
+            yield (
+                "Joints, opened until nothing touches anywhere",
+                _lines(_of_joints(scene, _by_name(table)), names, trade),
+            )
+        elif kind == _CONTACTS:
+            for contact in scene.contacts:
+                rows = part[part["of"] == contact.name]
+                yield (
+                    f"Contact {contact_words(contact, table, trade)}",
+                    _lines(rows.to_dict("records"), names, trade, whose=False),
+                )
+        else:
+            yield str(kind), _lines(part.to_dict("records"), names, trade)
+
+
+def _lines(
+    rows: Sequence[_Row], names: Mapping[str, str], trade: Trade, whose: bool = True
+) -> Cells:
     """A table, a line a demand with its unit."""
-    numbers = [name for name in _NUMBERS if name in rows]
-    words = ["under"] if "under" in rows else []
+    keys = _columns(rows)
     lines = []
-    for row in rows.to_dict("records"):
-        name, unit = str(row["quantity"]), str(row["unit"])
-        shown = trade.unit(unit, name)[0]
+    for row in rows:
+        shown = trade.unit(str(row["unit"]), str(row["quantity"]))[0]
         called = f"{row['demand']}, {shown}" if shown else str(row["demand"])
-        first = f"{row['of']}: {called}" if whose else called
-        cells = (trade.number(float(row[number]), unit, name) for number in numbers)
-        lines.append((first, *cells, *(_word(row[key]) for key in words)))
-    kinds = (True, *(False for _ in numbers), *(True for _ in words))
-    return Cells(("", *numbers, *words), tuple(lines), kinds)
+        first = f"{row['of']}: {called}" if whose and row["of"] else called
+        lines.append((first, *(_text(row, key, names, trade) for key in keys)))
+    words = (True, *(key in ("under", "at", "passes") for key in keys))
+    return Cells(("", *keys), tuple(lines), words)
 
 
 def _word(value: object) -> str:
@@ -129,10 +227,10 @@ def _word(value: object) -> str:
     return "" if value != value else str(value)
 
 
-def report_cells(
+def page_cells(
     scene: Scene, table: pd.DataFrame, names: Mapping[str, str], trade: Trade, most: int
 ) -> list[Cells]:
-    """The design numbers that a report has room for: at contacts, and of all others.
+    """The design numbers that two pages have room for: at joints, and what governs of each kind.
 
     Parameters
     ----------
@@ -145,11 +243,52 @@ def report_cells(
     trade : Trade
         Units.
     most : int
-        Springs or bodies of one demand, those with the largest.
+        Elements of one kind that are shown.
     """
     rows = _by_name(table)
-    parts = (_at_contacts(scene, table, rows), _of_others(scene, rows))
-    return [_reported(list(part), names, trade, most) for part in parts if part]
+    at_joints = _at_joints(scene, table, rows)
+    others: list[_Row] = []
+    for kind, part in table.groupby("kind", sort=False):
+        if kind not in (_JOINTS, _CONTACTS):
+            shown = [r for r in part.to_dict("records") if not _left_out(str(r["quantity"]))]
+            others += _governing(str(kind), shown, most)
+    groups = ((_JOINTS, at_joints), ("Elements that govern", others))
+    return [_page_table(name, group, names, trade) for name, group in groups if group]
+
+
+def _left_out(quantity: str) -> bool:
+    return quantity.endswith(_NOT_IN_PAGES)
+
+
+def _governing(kind: str, rows: Sequence[_Row], most: int) -> list[_Row]:
+    """Of each demand the largest rows, the one nearest to its capacity, and all that exceed it."""
+    count = len({row["of"] for row in rows})
+    heading = kind if count == 1 else f"{kind} ({count})"
+    found: list[_Row] = []
+    for demand in dict.fromkeys(row["demand"] for row in rows):
+        own = sorted((r for r in rows if r["demand"] == demand), key=_size, reverse=True)
+        held = sorted(own, key=_ratio, reverse=True)
+        first = [*held[:1], *(row for row in held if _ratio(row) > 1.0)]
+        first = [row for row in first if _ratio(row) > 0.0]
+        found += list({row["of"]: row for row in (*own[:most], *first)}.values())
+    return [{**row, "kind": heading} for row in found]
+
+
+def _at_joints(scene: Scene, table: pd.DataFrame, rows: Mapping[str, _Row]) -> list[_Row]:
+    """What joints need, then rows of each contact, of that first which lacks most of its gap."""
+    if not scene.contacts:
+        return []
+    order = [scene.contacts[i] for i in lacking_contacts(scene, table)]
+    needed = [_of(NEEDED, contact) for contact in order]
+    joints = sorted(_of_joints(scene, rows), key=lambda row: needed.index(row["quantity"]))
+    found = joints[:_MOST_JOINTS]
+    contacts = table[table["kind"] == _CONTACTS]
+    for contact, joint in list(zip(order, needed, strict=True))[:_MOST_OF_CONTACTS]:
+        for row in contacts[contacts["of"] == contact.name].to_dict("records"):
+            name = str(row["quantity"])
+            if not (_left_out(name) or _is_told(name, row, rows[joint])):
+                found.append({**row, "kind": f"Contact {contact.name}"})
+    return found
 
 
 def _by_name(table: pd.DataFrame) -> dict[str, _Row]:
@@ -169,9 +308,14 @@ def joint_names(scene: Scene) -> dict[int, str]:
 
 
 def _of_joints(scene: Scene, rows: Mapping[str, _Row]) -> list[_Row]:
-    """What each joint needs, a row for each gap that it has today."""
-    names = joint_names(scene).items()
-    return [{**rows[_of(NEEDED, scene.contacts[i])], "of": name} for i, name in names]
+    """What each joint needs, a row for each gap that it has today, with its least capacity."""
+    found: list[_Row] = []
+    for i, name in joint_names(scene).items():
+        (joint,) = (each for each in joints_of(scene) if i in each)
+        alike = (scene.contacts[k] for k in joint if scene.contacts[k].gap == scene.contacts[i].gap)
+        own = max((rows[_of(NEEDED, contact)] for contact in alike), key=_ratio)
+        found.append({**own, "of": name})
+    return found
 
 
 def _of(path: str, contact: Contact) -> str:
@@ -179,114 +323,112 @@ def _of(path: str, contact: Contact) -> str:
     return path.replace("<contact>", contact.name)
 
 
-def _at_contacts(
-    scene: Scene, table: pd.DataFrame, rows: Mapping[str, _Row]
-) -> list[tuple[_Row, ...]]:
-    """What joints need, then rows of each contact, of that first which lacks most of its gap."""
-    if not scene.contacts:
-        return []
-    order = [scene.contacts[i] for i in lacking_contacts(scene, table)]
-    needed = [_of(NEEDED, contact) for contact in order]
-    joints = sorted(_of_joints(scene, rows), key=lambda row: needed.index(row["quantity"]))
-    found = [tuple(joints[:_MOST_JOINTS])]
-    for contact, joint in zip(order, needed, strict=True):
-        own = (name for path in _OF_CONTACTS if (name := _of(path, contact)) in rows)
-        found.append(tuple(rows[name] for name in own if not _is_told(name, rows, rows[joint])))
-    return found
-
-
-def _of_others(scene: Scene, rows: Mapping[str, _Row]) -> list[tuple[_Row, ...]]:
-    """Rows of each other demand, the largest first."""
-    groups: dict[str, list[_Row]] = {path: [] for path in _OF_OTHERS}
-    for name, row in rows.items():
-        named = _found(scene, name)
-        path = named.quantity.path
-        own = path not in _OWN or isinstance(scene.springs[named.i].law, _OWN[path])
-        if own and path in groups:
-            groups[path].append(row)
-    return [tuple(sorted(group, key=_size, reverse=True)) for group in groups.values() if group]
+def _ratio(row: _Row) -> float:
+    """Demand over capacity, zero of a row that has none."""
+    return float(np.nan_to_num(row.get("demand/capacity", 0.0)))
 
 
 def _size(row: _Row) -> float:
-    """The largest value of a row."""
-    return float(np.nan_to_num(row.get(_NUMBERS[-1], row.get(_NUMBERS[0])), nan=-np.inf))
+    """The largest value of a row; of what is to be left the least counts most."""
+    size = float(np.nan_to_num(row.get(NUMBERS[-1], row.get(NUMBERS[0])), nan=-np.inf))
+    return -size if str(row["quantity"]).endswith(".slack_left") else size
 
 
-def _is_told(name: str, rows: Mapping[str, _Row], joint: _Row) -> bool:
+def _is_told(name: str, row: _Row, joint: _Row) -> bool:
     """Whether a gap of one contact is that of its joint."""
-    keys = [key for key in _NUMBERS if key in joint]
-    close = np.allclose([rows[name][k] for k in keys], [joint[k] for k in keys], rtol=_SAME)
-    return name.endswith(tuple(path.rpartition(".")[2] for path in _OF_ONE)) and bool(close)
+    keys = [key for key in NUMBERS if key in joint]
+    close = np.allclose([row[k] for k in keys], [joint[k] for k in keys], rtol=_SAME)
+    return name.endswith(_GAPS) and bool(close)
 
 
-def _reported(
-    groups: list[tuple[_Row, ...]], names: Mapping[str, str], trade: Trade, most: int
+def _page_table(
+    heading: str, rows: Sequence[_Row], names: Mapping[str, str], trade: Trade
 ) -> Cells:
-    """A table of some groups of rows; those that there is no room for are counted."""
-    of_contacts = str(groups[0][0]["quantity"]).startswith("contacts.")
-    shown = groups[: 1 + _MOST_OF_CONTACTS] if of_contacts else [g[:most] for g in groups]
-    kept = [row for group in shown for row in group]
-    numbers = [key for key in _NUMBERS if key in kept[0]]
-    under = ["under"] if "under" in kept[0] else []
-    lines, last = [], ""
-    for row in kept:
-        name, unit, of = str(row["quantity"]), str(row["unit"]), str(row["of"]) or "whole"
-        values = (trade.number(float(row[key]), unit, name) for key in numbers)
-        record = (names.get(word := _word(row[key]), word) for key in under)
-        first = of if of != last else ""
-        lines.append((first, str(row["demand"]), trade.unit(unit, name)[0], *values, *record))
-        last = of
-    words = (True, True, True, *(False for _ in numbers), *(True for _ in under))
-    more = sum(map(len, groups)) - len(kept)
-    return Cells(("of", "demand", "unit", *numbers, *under), tuple(lines), words, more)
+    """A table of rows of several kinds."""
+    keys, lines = _columns(rows), list[tuple[str, ...]]()
+    last = ("", "")
+    for row in rows:
+        name, unit = str(row["quantity"]), str(row["unit"])
+        kind, of = str(row["kind"]), str(row["of"]) or "whole"
+        firsts = kind if kind != last[0] else "", of if (kind, of) != last else ""
+        cells = (_text(row, key, names, trade) for key in keys)
+        lines.append((*firsts, str(row["demand"]), trade.unit(unit, name)[0], *cells))
+        last = kind, of
+    words = (True, True, True, True, *(key in ("under", "at", "passes") for key in keys))
+    return Cells((heading, "of", "demand", "unit", *keys), tuple(lines), words)
 
 
-def scaling_words(case: Case, trade: Trade) -> str:
-    """What a case does to the size of every record of its suite; empty where that is nothing."""
-    if case.suite is None:
-        return ""
-    size = case.suite.options.size
-    return size.words(lambda value: trade.words(value, Dimension.ACCELERATION.unit))
+def shock_cells(
+    shocks: Sequence[Mapping[str, Any]],
+    table: pd.DataFrame,
+    trade: Trade,
+    most: int | None = None,
+) -> Cells:
+    """Demands of each shock of a sequence by itself, all of them or the largest of each kind.
+
+    Parameters
+    ----------
+    shocks : sequence of mapping
+        Rows of `eventpound.Response.shocks`.
+    table : DataFrame
+        As `eventpound.design_numbers` gives it.
+    trade : Trade
+        Units.
+    most : int, optional
+        Rows that there is room for, the largest of each demand.
+    """
+    known = [row for row in table.to_dict("records") if any(row["quantity"] in s for s in shocks)]
+    if most is not None:
+        groups: dict[tuple[str, str], list[_Row]] = {}
+        for row in known:
+            if not _left_out(str(row["quantity"])):
+                groups.setdefault((row["kind"], row["demand"]), []).append(row)
+        known = [max(rows, key=_size) for rows in groups.values()]
+    shown = known[:most]
+    lines = []
+    for row in shown:
+        name, unit = str(row["quantity"]), str(row["unit"])
+        values = (_or_nothing(shock.get(name)) for shock in shocks)
+        cells = (trade.number(abs(value), unit, name) for value in values)
+        lines.append((str(row["of"]), str(row["demand"]), trade.unit(unit, name)[0], *cells))
+    heads = [
+        f"{s['shock']} {s['record']} ×{s['scale']:.3g}" + (" (failed)" if s["failed"] else "")
+        for s in shocks
+    ]
+    words = (True, True, True, *(False for _ in shocks))
+    return Cells(("of", "demand", "unit", *heads), tuple(lines), words, len(known) - len(shown))
+
+
+def _or_nothing(value: float | None) -> float:
+    return np.nan if value is None else float(value)
+
+
+def capacity_words(table: pd.DataFrame, fractile: float) -> list[str]:
+    """Whether capacities hold, and which do not; nothing where none is stated."""
+    if "capacity" not in table:
+        return []
+    held = table[table["capacity"].notna()]
+    over = held[held["passes"] == "no"].sort_values("demand/capacity", ascending=False)
+    where = f" at {fractile:g} % of the records" if "records" in table else ""
+    unknown = int((held["passes"] == "not known").sum())
+    passed = len(held) - len(over) - unknown
+    text = f"Capacities{where}: {passed} of {len(held)} hold"
+    if unknown:
+        text += f", of {unknown} it is not known, as runs failed"
+    each = (
+        f"{row['of']}, {row['demand']} (demand/capacity {row['demand/capacity']:.2f})"
+        for row in over.to_dict("records")
+    )
+    return [f"{text}{'; exceeded: ' * (len(over) > 0)}{'; '.join(each)}."]
 
 
 def lacking_contacts(scene: Scene, table: pd.DataFrame) -> list[int]:
     """Numbers of the contacts, those first whose joint lacks most; of one joint, who needs most."""
-    largest = table.set_index("quantity")[_NUMBERS[-1] if _NUMBERS[-1] in table else _NUMBERS[0]]
+    largest = table.set_index("quantity")[NUMBERS[-1] if NUMBERS[-1] in table else NUMBERS[0]]
 
     def lack(i: int) -> list[float]:
         contact = scene.contacts[i]
-        sizes = (float(largest[_of(path, contact)]) for path in (NEEDED, _OF_ONE[0]))
+        sizes = (float(largest[_of(path, contact)]) for path in (NEEDED, _AVOIDING))
         return [-np.nan_to_num(size - contact.gap, nan=-np.inf) for size in sizes]
 
     return sorted(range(len(scene.contacts)), key=lack)
-
-
-def record_names(runs: pd.DataFrame) -> dict[str, str]:
-    """What records are called, with their numbers: event, station and component, or their names."""
-    names = {}
-    for number, row in enumerate(runs.to_dict("records"), 1):
-        said = [word for key in ("event", "station", "component") if (word := _word(row[key]))]
-        name = ", ".join(said) or str(row["record"])
-        short = name if len(name) <= _LONGEST else name[: _LONGEST - 1] + "…"
-        names[str(row["record"])] = f"{number} {short}"
-    return names
-
-
-def record_cells(scene: Scene, runs: pd.DataFrame, trade: Trade) -> list[Cells]:
-    """Name and size of each record, as one table, or two where they are many."""
-    at = f"Sa({longest_period(scene) or np.nan:.3g} s)"
-    sizes = (*_SIZES, ("Sa_T1", at, Dimension.ACCELERATION.unit))
-    there = [size for size in sizes if size[0] in runs]
-    heads = ("record", *(headed(called, trade.unit(unit)[0]) for _, called, unit in there))
-    names, rows = record_names(runs), []
-    for row in runs.to_dict("records"):
-        values = ((float(row[key]), unit) for key, _, unit in there)
-        cells = ("" if value != value else trade.number(value, unit) for value, unit in values)
-        note = " (failed)" if row[FAILED] else ""
-        rows.append((names[str(row["record"])] + note, *cells))
-    words, shown = (True, *(False for _ in there)), rows[:_MOST_RECORDS]
-    half = len(shown) if len(shown) <= _IN_ONE_COLUMN else -(-len(shown) // 2)
-    parts = [shown[low : low + half] for low in range(0, len(shown), half)]
-    more = len(rows) - len(shown)
-    last = len(parts) - 1
-    return [Cells(heads, tuple(p), words, more * (i == last)) for i, p in enumerate(parts)]

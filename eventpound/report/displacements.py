@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 
 from eventpound.report import style
 from eventpound.report.contacts import draw_contact_rows, draw_gaps
-from eventpound.report.markers import draw_circles
+from eventpound.report.markers import draw_circles, draw_shocks
 from eventpound.report.towers import storeys_of
 from eventpound.report.view import Beside, View, view_of
 from eventpound.results import StoredResults
@@ -98,6 +98,7 @@ def _draw_ground(axes: Axes, view: View) -> None:
     style.zero_lines(axes)
     unit = view.acceleration_unit
     axes.plot(view.t, view.column("a_g") / unit.size, color=_INK, linewidth=0.8)
+    draw_shocks(axes, view)
     axes.set_ylabel(f"ground\nacceleration ({unit.name})")
 
 

@@ -18,7 +18,7 @@ _BINS = 8
 
 @style.styled()
 def fragility_figure(
-    curves: pd.DataFrame, table: pd.DataFrame, measure: str, demand: str, at: str = ""
+    curves: pd.DataFrame, table: pd.DataFrame, of: tuple[str, str], at: str = "", by: str = ""
 ) -> Figure:
     """Draw curves of fragility over an intensity, with the parts of the runs that exceed.
 
@@ -28,18 +28,25 @@ def fragility_figure(
         Of `eventpound.study.fragility.fragility_table`.
     table : DataFrame
         What they were fitted to.
-    measure, demand : str
-        Its columns.
+    of : tuple of str
+        Its columns of the intensity and of the demand.
     at : str
         At what the intensity is measured, a period and a damping.
+    by : str
+        Column of which each value has curves of its own; empty for none.
     """
-    there = table[[measure, demand]].dropna()
+    measure, demand = of
+    whole = table.dropna(subset=[measure, demand])
+    there = whole
     x = np.linspace(0.0, 1.15 * float(there[measure].max()), 400)[1:]
     unit = display_unit(measure, x[-1])
     figure = style.new_figure(7.5, 4.2, "")
     axes = figure.subplots()
     for (_, row), color in zip(curves.iterrows(), style.colors(len(curves)), strict=True):
         label = value_label(demand, float(row["limit"])).replace(" = ", " > ", 1)
+        if by:
+            there = whole[whole[by] == row[by]]
+            label = f"{value_label(by, row[by])}, {label}"
         parts = _fractions(there[measure], there[demand] > row["limit"])
         circle: Any = {"color": color, "markersize": 4.0, "fillstyle": "none"}
         circles = axes.plot(parts.index / unit.size, parts, "o", **circle)

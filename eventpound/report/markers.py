@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import Color
+from eventpound.report.style import Color, literal
 from eventpound.report.view import View
 
 _INK = "#444444"
@@ -51,6 +51,25 @@ def draw_rests(axes: Axes, view: View, contact: str, height: float, color: Color
     """Draw the stretches over which a contact stayed closed as bars."""
     for start, end in view.rests(contact):
         axes.hlines(height, start, end, color=color, capstyle="butt", zorder=2, **_BAR)
+
+
+def draw_shocks(axes: Axes, view: View) -> None:
+    """Draw where the records of a sequence begin, with their names, as far as that is in sight."""
+    low, high = float(view.t[0]), float(view.t[-1])
+    for number, (t, name) in enumerate(view.shocks, 1):
+        at = max(t / view.time_unit.size, low)
+        if at > high:
+            continue
+        axes.axvline(at, color=_INK, linestyle=":", linewidth=0.8)
+        axes.annotate(
+            literal(f"{number} {name}"),
+            (at, 1.0),
+            xycoords=axes.get_xaxis_transform(),
+            xytext=(2.0, -2.0),
+            textcoords="offset points",
+            va="top",
+            fontsize=6,
+        )
 
 
 def event_legend(view: View, contacts: list[str]) -> list[Artist]:

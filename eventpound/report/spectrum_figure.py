@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -80,7 +82,11 @@ def floor_figure(table: pd.DataFrame, free: pd.DataFrame | None = None, title: s
 
 @style.styled()
 def suite_spectra_figure(
-    periods: Floats, psa: Floats, damping: float, target: Target | None = None
+    periods: Floats,
+    psa: Floats,
+    damping: float,
+    target: Target | None = None,
+    at: tuple[float, Floats, float] | None = None,
 ) -> Figure:
     """Draw the spectra of many records with their fractiles.
 
@@ -94,6 +100,9 @@ def suite_spectra_figure(
         Their damping ratio.
     target : Target, optional
         What they were scaled to.
+    at : tuple of float, ndarray and float, optional
+        A period (s), PSA of each record there, shape (n,), and what is wanted there (m/s^2), NaN
+        where that is not said.
     """
     figure = style.new_figure(7.5, 3.6)
     axes = figure.subplots()
@@ -110,6 +119,14 @@ def suite_spectra_figure(
         points = np.array(target.points)
         axes.plot(points[0], points[1] / g, color=style.PALETTE[1], linewidth=1.5, label="target")
         axes.axvspan(target.low, target.high, color="#EEEEEE", zorder=0)
+    if at is not None:
+        period, own, wanted = at
+        axes.axvline(period, color="#666666", linestyle=":", linewidth=0.8)
+        label = f"records at {period:.3g} s"
+        axes.plot(np.full(own.size, period), own / g, "o", markersize=3.0, color="k", label=label)
+        if wanted == wanted:
+            look: Any = {"markersize": 14.0, "color": style.PALETTE[1], "label": "wanted there"}
+            axes.plot([period], [wanted / g], "_", markeredgewidth=2.0, **look)
     axes.legend()
     _finish(axes, f"PSA (g), {_percent(damping)}")
     axes.set_xlim(periods[0], periods[-1])

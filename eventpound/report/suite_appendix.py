@@ -17,9 +17,12 @@ from eventpound.quantities.base import parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.report import html
 from eventpound.report.many import fractiles, struck
+from eventpound.report.record_tables import record_names
 from eventpound.report.spectrum_figure import suite_spectra_figure
 from eventpound.report.suite_plot import suite_figure
 from eventpound.results.cells import Cells
+from eventpound.scene.at_rest import at_rest
+from eventpound.scene.periods import longest_period
 from eventpound.study.large_scales import large_scales_of
 from eventpound.units import STANDARD_GRAVITY
 
@@ -56,12 +59,13 @@ def suite_sections(
         for name in done.select_dtypes("number").columns
         if name.partition(".")[0] in listed and not name.rpartition(".")[2].startswith("t_")
     ]
+    names = record_names(table)
     return [
         ("Summary", [_summary(case, table, done)]),
         ("Model", html.model_of(case) if case.scene.bodies else ()),
-        ("Ground motions", _motions(case, list(done["record"]))),
+        ("Ground motions", _motions(case, done)),
         ("Response", _response(case, done)),
-        ("Quantities", [fractiles(done, numbers, "under", lambda row: str(done["record"][row]))]),
+        ("Quantities", [fractiles(done, numbers, "under", lambda row: names[done["record"][row]])]),
         ("Records", [_records(case, table)]),
         ("Origin", [html.origin_of(manifest)]),
     ]
@@ -85,14 +89,19 @@ def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> html.Part:
     largest = [(done[name].max(), body, name) for body, name in peaks.items() if name in done]
     if largest:
         size, body, name = max(largest)
-        record = done["record"][done[name].idxmax()]
+        record = record_names(table)[done["record"][done[name].idxmax()]]
         lines["largest"] = f"|u| = {size:.6g} m of {body} under {record}"
     return html.list_of(lines | struck(done))
 
 
-def _motions(case: Case, records: list[str]) -> Iterator[html.Part]:
+def _motions(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:
     """Spectra of the records that still are where they were."""
     spectra: list[Floats] = []
+    records, at = list(done["record"]), None
+    if "Sa_T1" in done and done["Sa_T1"].notna().all() and case.suite is not None:
+        period = longest_period(at_rest(case.scene, case.run.start_time))
+        assert period is not None
+        at = period, done["Sa_T1"].to_numpy(float), case.suite.options.size.wanted(period)
     members = [] if case.suite is None else case.suite.members(case.directory)
     for member in [m for m in members if m.name in records][:_MOST_SPECTRA]:
         try:
@@ -102,7 +111,7 @@ def _motions(case: Case, records: list[str]) -> Iterator[html.Part]:
         spectra.append(psa_of(motion.values, motion.time_step, _SPECTRUM, DAMPING))
     if spectra:
         target = None if case.suite is None else case.suite.options.size.target
-        drawn = suite_spectra_figure(_SPECTRUM, np.array(spectra), DAMPING, target)
+        drawn = suite_spectra_figure(_SPECTRUM, np.array(spectra), DAMPING, target, at)
         said = f"Spectra of {len(spectra)} records as scaled, {100.0 * DAMPING:g} % damping."
         yield html.figure_of(drawn, said)
 
@@ -124,11 +133,11 @@ def _records(case: Case, table: pd.DataFrame) -> html.Part:
         columns[f"|u| of {body.name} (cm)"] = (f"peaks.{body.name}.abs_max", 0.01)
     columns["impacts"] = ("impacts", 1.0)
     columns = {head: (name, size) for head, (name, size) in columns.items() if name in table}
-    rows = []
+    rows, names = [], record_names(table)
     for _, row in table.iterrows():
         values = [row[name] / size for name, size in columns.values()]
         cells = ["" if np.isnan(value) else f"{value:.5g}" for value in values]
-        rows.append((str(row["record"]), *cells, str(row["failed"])))
-    words = (True, *(False for _ in columns), True)
-    shown = html.table_of(Cells(("record", *columns, "failed"), tuple(rows), words))
+        rows.append((names[row["record"]], str(row["file"]), *cells, str(row["failed"])))
+    words = (True, True, *(False for _ in columns), True)
+    shown = html.table_of(Cells(("record", "file", *columns, "failed"), tuple(rows), words))
     return html.folded(f"{len(rows)} records", shown)

@@ -1,9 +1,11 @@
-"""The figure of a suite's case, chosen by its ``[figure]``."""
+"""The figures of a suite's case, chosen by its ``[figure]``."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path, PurePath
+from types import MappingProxyType
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -37,7 +39,7 @@ def plot_suite(
     rtol: float | None = None,
     paper: Paper | None = None,
 ) -> list[Path]:
-    """Draw the figure of a suite and write it.
+    """Draw the figures of a suite and write them, all or none.
 
     Parameters
     ----------
@@ -46,7 +48,7 @@ def plot_suite(
     table : DataFrame
         As `eventpound.simulate_suite` returns it.
     directory : path
-        Where it goes.
+        Where they go.
     solver, rtol : optional
         What computes the response to a single record, instead of the case's own.
     paper : Paper, optional
@@ -60,8 +62,15 @@ def plot_suite(
     done = table[table["failed"] == ""]
     if done.empty:
         return []
-    wanted = case.figure or Wanted(FigureKind.SUITE_SPECTRUM)
-    title = case.title + kind_of_motions(done)
+    by = (solver or case.solver.name, rtol or case.solver.rtol)
+    plain = Wanted(FigureKind.SUITE_SPECTRUM, name=FigureKind.SUITE_SPECTRUM.value)
+    drawn = {f"{each.name}.png": _drawn(case, each, done, by) for each in case.figures or (plain,)}
+    return write_together(directory, on_paper(drawn, paper or Paper()))
+
+
+def _drawn(case: Case, wanted: Wanted, done: pd.DataFrame, by: tuple[str, float]) -> Figure:
+    """One figure of a suite; a single response is computed by a solver at a tolerance."""
+    title = (wanted.title or case.title) + kind_of_motions(done)
     named = named_lengths(case, wanted)
     match wanted.kind:
         case FigureKind.RECORD_SCALES:
@@ -75,27 +84,29 @@ def plot_suite(
             name = done["record"].iloc[0]
             member = member_of(case, name)
             one = member_case(case, member, member.read())
-            run = simulate(one, solver or case.solver.name, rtol or case.solver.rtol)
+            run = simulate(one, *by)
             view = View(gather(run, one), one.scene)
             drawn = bridge_response_figure(view, f"{title}: {PurePath(name).name}")
-        case FigureKind.SUITE_SPECTRUM:
-            drawn = suite_figure(case, done, wanted.groups, title)
+        case _:
+            drawn = suite_figure(case, done, wanted.groups, title, called=wanted.names)
     gone = "; ".join(motion.name for motion in wanted.motions if motion.name not in named)
     left_out = f"Left out, their records cannot be read here: {gone}." if gone else ""
     add_notes(drawn, [wanted.note, left_out])
-    return write_together(
-        directory, on_paper({f"{wanted.kind.value}.png": drawn}, paper or Paper())
-    )
+    return drawn
 
 
 def suite_figure(
-    case: Case, done: pd.DataFrame, groups: int, title: str = "", most: int | None = None
+    case: Case,
+    done: pd.DataFrame,
+    groups: int,
+    title: str = "",
+    most: int | None = None,
+    called: Mapping[str, str] = MappingProxyType({}),
 ) -> Figure:
-    """The peaks of the bodies of a case, or of the first of them, called as its figure has them."""
-    names = case.figure.names if case.figure else {}
+    """The peaks of the bodies of a case, or of the first of them, called as is said."""
     bodies = [body.name for body in case.scene.bodies][:most]
-    called = {body: names.get(body, body) for body in bodies}
-    return suite_spectrum_figure(done, called, groups, title)
+    names = {body: called.get(body, body) for body in bodies}
+    return suite_spectrum_figure(done, names, groups, title)
 
 
 def named_lengths(case: Case, wanted: Wanted) -> dict[str, float]:

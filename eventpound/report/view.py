@@ -95,6 +95,14 @@ class View:
         return replace(self, results=results)
 
     @property
+    def shocks(self) -> list[tuple[float, str]]:
+        """When the records of a sequence begin (s), and what they are called with their factors."""
+        record = self.results.manifest.get("record", {})
+        each = (record.get(key, ()) for key in ("begins", "shocks", "factors"))
+        found = zip(*each, strict=True)
+        return [(t, f"{name} ×{factor:.3g}") for t, name, factor in found]
+
+    @property
     def time_unit(self) -> Unit:
         """Of an axis of time."""
         if self.units_of is not None:

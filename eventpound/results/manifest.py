@@ -15,6 +15,7 @@ from pathlib import PurePath
 
 from eventpound.case.case import Case
 from eventpound.motion.base import Family, GroundMotion
+from eventpound.motion.record import Record
 from eventpound.response import Response
 from eventpound.results.jsontext import canonical
 
@@ -134,8 +135,18 @@ def _samples(motion: GroundMotion) -> dict[str, object]:
                 "samples": len(piece.samples),
                 "start": piece.coefficients[0],
                 "time_step": piece.coefficients[1],
+                **_shocks(motion),
             }
     return {}
+
+
+def _shocks(motion: GroundMotion) -> dict[str, object]:
+    """When the records of a sequence begin (s), what they are called, and their factors."""
+    if not isinstance(motion, Record) or not motion.begins.size:
+        return {}
+    names = [name for name, _ in motion.shocks]
+    factors = [factor for _, factor in motion.shocks]
+    return {"begins": motion.begins.tolist(), "shocks": names, "factors": factors}
 
 
 def _version(package: str) -> str | None:

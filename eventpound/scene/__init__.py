@@ -8,6 +8,7 @@ from eventpound.scene.dashpot import Dashpot as Dashpot
 from eventpound.scene.force import Force as Force
 from eventpound.scene.point import Point as Point
 from eventpound.scene.scene import Scene as Scene
+from eventpound.scene.seat import Seat as Seat
 from eventpound.scene.spring import GROUND as GROUND
 from eventpound.scene.spring import Backfill as Backfill
 from eventpound.scene.spring import BilinearElastic as BilinearElastic

@@ -75,7 +75,7 @@ class Problem(_Element):
     ----------
     kind : str
         ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"``, ``"excitation"``,
-        ``"support"`` or ``"force"``.
+        ``"support"``, ``"force"`` or ``"seat"``.
     position : int
         Which of its kind, from 1.
     name : str
@@ -124,7 +124,7 @@ def check_scene(scene: Scene, start: float | None = 0.0) -> None:
 
 
 def scene_problems(scene: Scene, start: float | None = 0.0) -> list[Problem]:
-    """All problems, in the order bodies, springs, dashpots, contacts, motion, supports, forces."""
+    """All problems: of bodies, springs, dashpots, contacts, motion, supports, forces, seats."""
     springs = [*_spring_problems(scene)]
     return [
         *_body_problems(scene),
@@ -134,6 +134,7 @@ def scene_problems(scene: Scene, start: float | None = 0.0) -> list[Problem]:
         *motion_problems(scene.motion),
         *_support_problems(scene),
         *_force_problems(scene),
+        *_seat_problems(scene),
     ]
 
 
@@ -237,6 +238,13 @@ def _stability_problems(scene: Scene, start: float) -> Iterator[Problem]:
         f"a weight{alone} under which the structure stands at rest; with P-Delta {gives.moves}"
     )
     yield element.problem("weight", spring.weight, accepted)
+
+
+def _seat_problems(scene: Scene) -> Iterator[Problem]:
+    elements = [_Element("seat", i, seat.name) for i, seat in enumerate(scene.seats, 1)]
+    yield from _name_problems(elements)
+    for element, seat in zip(elements, scene.seats, strict=True):
+        yield from _end_problems(element, seat.between, scene, GROUND)
 
 
 def _law_problems(element: _Element, law: Law) -> Iterator[Problem]:

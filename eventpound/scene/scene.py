@@ -12,6 +12,7 @@ from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.force import Force
+from eventpound.scene.seat import Seat
 from eventpound.scene.spring import Hysteretic, LawName, Spring
 from eventpound.scene.support import Support
 
@@ -32,6 +33,8 @@ class Scene:
         Ends that move otherwise than the ground.
     forces : sequence of Force
         What acts on bodies.
+    seats : sequence of Seat
+        What carries ends of decks; they move nothing.
 
     Examples
     --------
@@ -52,6 +55,7 @@ class Scene:
     motion: GroundMotion = field(default_factory=NoMotion)
     supports: Given[tuple[Support, ...], Iterable[Support]] = default(())
     forces: Given[tuple[Force, ...], Iterable[Force]] = default(())
+    seats: Given[tuple[Seat, ...], Iterable[Seat]] = default(())
 
     @property
     def hysteretic_springs(self) -> list[str]:

@@ -8,7 +8,7 @@ stands for each combination of its axes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -23,12 +23,12 @@ from eventpound.case.loading import CASE_FILE
 from eventpound.case.run_options import Stated
 from eventpound.errors import ComputationError, InputError
 from eventpound.quantities.base import TakenFrom
-from eventpound.quantities.lookup import Named, all_of, unstated
 from eventpound.quantities.owners import owners
+from eventpound.quantities.values import storeys_of_structure
 from eventpound.response import Response
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Backfill, Hysteretic
 from eventpound.simulation import simulate
+from eventpound.study.demands import LEAST, STOREY_DRIFT, Demand, demands_of, words_of
 from eventpound.study.engines.local import engine_of
 from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import RECORD, Plan
@@ -45,68 +45,15 @@ DESIGN_TABLE = "report.csv"
 """What the table is called."""
 FRACTILES = (50.0, 84.0)
 """Per cent."""
-_CONTACT, _SPRING = "contacts.<contact>.", "springs.<spring>."
-_IMPACTS, _FORCE = _CONTACT + "impacts", _CONTACT + "max_force"
-_FASTER = _CONTACT + "impacts_faster"
-_ELONGATIONS = _SPRING + "abs_max_elongation", _SPRING + "residual_elongation"
-_ENERGY = _SPRING + "dissipated_energy"
-DEMANDS = (
-    *(_CONTACT + word for word in ("separation_needed", "avoiding_gap", "avoiding_gap_alone")),
-    *(_CONTACT + word for word in ("absolute_sum", "srss", "cqc")),
-    *(_CONTACT + word for word in ("largest_gap", "seat_used", "impacts")),
-    *(_FASTER, _CONTACT + "fastest_closing", _CONTACT + "max_impulse"),
-    *(_CONTACT + "estimated_force", _FORCE, _CONTACT + "largest_overlap"),
-    *(_SPRING + "ductility", *_ELONGATIONS, _SPRING + "slip_path"),
-    *(_SPRING + word for word in ("passive_force", "passive_depth", "residual_gap")),
-    *(_ENERGY, _SPRING + "strength_lost", _SPRING + "stiffness_lost"),
-    *(_SPRING + word for word in ("drift_ratio", "stability_coefficient")),
-    *("max_drift", "max_drift_ratio", "base_shear.abs_max"),
-    *("peaks.<body>.abs_max", "residual.<body>", "acceleration.<body>.abs_max"),
-)
-"""Quantities that are design numbers, by paths, in their order: those of one owner together."""
-
-
-def demands_of(scene: Scene, stated: Stated) -> list[Named]:
-    """Design numbers that a scene has: of each contact, each spring, the whole and each body."""
-    found = [
-        named
-        for named in all_of(scene)
-        if named.quantity.path in DEMANDS and not unstated(named.name, stated)
-        if _says_something(scene, named)
-    ]
-    kinds = list(dict.fromkeys(path.partition(".")[0] for path in DEMANDS))
-
-    def place(named: Named) -> tuple[int, int, int]:
-        path = named.quantity.path
-        whole = not named.quantity.owner
-        kind = len(kinds) if whole else kinds.index(path.partition(".")[0])
-        return kind, named.i, DEMANDS.index(path)
-
-    return sorted(found, key=place)
-
-
-def _says_something(scene: Scene, named: Named) -> bool:
-    """Whether a number is one of design, of its owner."""
-    path = named.quantity.path
-    if path == _FORCE:
-        # Without a law of its own a contact has a force at rest only.
-        return scene.contacts[named.i].law is not None
-    if path == _ENERGY:
-        # Of others it takes further runs.
-        return named.quantity.source is TakenFrom.LAWS
-    if path not in _ELONGATIONS:
-        return True
-    law = scene.springs[named.i].law
-    # Soil is away from its wall at the end: of it depth and residual gap are told. What an elastic
-    # spring has left is what still swings.
-    left = path == _ELONGATIONS[1] and not isinstance(law, Hysteretic)
-    return not left and not isinstance(law, Backfill)
+MOST_CLOSE = 1000
+"""Runs of a study beyond which demands are left out that take rows close together."""
+_IMPACTS = "contacts.<contact>.impacts"
 
 
 def asking(case: Case) -> Case:
     """The case with its design numbers among the quantities that ``[run]`` asks for."""
     stated = case.run.stated
-    names = [named.name for named in demands_of(case.scene, stated)]
+    names = [demand.named.name for demand in demands_of(case.scene, stated)]
     stated = replace(stated, quantities=tuple(dict.fromkeys((*stated.quantities, *names))))
     return replace(case, run=replace(case.run, stated=stated))
 
@@ -116,12 +63,14 @@ def plan_asking(plan: Plan) -> Plan:
     return replace(plan, quantities=tuple(dict.fromkeys((*plan.quantities, *_told(plan)))))
 
 
-def _told(plan: Plan) -> dict[str, tuple[Case, Named]]:
+def _told(plan: Plan) -> dict[str, tuple[Case, Demand]]:
     """Design numbers of the scenes of a study that are not in Π-terms, each with its case."""
-    found: dict[str, tuple[Case, Named]] = {}
+    found: dict[str, tuple[Case, Demand]] = {}
     for case in (base.at_first().case for base in plan.bases if base.case.pi is None):
-        for named in demands_of(case.scene, case.run.stated):
-            found.setdefault(named.name, (case, named))
+        for demand in demands_of(case.scene, case.run.stated):
+            close = demand.named.quantity.source is TakenFrom.BETWEEN and plan.size > MOST_CLOSE
+            if not close or demand.named.name in plan.quantities:
+                found.setdefault(demand.named.name, (case, demand))
     return found
 
 
@@ -232,16 +181,13 @@ def design_of_run(response: Response) -> pd.DataFrame:
     """Design numbers of a run: a row a demand, with its ``value``."""
     import pandas as pd
 
-    demands = demands_of(response.scene, response.stated)
-    values = [response.quantity(named.name) for named in demands]
-    rows = [
-        {
-            **_words(response.scene, named, response.stated),
-            "value": np.nan if value is None else abs(value),
-        }
-        for named, value in zip(demands, values, strict=True)
-    ]
-    return pd.DataFrame(rows)
+    stated, rows = response.stated, []
+    for demand in demands_of(response.scene, stated):
+        value = response.quantity(demand.named.name)
+        size = np.nan if value is None else abs(value)
+        row = {**words_of(response.scene, demand, stated), "value": size}
+        rows.append(row | _held(demand, stated, size))
+    return _with_storeys(pd.DataFrame(rows), response.scene)
 
 
 def design_of_suite(table: pd.DataFrame, case: Case) -> pd.DataFrame:
@@ -258,8 +204,9 @@ def design_of_suite(table: pd.DataFrame, case: Case) -> pd.DataFrame:
     if done.empty:
         why = f"all {len(table)} records failed, the first because of: {table[FAILED].iloc[0]}"
         raise ComputationError(why, case.run.start_time)
-    demands = demands_of(case.scene, case.run.stated)
-    return _tabled(pd.DataFrame(list(_rows(done, case.scene, case.run.stated, demands))))
+    stated = case.run.stated
+    rows = _rows(done, case.scene, stated, demands_of(case.scene, stated), len(table) - len(done))
+    return _with_storeys(_tabled(pd.DataFrame(list(rows))), case.scene)
 
 
 def design_of_study(table: pd.DataFrame, plan: Plan) -> pd.DataFrame:
@@ -267,13 +214,24 @@ def design_of_study(table: pd.DataFrame, plan: Plan) -> pd.DataFrame:
     import pandas as pd
 
     axes = [name for name in plan.columns if name != RECORD]
-    demands, done, rows = _told(plan), table[table[SUCCESS]], []
+    demands, done, parts = _told(plan), table[table[SUCCESS]], []
     groups = done.groupby(axes, sort=False, dropna=False) if axes else [((), done)]
     for values, group in groups:
-        at = dict(zip(axes, values, strict=True))
-        for case, named in demands.values():
-            rows += [at | row for row in _rows(group, case.scene, case.run.stated, [named])]
-    return _tabled(pd.DataFrame(rows))
+        at, rows = dict(zip(axes, values, strict=True)), list[dict[str, object]]()
+        failed = _failed(table, at)
+        for case, demand in demands.values():
+            own = _rows(group, case.scene, case.run.stated, [demand], failed)
+            rows += [at | row for row in own]
+        parts.append(pd.DataFrame(rows))
+    return _tabled(pd.concat(parts, ignore_index=True)) if parts else pd.DataFrame()
+
+
+def _failed(table: pd.DataFrame, at: Mapping[str, object]) -> int:
+    """How many runs of a study failed at a combination of its axes."""
+    there = ~table[SUCCESS]
+    for name, value in at.items():
+        there &= table[name] == value
+    return int(there.sum())
 
 
 def _tabled(table: pd.DataFrame) -> pd.DataFrame:
@@ -282,35 +240,62 @@ def _tabled(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _rows(
-    done: pd.DataFrame, scene: Scene, stated: Stated, demands: Sequence[Named]
+    done: pd.DataFrame, scene: Scene, stated: Stated, demands: Sequence[Demand], failed: int
 ) -> Iterator[dict[str, object]]:
     """A row a demand: over how many records, its fractiles, the largest and its record."""
-    for named in demands:
+    for demand in demands:
+        named = demand.named
         if named.name not in done:
             continue
         sizes = done[named.name].abs().dropna()
-        row = {**_words(scene, named, stated), "records": len(sizes)}
+        row = {**words_of(scene, demand, stated), "records": len(sizes)}
         if named.quantity.owner == "contact":
             struck = done[_IMPACTS.replace("<contact>", str(row["of"]))]
             row["pounding"] = int((struck > 0).sum())
         if len(sizes):
-            parts = np.percentile(sizes, FRACTILES).tolist()
+            least = named.quantity.path in LEAST
+            (*parts, held) = _fractiles(sizes, (*FRACTILES, stated.fractile), least)
             row |= {f"{p:g} %": value for p, value in zip(FRACTILES, parts, strict=True)}
-            row |= {"largest": float(sizes.max())}
-            if RECORD in done:
-                row["under"] = done[RECORD][sizes.idxmax()]
+            governs = sizes.idxmin() if least else sizes.idxmax()
+            row |= {"largest": float(sizes[governs])}
+            row |= {name: done[key][governs] for key, name in _GOVERNING.items() if key in done}
+            row |= _held(demand, stated, held, failed)
         yield row
 
 
-def _words(scene: Scene, named: Named, stated: Stated) -> dict[str, object]:
-    """What a demand is, of what, and its unit."""
-    quantity = named.quantity
-    called = quantity.called
-    if quantity.path == _FASTER:
-        called = f"impacts faster than {100.0 * stated.threshold_speed:.4g} cm/s"
-    return {
-        "quantity": named.name,
-        "of": owners(scene, quantity.owner)[named.i],
-        "demand": called,
-        "unit": quantity.dimension.unit,
-    }
+_GOVERNING = {RECORD: "under", "scale": "scale"}
+"""Columns of the runs, and what they are called: the record that governs and its factor."""
+
+
+def _fractiles(sizes: pd.Series[float], parts: Sequence[float], least: bool) -> list[float]:
+    """Values that so many per cent do not exceed, or do not fall below of what is to be left."""
+    return np.percentile(sizes, [100.0 - p if least else p for p in parts]).tolist()
+
+
+def _held(demand: Demand, stated: Stated, size: float, failed: int = 0) -> dict[str, object]:
+    """A demand over its capacity, and whether it passes; nothing of one without.
+
+    Where runs failed, nobody knows whether it would.
+    """
+    capacity = dict(stated.capacities).get(demand.named.name)
+    if capacity is None:
+        return {}
+    ratio = size / capacity
+    passes = "not known" if failed or ratio != ratio else "yes"
+    verdict = "no" if ratio > 1.0 else passes
+    return {"capacity": capacity, "demand/capacity": ratio, "passes": verdict}
+
+
+def _with_storeys(table: pd.DataFrame, scene: Scene) -> pd.DataFrame:
+    """The table with the storey in which the largest drift of each structure is, in ``at``."""
+    if table.empty or not table["quantity"].str.endswith(STOREY_DRIFT).any():
+        return table
+    rows, structures = table.set_index("quantity"), owners(scene, "structure")
+    column = rows["largest" if "largest" in rows else "value"]
+    found = []
+    for name, of in zip(table["quantity"], table["of"], strict=True):
+        storeys = storeys_of_structure(scene, structures.index(of)) if of in structures else []
+        names = [scene.springs[k].name for k in storeys]
+        at = max(names, key=lambda n: float(column[f"springs.{n}.drift_ratio"]), default="")
+        found.append(at if name.endswith(STOREY_DRIFT) else "")
+    return table.assign(at=found)

@@ -9,7 +9,7 @@ columns = "excitation.reverse"
 pages = "pi.uy"             # a file for each
 grey = "free.pi_um"         # drawn once a panel, in grey
 regions = 0.1               # the curve whose amplification is marked
-map = true                  # y in colours over x and curves
+kind = "map"                # y in colours over x and curves; "curves" without it
 gain = true                 # its amplification, in a strip below each panel
 largest = 0.25              # a marker where each curve is largest from this x on
 """
@@ -20,12 +20,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from eventpound.case.figure import OF_STUDIES, FigureKind, common_words, one_or_several, read_kind
 from eventpound.case.table import Table
 from eventpound.study.plan import Plan
 from eventpound.units import Dimension
 
 _SCALES = ("linear", "logarithmic")
-_TEXTS = ("title", "curves", "rows", "columns", "pages", "grey", "nested", "claim", "note")
+_TEXTS = ("curves", "rows", "columns", "pages", "grey", "nested")
 
 
 @dataclass(frozen=True)
@@ -125,14 +126,14 @@ class FigurePlan:
             own = (x, self.curves)
             if len({axes.get(key, "") for key in own} - {""}) < len(own):
                 yield (
-                    f"[figure]: map: found {x!r} over {self.curves!r}; accepted: two of the axes "
-                    f"that vary by themselves, {', '.join(axes)}"
+                    f"[figure]: kind: found map of {x!r} over {self.curves!r}; accepted: two of "
+                    f"the axes that vary by themselves, {', '.join(axes)}"
                 )
             shown = {axes.get(key, key) for key in (*own, self.rows, self.columns, self.pages)}
             if left := [key for key in study.columns if axes.get(key, key) not in shown]:
                 yield (
-                    f"[figure]: map: found several runs in one place; accepted: {', '.join(left)} "
-                    "in rows, columns or pages"
+                    "[figure]: kind: found several runs in one place of the map; accepted: "
+                    f"{', '.join(left)} in rows, columns or pages"
                 )
 
 
@@ -141,19 +142,13 @@ def read_figures(top: Table) -> tuple[FigurePlan, ...]:
     return tuple(_read_figure(table) for table in one_or_several(top, "figure"))
 
 
-def one_or_several(top: Table, key: str) -> list[Table]:
-    """The tables of a key, ``[key]`` or several ``[[key]]``."""
-    if not top.has(key):
-        return []
-    return top.tables(key) if isinstance(top.data[key], list) else [top.table(key)]
-
-
 def _read_figure(table: Table) -> FigurePlan:
     x, y = _columns(table, "x", ("",)), _columns(table, "y")
     if len(x) != len(y) and y:
         table.reject("y", f"as many columns as x has ({len(x)})")
     regions = table.optional_quantity("regions", Dimension.NUMBER)
     further: dict[str, Any] = {
+        **common_words(table),
         **{key: table.text(key, "some text") if table.has(key) else "" for key in _TEXTS},
         **{key: table.optional_quantity(key, Dimension.NUMBER) for key in ("y_max", "largest")},
         **{
@@ -183,10 +178,10 @@ def _read_figure(table: Table) -> FigurePlan:
 
 
 def _map(table: Table) -> bool:
-    wanted = table.flag("map") if table.has("map") else False
+    wanted = read_kind(table, OF_STUDIES, "a [study]") is FigureKind.MAP
     others = [key for key in ("grey", "regions", "nested", "largest") if table.has(key)]
     accepted = "a figure with curves, the second axis, and without grey, regions, nested, largest"
-    table.require("map", not wanted or (table.has("curves") and not others), accepted)
+    table.require("kind", not wanted or (table.has("curves") and not others), accepted)
     return wanted
 
 

@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eventpound.case.figure import one_or_several
 from eventpound.case.table import Table
 from eventpound.errors import InputError
-from eventpound.study.figure import one_or_several
 from eventpound.study.plan import Plan
 from eventpound.study.variants import axis_cells
 

@@ -46,7 +46,7 @@ def _factors(base: Base) -> Iterator[tuple[str, float]]:
         try:
             yield from ((member.name, f) for f in _over_axes(base.under(member)))
             for name, own in member.supports:
-                yield f"{own.name} at {name}", own.motion().factor
+                yield f"{own.name} at {name}", own.motion().largest_factor
         except InputError:
             # Its run says so.
             continue
@@ -68,4 +68,4 @@ def _over_axes(base: Base) -> Iterator[float]:
     for values, runs in zip(each.T.tolist(), count.tolist(), strict=True):
         changed = motion_with(scene.motion, dict(zip(moving, values, strict=True)))
         assert isinstance(changed, Record)
-        yield from [changed.factor] * runs
+        yield from [changed.largest_factor] * runs

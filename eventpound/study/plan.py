@@ -142,7 +142,7 @@ def base_of(
         refuse_suite(case)
     if own or not records:
         run = with_given(run, {}, case.scene)
-    case = replace(case, run=run, solver=solver, suite=None, figure=None)
+    case = replace(case, run=run, solver=solver, suite=None, figures=())
     return Base(case, {}, axes, sets_length, tuple(records))
 
 

@@ -212,9 +212,21 @@ def _bases(
         run = worded.get("run")
         own = isinstance(run, dict) and "duration" in run
         case = read_case(worded, file, source_hash)
+        _refuse_shocks(worded, numbers)
         records = () if case.suite is None else tuple(case.suite.members(case.directory))
         labels = {PART: part.name} | labels if named else labels
         yield Base(replace(case, suite=None), labels, numbers, own, records)
+
+
+def _refuse_shocks(document: _Document, numbers: Sequence[NumberAxis]) -> None:
+    """Refuse what would take the period of the first variant for all of them."""
+    motion = _table(document, "excitation")
+    named = str(motion.get("psa_period", "")).startswith("T1")
+    if isinstance(motion.get("psa"), list) and named and numbers:
+        raise InputError(
+            "[excitation]: psa_period: found a period of the scene for shocks that are scaled each "
+            "for itself, in a study; accepted: a period (s)"
+        )
 
 
 def _merged(common: object, own: object) -> object:

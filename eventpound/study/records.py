@@ -69,7 +69,7 @@ def about(member: Member, period: float | None) -> dict[str, object]:
             row |= _identity(member.read())
         return row
     known = (math.nan, math.nan) if scales is None else (scales.omega_g, scales.length)
-    sizes = (abs(motion.factor), motion.peak, motion.mean_period)
+    sizes = (motion.largest_factor, motion.peak, motion.mean_period)
     row |= zip(_SCALES, (*sizes, *known), strict=True)
     if period is not None:
         row |= zip(_MEASURES, _measures(motion, period), strict=True)

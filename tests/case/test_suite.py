@@ -128,7 +128,7 @@ def test_contours_need_no_bodies(tmp_path: Path) -> None:
         'joint = [{ name = "in-deck", gap = ["0.6 cm", "1.3 cm"] }]\n'
         'isolator = [{ name = "sliding", yield_displacement = "0.02 cm" }]\n'
     )
-    figure = load_case(tmp_path).figure
+    figure = load_case(tmp_path).figures[0]
     assert figure is not None
     assert figure.kind is FigureKind.SIMILARITY_CONTOURS
     (joint,), (isolator,) = figure.joints, figure.isolators

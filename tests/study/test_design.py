@@ -26,7 +26,7 @@ from eventpound.scene import (
     Slider,
     Spring,
 )
-from eventpound.study.design import DEMANDS
+from eventpound.study.demands import DEMANDS
 from tests.quantities.test_separation import row
 from tests.study.test_suite import CASE, time_series
 
@@ -101,7 +101,7 @@ def test_bearings_and_soil_have_what_they_are_designed_for() -> None:
     scene = Scene((Body("deck", 1e5),), springs, motion=Ricker(3.0, 1.0))
     table = by_name(design_numbers(scene))
     named = {key.removeprefix("springs.") for key in table.index if key.startswith("springs.")}
-    elongations = "abs_max_elongation", "residual_elongation", "dissipated_energy"
+    elongations = "abs_max_elongation", "residual_elongation", "dissipated_energy", "abs_max_force"
     soil = "passive_force", "passive_depth", "residual_gap", "dissipated_energy"
     assert named == {
         *(f"bearing.{word}" for word in (*elongations, "slip_path")),
@@ -172,7 +172,7 @@ def test_the_command_prints_tables_and_writes_one(
     table = by_name(pd.read_csv(file))
     shown = three_digits(1e3 * table.loc[JOINT + "seat_used", "84 %"])
     (line,) = [line for line in out.splitlines() if line.startswith("seat width used, mm")]
-    assert line.split()[-3:] == [shown, shown_largest(table), "d.txt"]
+    assert line.split()[-4:] == [shown, shown_largest(table), "4", "d.txt"]
     # Given again, nothing is run, and nothing changes.
     assert main(["report", str(suite)]) == 0
     assert file.read_bytes() == written

@@ -70,7 +70,7 @@ def test_what_is_negative_is_in_the_picture(drawn):
 
 def test_a_map_has_the_values_of_the_table(drawn):
     """Over both axes, each cell around its values; colours are the same in all panels."""
-    figure = 'x = "pi.Q"\ny = "peaks.0.abs_max"\ncurves = "pi.delta"\nmap = true\nmarks = [0.5]\n'
+    figure = 'x = "pi.Q"\ny = "peaks.0.abs_max"\ncurves = "pi.delta"\nkind = "map"\nmarks = [0.5]\n'
     figure = f'[figure]\n{figure}columns = "excitation.reverse"\ny_scale = "logarithmic"\n'
     study = ELASTOPLASTIC.replace('"pi_um",', '"peaks.0.abs_max",', 1)
     study = study.replace("[excitation]", "[excitation]\namplitude = 0.05")
@@ -97,13 +97,19 @@ def test_a_map_has_the_values_of_the_table(drawn):
     ("extra", "said"),
     [
         ('curves = "pi.delta"\ngrey = "free.pi_um"\n', "map: found True; accepted: a figure with"),
-        ("", "map: found True; accepted: a figure with curves"),
-        ('curves = "excitation.reverse"\n', "map: found 'pi.Q' over 'excitation.reverse'; acc"),
-        ('curves = "pi.delta"\n', "map: found several runs in one place; accepted: excitation.rev"),
+        ("", "kind: found 'map'; accepted: a figure with curves"),
+        (
+            'curves = "excitation.reverse"\n',
+            "kind: found map of 'pi.Q' over 'excitation.reverse'; acc",
+        ),
+        (
+            'curves = "pi.delta"\n',
+            "kind: found several runs in one place of the map; accepted: excitation.rev",
+        ),
     ],
 )
 def test_what_no_map_shows_is_refused(make_study, extra, said):
-    figure = f'[figure]\nx = "pi.Q"\ny = "pi_um"\nmap = true\n{extra}'
+    figure = f'[figure]\nx = "pi.Q"\ny = "pi_um"\nkind = "map"\n{extra}'
     with pytest.raises(InputError, match=said):
         make_study(ELASTOPLASTIC + figure)
 

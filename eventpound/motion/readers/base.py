@@ -12,7 +12,7 @@ from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from eventpound.basics.input_files import read_bytes
 from eventpound.errors import InputError
@@ -48,6 +48,10 @@ class RecordData:
         What was passed over, removed or found odd in reading.
     begins : tuple of int
         Samples at which the records of a sequence begin; of one record none.
+    shocks : tuple of str
+        What these records are called.
+    factors : tuple of float
+        What each of them was multiplied by, where a case says so of each.
     """
 
     acceleration: Floats
@@ -62,6 +66,14 @@ class RecordData:
     date: str | None = None
     notes: tuple[str, ...] = ()
     begins: tuple[int, ...] = ()
+    shocks: tuple[str, ...] = ()
+    factors: tuple[float, ...] = ()
+
+    @property
+    def called(self) -> str:
+        """Event, station and component, as far as its file says, else its name."""
+        said = [word for word in (self.event, self.station, self.component) if word]
+        return ", ".join(said) or PurePath(self.file).name
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,46 @@
+"""The workbook, read by the standard library as any reader of the format would."""
+
+from __future__ import annotations
+
+import io
+from xml.etree import ElementTree
+from zipfile import ZipFile
+
+from eventpound.results.workbook import workbook
+
+MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
+SHEETS = {
+    "Piers [a/b]": [("pier", "force (kN)"), ("A & <B>", 12.345678901234567), ("C", float("nan"))],
+    "piers  a b ": [("a" * 40,), ("\x07bell",)],
+}
+
+
+def read(data: bytes) -> dict[str, list[list[str | float | None]]]:
+    with ZipFile(io.BytesIO(data)) as archive:
+        assert archive.testzip() is None
+        trees = {n: ElementTree.fromstring(archive.read(n)) for n in archive.namelist()}
+    names = [sheet.get("name") for sheet in trees["xl/workbook.xml"].iter(f"{MAIN}sheet")]
+    found = {}
+    for number, name in enumerate(names, 1):
+        rows: list[list[str | float | None]] = []
+        for row in trees[f"xl/worksheets/sheet{number}.xml"].iter(f"{MAIN}row"):
+            cells: list[str | float | None] = []
+            for cell in row:
+                text, value = cell.find(f".//{MAIN}t"), cell.find(f"{MAIN}v")
+                number_of = None if value is None else float(value.text or "")
+                cells.append(number_of if text is None else text.text)
+            rows.append(cells)
+        found[str(name)] = rows
+    return found
+
+
+def test_numbers_and_texts_come_back() -> None:
+    data = workbook(SHEETS)
+    first, second = read(data).items()
+    assert first == (
+        "Piers  a b",
+        [["pier", "force (kN)"], ["A & <B>", 12.345678901234567], ["C", None]],
+    )
+    # Names that are told apart by capitals or blanks only are one in a workbook.
+    assert second == ("piers  a b 2", [["a" * 40], [" bell"]])
+    assert workbook(SHEETS) == data
