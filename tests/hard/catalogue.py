@@ -16,8 +16,13 @@ REFUSED = {
 """Cases without an answer, and what the refusal must say."""
 WARNED = ("chaotic", "event-at-breakpoint", "graze-hit-1e-12", "stiff-beside-soft")
 """Cases whose counts the tolerance cannot tell, as the runs say."""
-LONG = ("long-yielding-pair", "record-of-a-million-samples", "stiff-beside-soft")
+LONG = (
+    *("bounces-for-a-day", "long-yielding-pair", "record-of-a-million-samples", "row-of-200"),
+    "stiff-beside-soft",
+)
 """Scenes that take a solver many seconds: the tests leave them to ``-m sweep``."""
+SOLVERS = ("cvode", "fast", "ida")
+"""Those that locate events."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +37,14 @@ class Hard:
         Entries of ``summary.json`` by dotted name, where they are known.
     within : float
         What they may be wrong by, absolute.
+    solvers : tuple of str
+        Those of `SOLVERS` that take such a scene.
     """
 
     name: str
     values: dict[str, float]
     within: float
+    solvers: tuple[str, ...] = SOLVERS
 
     @cached_property
     def case(self) -> Case:
@@ -52,4 +60,5 @@ def catalogue() -> list[Hard]:
 def _read(name: str) -> Hard:
     known = FOLDER / name / "expected.toml"
     expected = tomllib.loads(known.read_text()) if known.is_file() else {}
-    return Hard(name, expected.get("values", {}), expected.get("within", 0.0))
+    solvers = tuple(expected.get("solvers", SOLVERS))
+    return Hard(name, expected.get("values", {}), expected.get("within", 0.0), solvers)

@@ -20,8 +20,6 @@ from tests.benchmarks.agreement import NUDGE, loud, quantities, sequence
 from tests.hard.catalogue import REFUSED, Hard
 from tests.solvers.random_scenes import nudged
 
-SOLVERS = ("cvode", "fast", "ida")
-"""Those that locate events."""
 OWN = 1e3
 """Units of rtol by which two solvers may differ on a well-conditioned scene."""
 TIMES = 20.0

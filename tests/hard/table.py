@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.hard.baselines import BASELINES, Baseline, baseline
-from tests.hard.catalogue import Hard
-from tests.hard.outcome import SOLVERS, Verdict, outcome, verdict
+from tests.hard.catalogue import SOLVERS, Hard
+from tests.hard.outcome import Verdict, outcome, verdict
 
 CHECKED = SOLVERS[1:]
 """Solvers whose digits are counted, from the first one's."""
@@ -26,7 +26,7 @@ class Row:
 
 def row(hard: Hard) -> Row:
     """Run a scene by every solver."""
-    outcomes = [outcome(hard, solver) for solver in SOLVERS]
+    outcomes = [outcome(hard, solver) for solver in hard.solvers]
     agreed = outcomes[0].response
     return Row(
         hard.name,

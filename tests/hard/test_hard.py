@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,9 @@ from eventpound.accuracy.estimate import estimate_errors
 from eventpound.simulation import simulate
 from eventpound.solvers.base import EventKind
 from tests.hard.baselines import BASELINES, Baseline, baseline
-from tests.hard.catalogue import LONG, REFUSED, WARNED, Hard, catalogue
+from tests.hard.catalogue import LONG, REFUSED, SOLVERS, WARNED, Hard, catalogue
 from tests.hard.generated import GENERATED
-from tests.hard.outcome import SOLVERS, Verdict, outcome, tally, unsaid, verdict
+from tests.hard.outcome import OWN, Verdict, outcome, tally, unsaid, verdict, wrong_values
 from tests.hard.table import Row, line, row, write
 
 CATALOGUE = catalogue()
@@ -33,7 +34,7 @@ def named(name: str) -> Hard:
     ],
 )
 def test_right_or_refused(hard: Hard) -> None:
-    found = verdict(hard, [outcome(hard, solver) for solver in SOLVERS])
+    found = verdict(hard, [outcome(hard, solver) for solver in hard.solvers])
     allowed = ("agree", "warns") if hard.name in WARNED else ("agree", "refused")
     assert found.word in allowed, found.remark
 
@@ -70,6 +71,16 @@ def test_scales(solver: str) -> None:
         assert scales is not None
         peaks.append(response.peaks["abs_max"].iloc[0] * scales.omega_g**2 / scales.a_g)
     np.testing.assert_allclose(peaks, peaks[0], rtol=1e3 * SCALES[0].case.solver.rtol)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_error_follows_the_tolerance(solver: str) -> None:
+    """From 1e-4 to 1e-13: twelve slips of a slider, each begun and ended by an event."""
+    hard = named("slider-sticks-and-slips")
+    for rtol in 10.0 ** -np.arange(4.0, 14.0):
+        found = outcome(hard, solver, float(rtol)).response
+        assert found is not None
+        assert not wrong_values(replace(hard, within=OWN * float(rtol)), found)
 
 
 def test_few_are_refused() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from itertools import pairwise
 from typing import Any
 
@@ -38,6 +38,8 @@ EXPONENTS = (1.0, 1.5, 2.0, 5.0, 20.0, 50.0)
 SHAPES = ((0.5, 0.5), (0.1, 0.9), (0.9, 0.1), (-0.2, 0.8), (1.0, 1.0))
 """β and γ of the Bouc–Wen law."""
 PULSES = (Sine, Cosine, TypeC, Ricker, AntisymmetricRicker, MavroeidisPapageorgiou, Harmonic)
+FORCES = {"friction", "initial_stiffness", "stiffness", "strength", "ultimate_force"}
+"""Fields of laws with a memory that its forces are proportional to."""
 RESTITUTION = (0.0, 0.0, 0.3, 0.5, 0.8, 1.0)
 
 Law = Linear | BilinearElastic | Series | BoucWen
@@ -311,7 +313,8 @@ def nudged(scene: Scene, rng: np.random.Generator, part: float) -> Scene:
             return BilinearElastic(changed(of.compression), changed(of.extension), of.offset)
         if isinstance(of, Series):
             return Series(tuple(law(part) for part in of.parts))  # type: ignore[arg-type]
-        return replace(of, stiffness=changed(of.stiffness), strength=changed(of.strength))
+        names = {f.name for f in fields(of)} & FORCES
+        return replace(of, **{name: changed(getattr(of, name)) for name in sorted(names)})
 
     return replace(
         scene,
