@@ -23,7 +23,7 @@ from eventpound.quantities.batch_response import BatchResponse, blank_many, keep
 from eventpound.quantities.between import Between
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_of
-from eventpound.quantities.owners import owners
+from eventpound.quantities.owners import owners_of
 from eventpound.quantities.rows import rows_at, settled, warn_unsettled
 from eventpound.quantities.shocks import shocks_of
 from eventpound.quantities.spring_events import SpringEvent, spring_events
@@ -354,7 +354,7 @@ class Response:
             path = named.quantity.path
             if path.startswith(f"{kind}.<{owner}>.") and named.name in values:
                 column = path.rpartition(">.")[2]
-                name = owners(self.scene, owner)[named.i]
+                name = owners_of(self.scene, owner)[named.i]
                 rows.setdefault(name, {})[column] = values[named.name]
                 units[column] = named.quantity.dimension.unit
         table = pd.DataFrame.from_dict(rows, orient="index")

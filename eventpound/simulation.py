@@ -41,7 +41,7 @@ from eventpound.solvers.base import ReadyTask, Recording, Solver, Task
 from eventpound.units import Dimension
 
 
-def simulate(
+def response_of(
     case: Case | Scene,
     solver: str | Solver | None = None,
     rtol: float | str | None = None,

@@ -19,7 +19,7 @@ from eventpound.motion.constant import Constant
 from eventpound.scene import BilinearElastic, BoucWen, Scene, Series
 from eventpound.scene.grounded import grounded
 from eventpound.scene.spring import GROUND
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.base import Event, EventKind
 
 FOLDER = Path(__file__).parent.parent / "cases"
@@ -60,7 +60,7 @@ def loaded(name: str) -> Case:
 def response(name: str) -> Response:
     case = loaded(name)
     rtol, duration = FINER.get(name, RTOL), min(case.run.duration, LONGEST)
-    return simulate(case, rtol=rtol, duration=duration, energy=True)
+    return response_of(case, rtol=rtol, duration=duration, energy=True)
 
 
 @cache
@@ -68,7 +68,7 @@ def mirror_response(name: str) -> Response:
     case = loaded(name)
     turned = replace(case, scene=mirrored(case.scene))
     rtol, duration = FINER.get(name, RTOL), min(case.run.duration, LONGEST)
-    return simulate(turned, rtol=rtol, duration=duration)
+    return response_of(turned, rtol=rtol, duration=duration)
 
 
 def mirrored(scene: Scene) -> Scene:
@@ -296,7 +296,7 @@ def test_piers_move_one_after_the_other() -> None:
         supports=tuple(replace(s, delay=0.0) for s in run.scene.supports),
         contacts=run.scene.contacts[:2],
     )
-    assert simulate(still, rtol=RTOL, duration=run.task.end).impacts == 0
+    assert response_of(still, rtol=RTOL, duration=run.task.end).impacts == 0
     struck = {event.contact for event in impacts(run)}
     assert struck == {0, 1, 2}
 

@@ -67,7 +67,7 @@ def test_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
     def interrupted(_: Path) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(eventpound.cli.arguments, "load", interrupted)
+    monkeypatch.setattr(eventpound.cli.arguments, "loaded_case", interrupted)
     assert main(["run", ".", "--export", "out"]) == 130
     assert "interrupted" in capsys.readouterr().err
 
@@ -87,9 +87,9 @@ def test_interruption_that_others_complain_of(monkeypatch: pytest.MonkeyPatch) -
         raise SystemError("broken")
 
     for complain in (overlooked, not_taken):
-        monkeypatch.setattr(eventpound.cli.arguments, "load", complain)
+        monkeypatch.setattr(eventpound.cli.arguments, "loaded_case", complain)
         assert main(["run", ".", "--export", "out"]) == 130
-    monkeypatch.setattr(eventpound.cli.arguments, "load", broken)
+    monkeypatch.setattr(eventpound.cli.arguments, "loaded_case", broken)
     with pytest.raises(SystemError, match="broken"):
         main(["run", ".", "--export", "out"])
 

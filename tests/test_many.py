@@ -29,7 +29,7 @@ from eventpound.scene import (
     Spring,
     Support,
 )
-from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.parameters import number_places, with_values
 from eventpound.solvers.base import Extremes
 from eventpound.solvers.fast import many as fast_many
 from eventpound.solvers.fast.advance import advance
@@ -48,7 +48,7 @@ RNG = np.random.default_rng(5)
 
 
 def variant(scene: Scene, parameters: dict[str, Floats], i: int) -> Scene:
-    places = places_of(scene)
+    places = number_places(scene)
     return with_values(scene, {places[key]: float(v[i]) for key, v in parameters.items()})
 
 

@@ -1,4 +1,4 @@
-"""One meaning a class: a name stands for one thing in the whole package."""
+"""One meaning a name: a class or function stands for one thing in the whole package."""
 
 from __future__ import annotations
 
@@ -22,3 +22,21 @@ def test_no_two_classes_have_one_name() -> None:
                 if isinstance(node, ast.ClassDef):
                     places[node.name].append(name)
     assert {name: found for name, found in places.items() if len(found) > 1} == {}
+
+
+ENGINE = ("solvers", "contact", "mechanics", "numerics", "motion/forcing", "motion/loads")
+"""Rooms of compiled kernels, which a new name compiles anew: names that are here twice are left."""
+LEFT = {"number", "numbers_of"}
+"""Of `eventpound.basics.given` and of one of these rooms; the list shrinks."""
+
+
+def test_no_two_modules_have_a_public_function_of_one_name() -> None:
+    places = defaultdict(set)
+    for path in ROOT.rglob("*.py"):
+        name = path.relative_to(ROOT).as_posix()
+        if not name.startswith(ALONE):
+            for node in ast.parse(path.read_text()).body:
+                if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+                    places[node.name].add(name)
+    twice = {name: sorted(found) for name, found in places.items() if len(found) > 1}
+    assert {n for n, f in twice.items() if not all(m.startswith(ENGINE) for m in f)} == LEFT

@@ -9,9 +9,9 @@ import numpy as np
 
 from eventpound.accuracy.bound import Agreement
 from eventpound.accuracy.digits import positions
-from eventpound.accuracy.quantities import OF_IMPACTS, quantities_of, values_of
+from eventpound.accuracy.quantities import OF_IMPACTS, quantities_at, values_by_name
 from eventpound.accuracy.routes import Route, RouteRun
-from eventpound.accuracy.sequences import KINDS, parted, touches, weights_for
+from eventpound.accuracy.sequences import KINDS, first_parting, touches, weights_for
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
 from eventpound.score.difference import Difference, Truth, difference
@@ -41,7 +41,7 @@ class RoutesCompared(NamedTuple):
         return [
             (route, pair, found)
             for route, found in each
-            for pair in [*parted(found.events).values()][:1]
+            for pair in [*first_parting(found.events).values()][:1]
         ]
 
     @property
@@ -63,7 +63,7 @@ def compare_routes(
     reference = min(range(len(runs)), key=moved.__getitem__)
     stated = runs[reference].tight
     truth = Truth(
-        quantities_of(task, stated, moments, events=True),
+        quantities_at(task, stated, moments, events=True),
         stated.events,
         UNIT_OF_TIME * (task.end - task.start),
         weights=weights_for(),
@@ -86,7 +86,7 @@ def compare_routes(
 
 def from_truth(truth: Truth, scene: Scene, run: Recording, moments: Sequence[float]) -> Difference:
     """How far a run is from the one that is stated, its events paired with that one's."""
-    return difference(truth, values_of(scene, run, moments), run.events, KINDS)
+    return difference(truth, values_by_name(scene, run, moments), run.events, KINDS)
 
 
 def in_order(truth: Truth, found: Difference) -> Floats:

@@ -109,7 +109,7 @@ def entries(
     return found
 
 
-def compare(
+def judge_entries(
     case: Case,
     asked: Sequence[SolverChoice],
     against: Sequence[Path] = (),

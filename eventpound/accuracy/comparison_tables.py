@@ -37,10 +37,10 @@ READ: dict[str, Callable[[Difference], str]] = {
     "final": lambda d: brief(d.largest(FINAL)),
     "graph": lambda d: brief(d.distance.graph),
     "sup": lambda d: brief(d.distance.sup),
-    "impacts": lambda d: event_words(d.impacts),
+    "impacts": lambda d: event_counts(d.impacts),
     "shift (s)": lambda d: brief(d.impacts.largest_shift),
-    "rests": lambda d: event_words(d.rests and d.rests.of("rest")),
-    "detachments": lambda d: event_words(d.rests and d.rests.of("detachment")),
+    "rests": lambda d: event_counts(d.rests and d.rests.of("rest")),
+    "detachments": lambda d: event_counts(d.rests and d.rests.of("detachment")),
     "rest shift (s)": lambda d: brief(d.rests.largest_shift if d.rests else math.nan),
 }
 """The same in the text table; the last three are left out where nothing rests."""
@@ -226,7 +226,7 @@ def remarks_of(comparison: Comparison) -> list[str]:
     ]
 
 
-def event_words(events: Paired | None) -> str:
+def event_counts(events: Paired | None) -> str:
     """Matched events, and those missed and extra where there are some: ``4 -1 +2``."""
     if events is None:
         return "-"

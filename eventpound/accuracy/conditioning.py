@@ -23,7 +23,7 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact import BARRIER
-from eventpound.scene.parameters import Place, places_of, value_at, with_values
+from eventpound.scene.parameters import Place, number_places, value_at, with_values
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Law
 from eventpound.scene.support_drift import starts_of_supports
@@ -60,7 +60,7 @@ def perturbed(scene: Scene, size: float, rng: np.random.Generator) -> Scene:
 def _measured(scene: Scene) -> Iterator[tuple[Place, float]]:
     """Numbers of a scene that are measured: no counts, and no scale of a record beside a peak."""
     fixed = _counts(scene.motion)
-    for place in places_of(scene).values():
+    for place in number_places(scene).values():
         value = value_at(scene, place)
         counted = place.kind == "excitation" and place.field in fixed
         if isinstance(value, float) and not counted:

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from eventpound.accuracy.judge import INDEPENDENT, judge_of, task_of_judge
-from eventpound.accuracy.quantities import own_scale, quantities_of, scales_of_task, values_of
-from eventpound.accuracy.sequences import KINDS, instead_of, parted, weights_for
+from eventpound.accuracy.quantities import own_scale, quantities_at, scales_of_task, values_by_name
+from eventpound.accuracy.sequences import KINDS, first_parting, instead_of, weights_for
 from eventpound.basics.progress import Reached
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.numerics.arrays import Floats
@@ -106,12 +106,12 @@ def estimate_errors(
         unknown = f"error not known: {estimate['by']} failed {error}"
         return estimate | {"failed": str(error), "warnings": [unknown]}
     own = Truth(
-        quantities_of(task, recording),
+        quantities_at(task, recording),
         recording.events,
         UNIT_OF_TIME * (task.end - task.start),
         weights=weights_for(allowed_part(task.rtol)),
     )
-    found = difference(own, values_of(task.scene, other), other.events, KINDS)
+    found = difference(own, values_by_name(task.scene, other), other.events, KINDS)
     estimate["events_agree"] = not found.events.alone
     for off in found.quantities:
         kind, _, rest = off.quantity.name.partition(".")
@@ -206,7 +206,7 @@ def _doubts(response: Response, others: Sequence[Event], paired: Paired, by: str
     names = [f"contact {contact.name!r}" for contact in task.scene.contacts]
     allowed = allowed_part(task.rtol)
     rests = rests_of_both(ours, others, paired, len(names), task.end)
-    partings = parted(paired)
+    partings = first_parting(paired)
     restless = [j for j, found in enumerate(rests) if found.ours != found.theirs]
     for j in restless:
         yield (

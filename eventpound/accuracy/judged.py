@@ -106,7 +106,7 @@ def simulate(
     case = case_of(case)
     if start is not None:
         case = _started(case, start)
-    response = simulation.simulate(
+    response = simulation.response_of(
         case,
         solver,
         rtol,

@@ -64,7 +64,7 @@ def motion_scales(task: Task, recording: Recording) -> MotionScales:
     return MotionScales(scene.time, u, v, z)
 
 
-def values_of(
+def values_by_name(
     scene: Scene,
     recording: Recording,
     moments: Sequence[float] = (),
@@ -83,7 +83,7 @@ def values_of(
     return {name: float(value) for name, value, _, _ in _stated(scene, recording, moments)}
 
 
-def quantities_of(
+def quantities_at(
     task: Task, recording: Recording, moments: Sequence[float] = (), *, events: bool = False
 ) -> list[ScaledValue]:
     """Every quantity of a run with its value, displacements at some moments (s) too.
@@ -173,7 +173,7 @@ def _of_events(task: Task, recording: Recording) -> list[ScaledValue]:
 def truth_of(task: Task, recording: Recording) -> Truth:
     """A run as others are held against it: values of peaks and the final state, events, scales."""
     scales = motion_scales(task, recording)
-    wanted = [q for q in quantities_of(task, recording) if ".t_" not in q.name]
+    wanted = [q for q in quantities_at(task, recording) if ".t_" not in q.name]
     return Truth(wanted, recording.events, scales.time, (task.start, recording.t), scales)
 
 
@@ -197,7 +197,7 @@ def errors_of(
     """
     kinds = ("impact", "rest", "detachment") if rests and says_rests(found) else ("impact",)
     motions = None if rows is None else (rows, found.history)
-    values = values_of(scene, found)
+    values = values_by_name(scene, found)
     return difference(truth, values, found.events, kinds, end=found.t, motions=motions)
 
 

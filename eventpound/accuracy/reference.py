@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from eventpound.accuracy.quantities import errors_of, truth_of, values_of
+from eventpound.accuracy.quantities import errors_of, truth_of, values_by_name
 from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions
 from eventpound.case.solver_options import SolverOptions
@@ -184,7 +184,7 @@ def reference_of(case: Case, run: RunOptions, stated: StatedBounds | None) -> Re
     truth = truth_of(task, reference)
     check = None
     if checking is not None:
-        known = values_of(case.scene, checking)
+        known = values_by_name(case.scene, checking)
         own = [replace(q, bound=abs(known[q.name] - q.value)) for q in truth.quantities]
         truth = replace(truth, quantities=own)
         check = errors_of(case.scene, checking, truth, reference.history)

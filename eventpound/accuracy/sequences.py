@@ -140,7 +140,7 @@ def weights_for(missing: float = MARGIN * SOFT) -> Weights:
     return Weights(weigh, bands, 1.0)
 
 
-def parted(paired: Paired) -> dict[int, Pair]:
+def first_parting(paired: Paired) -> dict[int, Pair]:
     """The first event of each contact that one run has and the other has not, in order of time."""
     first: dict[int, Pair] = {}
     for pair in paired.alone:

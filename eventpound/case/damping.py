@@ -31,7 +31,7 @@ from eventpound.scene.spring import GROUND, Spring
 from eventpound.units import Dimension, quantity
 
 
-def read_damping(
+def read_group_damping(
     rayleigh: Sequence[Table],
     modal: Sequence[Table],
     bodies: Sequence[Body],

@@ -12,7 +12,7 @@ from eventpound.case.frequency import required_frequency
 from eventpound.case.record_file import find_record
 from eventpound.case.record_options import RecordOptions, read_record_options
 from eventpound.case.record_scaling import LARGEST_SCALE
-from eventpound.case.suite import Suite, read_suite, understood_suite
+from eventpound.case.suite import Suite, read_suite_keys, understood_suite
 from eventpound.case.table import Table, read_numbers
 from eventpound.motion import (
     AntisymmetricRicker,
@@ -153,7 +153,7 @@ def _read_record(table: Table, directory: Path) -> Excitation | None:
     """A record from a file beside the case or in an installed package, or a suite of them."""
     options = read_record_options(table, directory)
     if table.has("suite") or table.has("synthetic"):
-        suite = read_suite(table, options)
+        suite = read_suite_keys(table, options)
         if suite is None:
             return None
         # What matches nothing is wrong with the case, and found before anything runs.

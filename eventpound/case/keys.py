@@ -78,7 +78,7 @@ class Key:
             yield from self.of_scene(value, scene)
 
 
-def number(
+def number_key(
     says: str,
     dimension: Dimension,
     usual: float | None,
@@ -94,12 +94,12 @@ def number(
     return _declared(usual, Key(says, read, default, dimension, bound, **more))
 
 
-def flag(says: str, usual: bool | None = False, default: str = "`false`", **more: Any) -> Any:
+def flag_key(says: str, usual: bool | None = False, default: str = "`false`", **more: Any) -> Any:
     """Declare what is true or false; `usual` where it is not given."""
     return _declared(usual, Key(says, Table.flag, default, **more))
 
 
-def texts(says: str, accepted: str, bound: Bound | None = None, **more: Any) -> Any:
+def texts_key(says: str, accepted: str, bound: Bound | None = None, **more: Any) -> Any:
     """Declare a list of texts, empty where it is not given."""
 
     def read(table: Table, name: str) -> tuple[str, ...]:

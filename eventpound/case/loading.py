@@ -15,7 +15,7 @@ from eventpound.basics.given import checked
 from eventpound.basics.input_files import read_bytes
 from eventpound.case.capacity import read_capacities, with_capacities
 from eventpound.case.case import Case
-from eventpound.case.damping import read_damping
+from eventpound.case.damping import read_group_damping
 from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts, read_seats
 from eventpound.case.excitation import Excitation, bare_accelerations, for_scene, read_excitation
@@ -370,7 +370,7 @@ def _read_scene(
         read_dashpot(table, masses, resting.springs, supports) for table in tables["dashpot"]
     ]
     groups = tables["rayleigh"], tables["modal_damping"]
-    of_groups = read_damping(*groups, bodies, resting.springs, supports)
+    of_groups = read_group_damping(*groups, bodies, resting.springs, supports)
     scene = replace(scene, dashpots=(*dashpots, *of_groups))
     if not bodies and needed:
         top.report("[[body]]", "missing; accepted: at least one body")

@@ -18,13 +18,13 @@ from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.keys import (
     Bound,
     Key,
-    flag,
+    flag_key,
     keys_of,
-    number,
+    number_key,
     read_elsewhere,
     read_given,
     read_keys,
-    texts,
+    texts_key,
 )
 from eventpound.case.table import Table
 from eventpound.errors import InputError
@@ -92,18 +92,18 @@ class Stated:
     `fractile` of the demands over records that are held against them (per cent).
     """
 
-    quantities: tuple[str, ...] = texts(
+    quantities: tuple[str, ...] = texts_key(
         '[quantities](quantities.md) that take further runs, `["velocity.<body>.abs_max"]`',
         "a list of texts",
         asks=lambda names: names,
         holds=_RUNS,
     )
-    without_contact: bool = flag(
+    without_contact: bool = flag_key(
         "run without contact too, for `amplification` and `free` in the summary",
         asks=lambda _: ("amplification.<body>", "free.peaks.<body>.*"),
         holds=_RUNS,
     )
-    contact_stiffness: float | None = number(
+    contact_stiffness: float | None = number_key(
         "estimate the force of the strongest impact with it (N/m)",
         Dimension.STIFFNESS,
         None,
@@ -111,7 +111,7 @@ class Stated:
         asks=lambda _: ("contacts.<contact>.estimated_force",),
         holds=_RUNS,
     )
-    threshold_speed: float = number(
+    threshold_speed: float = number_key(
         "closing speed from which on an impact counts in `impacts_faster`",
         Dimension.VELOCITY,
         0.01,
@@ -120,7 +120,7 @@ class Stated:
         asks=lambda _: ("contacts.<contact>.impacts_faster",),
         holds=_RUNS,
     )
-    avoiding_gap: bool = flag(
+    avoiding_gap: bool = flag_key(
         "find [the gaps that avoid contact](design.md): `separation_needed`, `avoiding_gap`, "
         "`avoiding_gap_alone`",
         asks=lambda _: (
@@ -129,7 +129,7 @@ class Stated:
         ),
         holds=_RUNS,
     )
-    units: tuple[str, ...] = texts(
+    units: tuple[str, ...] = texts_key(
         "of [design numbers](design.md) and the lines after a single run, "
         '`["MN", "cm", "m/s^2"]`: at most one each of force (`N`, `kN`, `MN`, `kip`), length '
         "(`m`, `cm`, `mm`, `in`) and acceleration (`m/s^2`, `g`). Impulse and energy follow the "
@@ -139,7 +139,7 @@ class Stated:
         default="mm, g, and kN, or N where every body is lighter than 10 t",
         holds=_TOLD_OF_ONE,
     )
-    events: tuple[str, ...] = texts(
+    events: tuple[str, ...] = texts_key(
         'write where sliders stick and slip, `["slip"]`, and backfill is touched and left, '
         '`["soil"]`, to [spring_events.csv](results.md#spring-events-csv)',
         _EVENTS,
@@ -169,7 +169,7 @@ DEFAULTS = Stated()
 class RunOptions:
     """What is to be computed; times are NaN where each record of a suite sets them."""
 
-    start_time: float = number(
+    start_time: float = number_key(
         "when the run starts (s)",
         Dimension.TIME,
         0.0,
@@ -177,7 +177,7 @@ class RunOptions:
         called="start of the run",
         holds=_ALL,
     )
-    duration: float = number(
+    duration: float = number_key(
         "how long it lasts (s)",
         Dimension.TIME,
         math.nan,
@@ -186,7 +186,7 @@ class RunOptions:
         called="duration",
         holds=_ALL,
     )
-    output_step: float = number(
+    output_step: float = number_key(
         "distance of the rows of the history (s); at most 10 million rows",
         Dimension.TIME,
         math.nan,
@@ -195,8 +195,8 @@ class RunOptions:
         called="output step",
         holds=_TOLD_OF_ONE,
     )
-    energy: bool = flag("keep the energy balance", holds=_RUNS)
-    error_estimate: bool | None = flag(
+    energy: bool = flag_key("keep the energy balance", holds=_RUNS)
+    error_estimate: bool | None = flag_key(
         "[estimate the errors](accuracy.md#an-estimate-with-every-run) whatever it costs, or never",
         None,
         "a single run: by what is at hand; a suite: never",

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from eventpound.basics.given import number as given_number
-from eventpound.case.keys import Bound, keys_of, number, read_keys
+from eventpound.case.keys import Bound, keys_of, number_key, read_keys
 from eventpound.case.table import Table
 from eventpound.motion.base import LARGEST
 from eventpound.scene.contact_law import Element
@@ -48,7 +48,7 @@ class SolverOptions:
     """
 
     name: str = "cvode"
-    rtol: float = number(
+    rtol: float = number_key(
         "relative tolerance, from 1e-14 to 1e-2",
         Dimension.NUMBER,
         1e-9,

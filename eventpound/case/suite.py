@@ -238,7 +238,7 @@ def _hash(path: Path) -> str | None:
         return None
 
 
-def read_suite(table: Table, options: RecordOptions | None) -> Suite | None:
+def read_suite_keys(table: Table, options: RecordOptions | None) -> Suite | None:
     """Read ``suite`` or ``synthetic`` of ``[excitation]``.
 
     Parameters

@@ -21,7 +21,7 @@ from eventpound.motion.constant import Constant, PhasedSine
 from eventpound.motion.readers import Given
 from eventpound.motion.readers.base import Source, load
 from eventpound.motion.readers.binary import binary_kind
-from eventpound.motion.readers.columns import refuse_decimal_commas, step_of, table_of
+from eventpound.motion.readers.columns import numeric_rows, refuse_decimal_commas, step_of
 from eventpound.motion.readers.rows import NumberRows
 from eventpound.motion.readers.titles import Content, Title, title_of_kind
 from eventpound.numerics.arrays import Floats
@@ -255,7 +255,7 @@ def read_force(path: Path) -> tuple[float, float, Floats]:
     if kind := binary_kind(source.content, may_have_zeros=False):
         raise source.error(None, f"found {kind}; times and forces are needed")
     refuse_decimal_commas(source, whole=True)
-    table = table_of(source, _SECONDS)
+    table = numeric_rows(source, _SECONDS)
     rows, times = table.rows, table.times
     if rows.bad:
         raise InputError(source.unreadable(rows.bad))

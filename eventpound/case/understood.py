@@ -76,7 +76,7 @@ def understood_case(
                 "between": [written(contact.left), written(contact.right)],
                 "name": contact.name,
                 "gap": contact.gap,
-                **contact_law(contact),
+                **contact_law_keys(contact),
             }
             for contact in scene.contacts
         ],
@@ -103,7 +103,7 @@ def sources_of(understood: Mapping[str, Any]) -> dict[str, list[str]]:
     return {kind: [row.get("source", "") for row in understood.get(kind, ())] for kind in SOURCED}
 
 
-def contact_law(contact: Contact) -> dict[str, object]:
+def contact_law_keys(contact: Contact) -> dict[str, object]:
     """Restitution and law of a contact, by the keys of a case."""
     keys: dict[str, object] = {"restitution": contact.restitution}
     if contact.law is not None:

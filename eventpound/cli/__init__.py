@@ -34,7 +34,7 @@ from eventpound.basics.warned import show_warning
 from eventpound.cli.arguments import EXAMPLES, Command, Commands, Options
 from eventpound.cli.output import Output
 from eventpound.cli.progress import CompilationLine
-from eventpound.cli.talk import add_loudness, complain, located, say, set_loudness
+from eventpound.cli.talk import add_loudness, complain, located, set_loudness, tell_step
 from eventpound.errors import ComputationError, InputError, InterruptionError
 from eventpound.numerics.compiling import watched
 
@@ -71,7 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             output.quieten()
         set_loudness(options.quiet, options.verbose)
         code = _run(options)
-        say(f"ended with exit code {code}")
+        tell_step(f"ended with exit code {code}")
     if output.trouble:
         complain(f"stdout: cannot be written to: {output.trouble}")
     if arguments is None:
@@ -125,7 +125,7 @@ def _parser() -> Command:
     for task, modules in _TASKS.items():
         lines += ["", f"{task}:"]
         for module in modules:
-            import_module(f"eventpound.cli.{module}").add(commands)
+            getattr(import_module(f"eventpound.cli.{module}"), f"add_{module}")(commands)
             lines.append(_line_of(commands))
     parser.description = "\n".join(lines)
     return parser

@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-from eventpound.cli.talk import add_loudness, complain, located, say
+from eventpound.cli.talk import add_loudness, complain, located, tell_step
 from eventpound.errors import InputError, told_of
 
 if TYPE_CHECKING:
@@ -156,7 +156,7 @@ def count_argument(text: str) -> int:
     return int(text)
 
 
-def list_of(read: Callable[[str], T]) -> Callable[[str], list[T]]:
+def comma_list(read: Callable[[str], T]) -> Callable[[str], list[T]]:
     """What reads several with commas between them."""
     return lambda text: [read(word) for word in text.split(",")]
 
@@ -178,13 +178,13 @@ def _formats(text: str) -> tuple[str, ...]:
     return kinds
 
 
-def load(path: Path, suite: str | None = None) -> Case:
+def loaded_case(path: Path, suite: str | None = None) -> Case:
     """Load a case, perhaps with other records, and show its warnings."""
     from eventpound.case import load_case
 
     case = load_case(path, suite)
     scene = case.scene
-    say(f"read {path}: {len(scene.bodies)} bodies, {len(scene.contacts)} contacts")
+    tell_step(f"read {path}: {len(scene.bodies)} bodies, {len(scene.contacts)} contacts")
     show_warnings(case.warnings)
     if any(case.run.stated.named()):
         from eventpound.quantities.lookup import asked
@@ -194,11 +194,9 @@ def load(path: Path, suite: str | None = None) -> Case:
     return case
 
 
-def load_study(path: Path) -> StudyCase:
+def loaded_study(path: Path) -> StudyCase:
     """Load a case with a [study], and show its warnings."""
-    from eventpound.study.reading import load_study
-
-    case = load_study(path)
+    case = loaded_study(path)
     show_warnings(case.warnings)
     return case
 
@@ -219,7 +217,7 @@ def show_warnings(warnings: Iterable[str]) -> None:
         complain(f"warning: {warning}")
 
 
-def warn_of_scales(given: Case | Sequence[Base]) -> None:
+def complain_of_scales(given: Case | Sequence[Base]) -> None:
     """Warn of records of a suite, or of the scenes of a study, that are scaled by much."""
     from eventpound.study.large_scales import large_scales_of
 
@@ -254,9 +252,9 @@ def check_solver_of(case: Case, in_file: bool = True) -> None:
 
             check_solver(case.solver, case.scene, case.run)
         else:
-            from eventpound.study.suite import plan_of
+            from eventpound.study.suite import suite_plan
 
-            plan_of(case, None, None, None, intensities=False)
+            suite_plan(case, None, None, None, intensities=False)
 
 
 def file_of(case: Case) -> str:
@@ -266,7 +264,7 @@ def file_of(case: Case) -> str:
     return f"{case.directory / CASE_FILE}: "
 
 
-def write(out: Path, files: Mapping[str, bytes]) -> None:
+def write_and_print(out: Path, files: Mapping[str, bytes]) -> None:
     """Write files of a folder together and print their names."""
     from eventpound.results import write_together
 

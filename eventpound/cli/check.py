@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from eventpound.study.reading import StudyCase
 
 
-def add(commands: Commands) -> None:
+def add_check(commands: Commands) -> None:
     """Add the command to the parser."""
     check = add_command(commands, "check", _check, __doc__)
     check.case(nargs="?")
@@ -40,11 +40,11 @@ def _check(options: Options) -> int:
 
     if kind_of(options.case)[0] is Kind.STUDY:
         options.refuse(["--json"], "is for the case of a single run or of a suite, not of a study")
-        return _check_study(arguments.load_study(options.case))
-    case = arguments.load(options.case)
+        return _check_study(arguments.loaded_study(options.case))
+    case = arguments.loaded_case(options.case)
     arguments.check_solver_of(case)
     if case.suite is not None:
-        arguments.warn_of_scales(case)
+        arguments.complain_of_scales(case)
     from eventpound.results.input_tables import input_lines
     from eventpound.results.inputs import inputs_of
 
@@ -77,7 +77,7 @@ def _check_study(case: StudyCase) -> int:
     from eventpound.scene.pi_terms import number_of_terms
 
     study, first = case.study, case.study.bases[0]
-    arguments.warn_of_scales(study.bases)
+    arguments.complain_of_scales(study.bases)
     print(f"study     {study.title}")
     print("\n".join(_tables(inputs_of(first.case))), end="\n\n")
     values = {**first.labels, **{axis.key: f"{axis.values[0]:.6g}" for axis in first.axes}}
@@ -110,9 +110,9 @@ def _list_quantities(path: Path | None) -> int:
     if kind_of(path)[0] is Kind.STUDY:
         from eventpound.study.quantities import quantities_of
 
-        scenes = [base.case.scene for base in arguments.load_study(path).study.bases]
+        scenes = [base.case.scene for base in arguments.loaded_study(path).study.bases]
         names = [name for scene in scenes for name in quantities_of(scene)]
     else:
-        names = names_of(arguments.load(path).scene)
+        names = names_of(arguments.loaded_case(path).scene)
     print("\n".join(dict.fromkeys(names)))
     return 0

@@ -46,25 +46,28 @@ _NO_SOLVER = "none"
 _DEFAULT_RTOL = ",".join(f"{size:.0e}".replace("e-0", "e-") for size in COMPARED)
 
 
-def add(commands: Commands) -> None:
+def add_compare(commands: Commands) -> None:
     """Add the command to the parser."""
-    compare = add_command(commands, "compare", _compare, __doc__)
-    compare.case()
+    command = add_command(commands, "compare", _compare, __doc__)
+    command.case()
     solvers = "with their settings (cvode,fast if it takes the scene; with --against none)"
-    compare.option("--solvers A,B,...", solvers)
-    rtol, rtols = f"relative tolerances ({_DEFAULT_RTOL})", arguments.list_of(arguments.tolerance)
-    compare.option("--rtol X,Y,...", rtol, rtols, default=_DEFAULT_RTOL)
-    steps = arguments.list_of(arguments.seconds)
-    compare.option("--steps X,Y,...", "time steps (s)", steps, default=[])
-    compare.option("--against CSV", "histories to judge", Path, nargs="+", default=[])
-    compare.option(
+    command.option("--solvers A,B,...", solvers)
+    rtol, rtols = (
+        f"relative tolerances ({_DEFAULT_RTOL})",
+        arguments.comma_list(arguments.tolerance),
+    )
+    command.option("--rtol X,Y,...", rtol, rtols, default=_DEFAULT_RTOL)
+    steps = arguments.comma_list(arguments.seconds)
+    command.option("--steps X,Y,...", "time steps (s)", steps, default=[])
+    command.option("--against CSV", "histories to judge", Path, nargs="+", default=[])
+    command.option(
         "--columns OURS=THEIRS,...", "what their columns are called, or their numbers", default=""
     )
     count = arguments.count_argument
-    compare.option("--repeats N", f"the median of N counts ({REPEATS})", count, default=REPEATS)
+    command.option("--repeats N", f"the median of N counts ({REPEATS})", count, default=REPEATS)
     rigid = "of the rigid law beside contacts with laws of their own (what each stands for)"
-    compare.option("--restitution E", rigid, arguments.restitution)
-    compare.out("where the tables and the diagram go (CASE/comparison)")
+    command.option("--restitution E", rigid, arguments.restitution)
+    command.out("where the tables and the diagram go (CASE/comparison)")
 
 
 def _columns(text: str) -> dict[str, str]:
@@ -94,9 +97,9 @@ def _chosen(
 
 def _compare(options: Options) -> int:
     columns = _columns(options.columns)
-    case = arguments.load(options.case)
+    case = arguments.loaded_case(options.case)
     chosen = _chosen(options.solvers, bool(options.against), case.scene)
-    from eventpound.accuracy.compare import ComparisonInterrupted, compare, entries
+    from eventpound.accuracy.compare import ComparisonInterrupted, entries, judge_entries
     from eventpound.results import check_writable
 
     out = options.out or case.directory / "comparison"
@@ -104,7 +107,7 @@ def _compare(options: Options) -> int:
     asked = entries(chosen, options.rtol, options.steps)
     try:
         with Doing() as doing:
-            comparison = compare(
+            comparison = judge_entries(
                 case,
                 asked,
                 options.against,

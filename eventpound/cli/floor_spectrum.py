@@ -20,7 +20,7 @@ from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.errors import InputError
 
 
-def add(commands: Commands) -> None:
+def add_floor_spectrum(commands: Commands) -> None:
     """Add the command to the parser."""
     floor = add_command(commands, "floor-spectrum", _floor_spectrum, __doc__)
     floor.case()
@@ -38,16 +38,16 @@ def _floor_spectrum(options: Options) -> int:
     from eventpound.report.style import on_paper
     from eventpound.results import check_writable
     from eventpound.results.tables import table_csv
-    from eventpound.simulation import refuse_suite, simulate
+    from eventpound.simulation import refuse_suite, response_of
 
     paper, periods, damping = options.paper(), _periods(options.periods), options.damping
-    case = arguments.load(options.case)
+    case = arguments.loaded_case(options.case)
     refuse_suite(case)
     arguments.check_solver_of(case)
     warn_left_out(case.run, Way.FLOOR)
     out = options.results
     check_writable(out)
-    response = simulate(case)
+    response = response_of(case)
     table = response.floor_spectrum(options.body, periods, damping.split(","))
     free = None
     both = table
@@ -64,7 +64,7 @@ def _floor_spectrum(options: Options) -> int:
             f"{body:<16} {100.0 * ratio:g} % damping: PSA up to {peak['PSA_g']:.4g} g "
             f"at {peak['period']:.3g} s"
         )
-    arguments.write(out, files)
+    arguments.write_and_print(out, files)
     return 0
 
 

@@ -37,7 +37,7 @@ _SHOWN, _MOST_CURVES = 8, 12
 """Values that a message lists; that have a curve each."""
 
 
-def add(commands: Commands) -> None:
+def add_fragility(commands: Commands) -> None:
     """Add the command to the parser."""
     command = add_command(commands, "study fragility", _fragility, __doc__)
     command.case()
@@ -97,7 +97,7 @@ def _fragility(options: Options) -> int:
     made = table_csv(curves.assign(**of))
     _set_aside(out, made)
     figures = on_paper({f"{_FRAGILITY}.png": figure}, paper)
-    arguments.write(out, {f"{_FRAGILITY}.csv": made} | figures)
+    arguments.write_and_print(out, {f"{_FRAGILITY}.csv": made} | figures)
     return 0
 
 
@@ -129,10 +129,10 @@ def _set_aside(out: Path, made: bytes) -> None:
 
 def _read(out: Path) -> tuple[pd.DataFrame, list[Mapping[str, Any]]]:
     """The table of a study, else of a suite, and each ``[excitation]`` it was made with."""
-    from eventpound.study.table import SUITE_TABLE, TABLE, read_manifest, read_suite, read_table
+    from eventpound.study.table import SUITE_TABLE, TABLE, manifest_there, read_suite, read_table
 
     if (out / TABLE).is_file():
-        scenes: Any = (read_manifest(out) or {}).get("scenes", [])
+        scenes: Any = (manifest_there(out) or {}).get("scenes", [])
         return read_table(out), [scene["case"].get("excitation", {}) for scene in scenes]
     if (out / SUITE_TABLE).is_file():
         table, manifest = read_suite(out)

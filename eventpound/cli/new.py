@@ -9,7 +9,7 @@ from eventpound.cli.talk import complain
 from eventpound.errors import InputError
 
 
-def add(commands: Commands) -> None:
+def add_new(commands: Commands) -> None:
     """Add the command to the parser."""
     new = add_command(commands, "new", _new, __doc__)
     new.add_argument("directory", metavar="DIR", type=Path, help="made where it is missing")

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from eventpound.problems.collection import Collection
 
 
-def add(commands: Commands) -> None:
+def add_pack(commands: Commands) -> None:
     """Add the command to the parser."""
     pack = add_command(commands, "problems pack", _pack_or_certify, __doc__)
     pack.add_argument("folder", metavar="SET", type=Path, help="directory with a set.toml")

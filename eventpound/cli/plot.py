@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from eventpound.response import Response
 
 
-def add(commands: Commands) -> None:
+def add_plot(commands: Commands) -> None:
     """Add the command to the parser."""
     plot = add_command(commands, "plot", _plot, __doc__)
     plot.add_argument("case", metavar="CASE|FOLDER", type=Path, help="directory of it, or of cases")
@@ -98,10 +98,10 @@ def _beside(options: Options, out: Path) -> tuple[Path | Response, str] | None:
     if not options.without_contact:
         return None
     from eventpound.results import read
-    from eventpound.simulation import simulate
+    from eventpound.simulation import response_of
 
     case = arguments.case_of_results(read(out).manifest, out, options)
-    return simulate(case.apart(replace(case.scene, contacts=()))), "without contact"
+    return response_of(case.apart(replace(case.scene, contacts=()))), "without contact"
 
 
 def _plot_model(directory: Path, out: Path, paper: Paper) -> None:
@@ -114,11 +114,11 @@ def _plot_model(directory: Path, out: Path, paper: Paper) -> None:
     if kind_of(directory)[0] is Kind.STUDY:
         case = load_study(directory).study.bases[0].case
     else:
-        case = arguments.load(directory)
+        case = arguments.loaded_case(directory)
     if not case.scene.bodies:
         raise InputError(f"{directory}: the case has no bodies to draw")
     figures = {"model.png": model_figure(case.scene, case.title, with_laws=True)}
-    arguments.write(out, on_paper(figures, paper))
+    arguments.write_and_print(out, on_paper(figures, paper))
 
 
 def _plot_study(options: Options, out: Path, paper: Paper) -> list[Path]:

@@ -16,11 +16,11 @@ from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.errors import InputError
 
 
-def add(commands: Commands) -> None:
+def add_problems(commands: Commands) -> None:
     """Add the commands to the parser."""
     add_command(commands, "problems", _problems, __doc__)
-    pack.add(commands)
-    score.add(commands)
+    pack.add_pack(commands)
+    score.add_score(commands)
 
 
 def _problems(options: Options) -> int:

@@ -15,7 +15,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Self
 
 from eventpound.basics.interruption import Deferred
-from eventpound.cli.talk import complain, is_quiet, say
+from eventpound.cli.talk import complain, is_quiet, tell_step
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.numerics.compiling import Stopwatch
 
@@ -76,7 +76,7 @@ class CompilationLine(_Line):
         if state is None:
             self.clear()
             if self._last_state is not None:
-                say(f"compiled {self._last_state.name}: {self._last_state.seconds:.1f} s")
+                tell_step(f"compiled {self._last_state.name}: {self._last_state.seconds:.1f} s")
             return
         self._last_state = state
         seconds = max(_LEAST_SECONDS, _SECONDS_A_FUNCTION * state.total)
@@ -108,7 +108,7 @@ class Progress(_Line):
 
     def begins(self, what: str) -> None:
         """Say of what comes next what it is: each pass goes from the start to the end."""
-        say(what)
+        tell_step(what)
         self._pass = f"{what}: "
 
     def __call__(self, t: float) -> None:
@@ -147,7 +147,7 @@ class Doing(_Line):
 
     def __call__(self, what: str) -> None:
         """Say that this begins."""
-        say(what)
+        tell_step(what)
         self._last = -math.inf
         self._show(lambda: what)
 

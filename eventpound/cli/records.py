@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from eventpound.motion.record_folder import RecordFile
 
 
-def add(commands: Commands) -> None:
+def add_records(commands: Commands) -> None:
     """Add the command to the parser."""
     records = add_command(commands, "records", _records, __doc__)
     records.add_argument("path", metavar="FILE|FOLDER", type=Path, help="a record or many")
@@ -75,7 +75,7 @@ def add(commands: Commands) -> None:
     )
     records.option("--figures", "a figure for each of a folder")
     records.option("--no-figures", "no figure for a file")
-    synthetic.add(commands)
+    synthetic.add_synthetic(commands)
 
 
 def _records(options: Options) -> int:

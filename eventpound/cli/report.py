@@ -31,7 +31,7 @@ from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.folder import of_each, worst_code
 from eventpound.cli.progress import Counter, Progress, Watch
-from eventpound.cli.talk import complain, going_on, say
+from eventpound.cli.talk import complain, going_on, tell_step
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 _FOLDER, _FOLDERS, PRINTED, WORKBOOK = "report", "reports", "report.pdf", "report.xlsx"
 
 
-def add(commands: Commands) -> None:
+def add_report(commands: Commands) -> None:
     """Add the command to the parser."""
     report = add_command(commands, "report", _report, __doc__)
     help_text = "directory of the case, or of cases"
@@ -73,7 +73,7 @@ def _report(options: Options) -> int:
         return _one(options, out / directory.name)
 
     titles, left_out = of_each(case, one)
-    arguments.write(out, {"index.html": links_page("Reports", titles, PAGE, left_out)})
+    arguments.write_and_print(out, {"index.html": links_page("Reports", titles, PAGE, left_out)})
     return worst_code(left_out)
 
 
@@ -85,17 +85,17 @@ def _one(options: Options, out: Path) -> str:
 
     if kind_of(options.case)[0] is Kind.STUDY:
         options.refuse(["--suite"], "is for a case without a [study]")
-        study = arguments.load_study(options.case)
+        study = arguments.loaded_study(options.case)
         title, table, pages = study.study.title, *_of_study(study, options, out)
     else:
-        case = arguments.load(options.case, options.suite)
+        case = arguments.loaded_case(options.case, options.suite)
         arguments.check_solver_of(case)
         made = _of_run(case, out) if case.suite is None else _of_suite(case, out)
         print("\n".join(_lines(case, made)))
         title, table = case.title, made.table
         pages = {} if options.no_pages else _pages_of(made, options, out)
     files = {DESIGN_TABLE: table_csv(table)} if len(table) else {}
-    arguments.write(out, files | pages)
+    arguments.write_and_print(out, files | pages)
     return title
 
 
@@ -125,7 +125,7 @@ def _pages_of(made: DesignRuns, options: Options, out: Path) -> dict[str, bytes]
     case, response, record = made.case, made.response, ""
     assert case is not None
     appendix = _appendix(made, options, out)
-    say("draw the report")
+    tell_step("draw the report")
     if made.table.empty:
         return _pages(case.title, [], appendix, {})
     if response is None:
@@ -174,7 +174,7 @@ def _of_suite(case: Case, out: Path) -> DesignRuns:
     with going_on(), Counter("records") as progress:
         made = made_of_suite(case, out, progress)
     assert made.runs is not None
-    arguments.warn_of_scales(case)
+    arguments.complain_of_scales(case)
     for record, why in zip(made.runs["record"], made.runs["failed"], strict=True):
         if why:
             complain(f"{record} failed, and is left out: {why}")
@@ -191,7 +191,7 @@ def _of_study(
     from eventpound.results.cells import lines_of
     from eventpound.results.trade import trade_of
     from eventpound.study.design import made_of_study, plan_asking
-    from eventpound.study.table import read_manifest
+    from eventpound.study.table import manifest_there
 
     plan = plan_asking(case.study)
     # Where nothing is asked for beyond it, the table of the study is taken.
@@ -199,7 +199,7 @@ def _of_study(
     with going_on(), Counter("runs") as progress:
         made = made_of_study(plan, runs, progress)
     assert made.runs is not None
-    arguments.warn_of_scales(plan.bases)
+    arguments.complain_of_scales(plan.bases)
     if failed := int((~made.runs["success"]).sum()):
         complain(f"{failed} of {len(made.runs)} runs failed, and are left out")
     first = case.study.bases[0].at_first().case
@@ -210,7 +210,7 @@ def _of_study(
     if options.no_pages:
         return made.table, {}
     sheets = study_sheets(plan, made.table, trade, case.warnings) if len(made.table) else []
-    sections = study_sections(case, made.runs, read_manifest(runs) or {})
+    sections = study_sections(case, made.runs, manifest_there(runs) or {})
     tables = study_workbook(made.table, trade)
     return made.table, _pages(plan.title, sheets, sections, tables)
 

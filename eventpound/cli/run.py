@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.progress import Progress, Watch
-from eventpound.cli.suite_run import run_suite
-from eventpound.cli.talk import complain, say
+from eventpound.cli.suite_run import run_and_tell_suite
+from eventpound.cli.talk import complain, tell_step
 from eventpound.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ _MOST_DEMANDS = 12
 """Contacts and springs with a line."""
 
 
-def add(commands: Commands) -> None:
+def add_run(commands: Commands) -> None:
     """Add the command to the parser."""
     run = add_command(commands, "run", _run, __doc__)
     run.case()
@@ -70,7 +70,7 @@ def add(commands: Commands) -> None:
 def _run(options: Options) -> int:
     if options.export is not None:
         return _export(options)
-    case = _with_solver(arguments.load(options.case, options.suite), options)
+    case = _with_solver(arguments.loaded_case(options.case, options.suite), options)
     in_file = options.solver is None and options.rtol is None
     if case.suite is None:
         arguments.check_solver_of(case, in_file)
@@ -81,7 +81,7 @@ def _run(options: Options) -> int:
     if case.suite is not None:
         why = "is for a single run; this case has a suite of records"
         options.refuse(["--time-limit", "--max-steps"], why)
-        return run_suite(case, options, out, arguments.file_of(case) if in_file else "")
+        return run_and_tell_suite(case, options, out, arguments.file_of(case) if in_file else "")
     options.refuse(["--histories"], "is for a case with a suite of records")
     response, estimate = _compute(case, options, out)
     print("\n".join(_summary(response)))
@@ -90,7 +90,7 @@ def _run(options: Options) -> int:
     if not options.no_figures:
         from eventpound.report.run_figures import plot
 
-        say("draw the figures")
+        tell_step("draw the figures")
         # The same without contact was computed where its numbers are asked for.
         free = vars(response).get("without_contact")
         beside = None if free is None else (free, "without contact")
@@ -102,7 +102,7 @@ def _run(options: Options) -> int:
 def _export(options: Options) -> int:
     """Write matrices and motion for other programs."""
     options.refuse_others("--export", "is not for --export, which computes nothing")
-    case = arguments.load(options.case)
+    case = arguments.loaded_case(options.case)
     if case.suite is not None:
         raise InputError(f"{options.case}: holds a suite; --export writes one motion")
     from eventpound.results import export
@@ -126,7 +126,7 @@ def _compute(case: Case, options: Options, out: Path) -> tuple[Response, dict[st
     """Compute what is asked for and write it; where it ends early, what there is of it."""
     from eventpound import results
     from eventpound.accuracy.estimate import estimate_of
-    from eventpound.simulation import simulate
+    from eventpound.simulation import response_of
 
     started = datetime.now(UTC)
     bounded = options.time_limit is not None or options.max_steps is not None
@@ -135,9 +135,9 @@ def _compute(case: Case, options: Options, out: Path) -> tuple[Response, dict[st
         progress = Progress(case)
         shows = [progress] if bounded else [progress, progress.forecast.warn]
         with progress, Watch(options.time_limit, *shows) as watch:
-            say(f"solve by {case.solver.name}, rtol {case.solver.rtol:g}")
-            response = simulate(case, progress=watch, max_steps=options.max_steps)
-            say(f"solved: {response.message}, {response.work.steps} steps")
+            tell_step(f"solve by {case.solver.name}, rtol {case.solver.rtol:g}")
+            response = response_of(case, progress=watch, max_steps=options.max_steps)
+            tell_step(f"solved: {response.message}, {response.work.steps} steps")
             # Computed here, where it can be interrupted; kept with the response.
             progress.begins("again, for the quantities named")
             _ = response.named, response.shock_rows
@@ -147,7 +147,7 @@ def _compute(case: Case, options: Options, out: Path) -> tuple[Response, dict[st
     except (ComputationError, KeyboardInterrupt) as error:
         _keep_partial(case, error, response, out)
         raise
-    say(f"write results to {out}")
+    tell_step(f"write results to {out}")
     results.write(response, out, case=case, error_estimate=estimate, started=started)
     return response, estimate
 

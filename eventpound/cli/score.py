@@ -27,7 +27,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, Options, add_command, list_of, seconds, tolerance
+from eventpound.cli.arguments import Commands, Options, add_command, comma_list, seconds, tolerance
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from eventpound.score.card import Card
 
 
-def add(commands: Commands) -> None:
+def add_score(commands: Commands) -> None:
     """Add the command to the parser."""
     score = add_command(commands, "problems score", _score, __doc__)
     score.add_argument("problem", metavar="PROBLEM", type=Path, help="a problem, or a set")
@@ -46,7 +46,7 @@ def add(commands: Commands) -> None:
     program = "run a program, or several, under a name or that of its file"
     score.option("--run [NAME=]COMMAND", program, action="append", default=[])
     sizes = "tolerances (1e-4,1e-7,1e-10,1e-12) or steps in parts of the run (1e-3,1e-4,1e-5)"
-    score.option("--sizes X,Y,...", sizes, list_of(tolerance), default=[])
+    score.option("--sizes X,Y,...", sizes, comma_list(tolerance), default=[])
     score.option("--limit SECONDS", "processor time a run may take (10)", seconds, default=10.0)
     score.option("--json FILE", "write the cards as JSON", Path)
     score.option("--html FILE", "write them as a page", Path)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from eventpound.case import Case
 
 
-def add(commands: Commands) -> None:
+def add_sensitivities(commands: Commands) -> None:
     """Add the command to the parser."""
     command = add_command(commands, "study sensitivities", _sensitivities, __doc__)
     command.case()
@@ -41,8 +41,8 @@ def _scene_of(path: Path) -> Case:
     from eventpound.study.kinds import Kind, kind_of
 
     if kind_of(path)[0] is not Kind.STUDY:
-        return arguments.load(path)
-    bases = arguments.load_study(path).study.bases
+        return arguments.loaded_case(path)
+    bases = arguments.loaded_study(path).study.bases
     if len(bases) > 1 or bases[0].records:
         raise InputError("is of one scene, and this [study] has several")
     return bases[0].case
@@ -69,5 +69,5 @@ def _sensitivities(options: Options) -> int:
 
         if (figure := tornado_figure(table, case.title)) is not None:
             files |= on_paper({"sensitivities.png": figure}, paper)
-    arguments.write(options.results, files)
+    arguments.write_and_print(options.results, files)
     return 0

@@ -23,7 +23,7 @@ from eventpound.cli.talk import complain, is_quiet
 from eventpound.errors import InputError
 
 
-def add(commands: Commands) -> None:
+def add_solvers(commands: Commands) -> None:
     """Add the command to the parser."""
     parser = add_command(commands, "solvers", _solvers, __doc__)
     names = "make the kernels of these solvers: cvode, ida, fast, moreau, penalty (all)"

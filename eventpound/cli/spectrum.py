@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from eventpound.units import Dimension
 
 
-def add(commands: Commands) -> None:
+def add_spectrum(commands: Commands) -> None:
     """Add the command to the parser."""
     command = add_command(commands, "study spectrum", _spectrum, __doc__)
     command.case()

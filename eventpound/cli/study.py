@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from eventpound.study.engines.base import Engine
 
 
-def add(commands: Commands) -> None:
+def add_study(commands: Commands) -> None:
     """Add the command to the parser."""
     study = add_command(commands, "study", _study, __doc__)
     study.case()
@@ -44,21 +44,21 @@ def add(commands: Commands) -> None:
     study.option("--processes N", "N processes of this machine", arguments.count_argument)
     study.option("--workers N", "N Dask workers on this machine", arguments.count_argument)
     study.option("--scheduler ADDRESS", "a Dask scheduler, tcp://HOST:8786")
-    sensitivities.add(commands)
-    spectrum.add(commands)
-    fragility.add(commands)
+    sensitivities.add_sensitivities(commands)
+    spectrum.add_spectrum(commands)
+    fragility.add_fragility(commands)
 
 
 def _study(options: Options) -> int:
     from eventpound.study.running import run_study
 
-    out, case = options.results, arguments.load_study(options.case)
+    out, case = options.results, arguments.loaded_study(options.case)
     engine = _engine(options, case.study.solver)
     with going_on(), Counter("runs") as progress:
         moved = run_study(case.study, out, engine, progress)
     if moved is not None:
         print(f"moved     what was in {out} before is in {moved}")
-    arguments.warn_of_scales(case.study.bases)
+    arguments.complain_of_scales(case.study.bases)
     print(f"runs      {case.study.size}, {_failures(out)} failed")
     print(f"results   {out}")
     if (case.figures or case.intensities) and not options.no_figures:

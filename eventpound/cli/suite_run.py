@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Options, warn_of_scales
+from eventpound.cli.arguments import Options, complain_of_scales
 from eventpound.cli.progress import Counter
 from eventpound.cli.talk import complain, going_on, located
 from eventpound.errors import told_of
@@ -23,7 +23,7 @@ _HISTORIES = "records"
 """Folder of the results of every record, in that of the suite's."""
 
 
-def run_suite(case: Case, options: Options, out: Path, told: str) -> int:
+def run_and_tell_suite(case: Case, options: Options, out: Path, told: str) -> int:
     """Run a scene under every record, write the table and the figures.
 
     Where it cannot be run the message begins as told.
@@ -34,7 +34,7 @@ def run_suite(case: Case, options: Options, out: Path, told: str) -> int:
 
     estimate = True if options.error_estimate else None
     with told_of(told):
-        plan, case = suite.plan_of(case, None, None, estimate, intensities=True)
+        plan, case = suite.suite_plan(case, None, None, estimate, intensities=True)
     keep = _keeper(out / _HISTORIES) if options.histories else None
     with going_on(lambda: _kept(out, plan.size)), Counter("records") as progress:
         moved = suite.run_suite(plan, case, out, progress, keep)
@@ -54,15 +54,15 @@ def run_suite(case: Case, options: Options, out: Path, told: str) -> int:
             print(f"figure    {path}")
     _say_what_is_unlikely(table)
     _say_what_failed(table)
-    warn_of_scales(case)
+    complain_of_scales(case)
     return 0
 
 
 def _kept(out: Path, size: int) -> str:
     """What there is of a suite that was stopped."""
-    from eventpound.study.table import SUITE_MANIFEST, SUITE_TABLE, read_manifest
+    from eventpound.study.table import SUITE_MANIFEST, SUITE_TABLE, manifest_there
 
-    manifest = read_manifest(out, SUITE_MANIFEST) or {}
+    manifest = manifest_there(out, SUITE_MANIFEST) or {}
     if manifest.get("complete", True):
         return f"0 of {size} records were done"
     done = manifest["records"]

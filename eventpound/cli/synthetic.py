@@ -20,7 +20,7 @@ from eventpound.cli.arguments import Commands, Options, add_command, count_argum
 from eventpound.cli.progress import Counter
 
 
-def add(commands: Commands) -> None:
+def add_synthetic(commands: Commands) -> None:
     """Add the command to the parser."""
     synthetic = add_command(commands, "records synthetic", _synthetic, __doc__)
     synthetic.add_argument("directory", metavar="DIR", type=Path, help="made where it is missing")

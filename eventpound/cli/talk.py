@@ -40,7 +40,7 @@ def is_quiet() -> bool:
     return _Talk.quiet
 
 
-def say(text: str) -> None:
+def tell_step(text: str) -> None:
     """Say on stderr what begins or has ended, with the time since the command began."""
     if _Talk.verbose:
         print(f"{time.monotonic() - _Talk.began:8.2f} s  {text}", file=sys.stderr, flush=True)

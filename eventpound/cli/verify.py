@@ -22,14 +22,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, Options, add_command, load, seconds, tolerance
+from eventpound.cli.arguments import Commands, Options, add_command, loaded_case, seconds, tolerance
 from eventpound.cli.talk import complain, is_quiet
 
 if TYPE_CHECKING:
     from eventpound.accuracy.certificate import Certificate
 
 
-def add(commands: Commands) -> None:
+def add_verify(commands: Commands) -> None:
     """Add the command to the parser."""
     verify = add_command(commands, "verify", _verify, __doc__)
     verify.case()
@@ -42,7 +42,7 @@ def add(commands: Commands) -> None:
 
 
 def _verify(options: Options) -> int:
-    case = load(options.case)
+    case = loaded_case(options.case)
     out = options.results
     from eventpound import results
     from eventpound.accuracy.certificate_text import certificate_text, sentence, write_certificate

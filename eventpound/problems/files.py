@@ -22,7 +22,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.problems.alone import score_file
 from eventpound.problems.answer import moments_of
 from eventpound.problems.collection import ANSWER, EARLIER, FROZEN, INDEX, Collection, ProblemFolder
-from eventpound.problems.page import index_page, page
+from eventpound.problems.page import problem_page, set_page
 from eventpound.results.export import arrays_of, sampled_motion
 from eventpound.results.jsontext import canonical
 from eventpound.scene.elastic_laws import reduced
@@ -90,7 +90,7 @@ def problem_files(collection: Collection, problem: ProblemFolder) -> dict[str, b
     if ANSWER not in own:
         raise InputError(f"{problem.folder}: has no {ANSWER}; --certify makes it")
     made = {
-        "problem.md": page(problem, content, problem.answer()).encode(),
+        "problem.md": problem_page(problem, content, problem.answer()).encode(),
         "problem.json": to_json_lines(content),
         "problem.txt": bare_numbers(content),
         "motion.csv": _motion_csv(problem),
@@ -237,7 +237,7 @@ def archive(collection: Collection) -> bytes:
     """The set as a zip file, byte for byte the same each time."""
     head = f"{collection.name} {collection.version}".replace(" ", "-")
     contents = {
-        "README.md": index_page(collection).encode(),
+        "README.md": set_page(collection).encode(),
         "score.py": score_file().encode(),
         **{name: (collection.folder / name).read_bytes() for name in (INDEX, FROZEN)},
     }

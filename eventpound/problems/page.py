@@ -24,7 +24,9 @@ impacts in a finite time end in a contact at rest, which opens where its force w
 """
 
 
-def page(problem: ProblemFolder, content: Mapping[str, Any], answer: Mapping[str, Any]) -> str:
+def problem_page(
+    problem: ProblemFolder, content: Mapping[str, Any], answer: Mapping[str, Any]
+) -> str:
     """A problem.
 
     Parameters
@@ -168,7 +170,7 @@ def verdict(answer: Mapping[str, Any]) -> str:
     return f"agrees on {said['agree']} of {said['checked']} numbers"
 
 
-def index_page(collection: Collection) -> str:
+def set_page(collection: Collection) -> str:
     """The page at the head of a set."""
     lines = [
         f"# {collection.name} {collection.version}",

@@ -12,7 +12,7 @@ import numpy as np
 
 from eventpound.motion.base import Scales
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.owners import owners
+from eventpound.quantities.owners import owners_of
 from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Extremes
@@ -108,9 +108,9 @@ def parts_of(path: str) -> tuple[str, str, str]:
     return before, kind, after
 
 
-def name_of(path: str, scene: Scene, i: int) -> str:
+def path_of_owner(path: str, scene: Scene, i: int) -> str:
     """A path with the name of owner i in the place of its kind."""
-    return _with_owner(path, owners(scene, parts_of(path)[1])[i])
+    return _with_owner(path, owners_of(scene, parts_of(path)[1])[i])
 
 
 def _with_owner(path: str, owner: str) -> str:
@@ -213,7 +213,7 @@ def six_of(
                 kept = getattr(many, extremes)
                 return many.t * np.nan if kept is None else pick(kept, i)
             assert many.between is not None
-            found = many.between().extremes(name_of(path, many.scene, i))
+            found = many.between().extremes(path_of_owner(path, many.scene, i))
             return pick(found.at(np.s_[:, None]), 0)
 
         return values

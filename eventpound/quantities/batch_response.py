@@ -17,7 +17,7 @@ from eventpound.quantities.runs import (
     Runs,
     blank_numbers,
     impacts_of,
-    numbers_of,
+    numbers_of_contacts,
     of_recordings,
 )
 from eventpound.scene.scene import Scene
@@ -202,7 +202,7 @@ def keep_rows(many: BatchResponse, low: int, rows: VariantArrays, kept: Kept) ->
     if many.struck is not None:
         largest = np.maximum(extremes_of("contact_force", table, places).maximum, 0.0)
         threshold = many.stated.threshold_speed
-        numbers = numbers_of(_impacts(kept.log), largest, kept.unique, threshold)
+        numbers = numbers_of_contacts(_impacts(kept.log), largest, kept.unique, threshold)
         for column, values in zip(many.struck, numbers, strict=True):
             column[at] = values[own]
 

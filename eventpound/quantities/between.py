@@ -21,7 +21,7 @@ import numpy as np
 from eventpound.mechanics.link_law import link_law, yielding
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.loops import z_by_x
-from eventpound.quantities.owners import owners
+from eventpound.quantities.owners import owners_of
 from eventpound.quantities.rows import Rerun, close_times, first_step, settled, warn_unsettled
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
@@ -170,7 +170,7 @@ def works_of(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:
             cells = force * _cells(h.t, z * rate, slope)
             stored = 0.5 * force * yields * (z[-1] ** 2 - z[0] ** 2)
             found[f"springs.{spring.name}.dissipated_energy"] = cells, stored
-    for name, dashpot in zip(owners(scene, "dashpot"), scene.dashpots, strict=True):
+    for name, dashpot in zip(owners_of(scene, "dashpot"), scene.dashpots, strict=True):
         rate, second = _elongating(dashpot.between, motions)
         cells = dashpot.coefficient * _cells(h.t, rate**2, 2.0 * rate * second)
         found[f"dashpots.{name}.dissipated_energy"] = cells, 0.0

@@ -13,7 +13,7 @@ from eventpound.errors import InputError, told_of
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import FROM_FURTHER, FROM_ONE, Quantity, TakenFrom, parts_of
 from eventpound.quantities.listed import LISTED
-from eventpound.quantities.owners import owners, told
+from eventpound.quantities.owners import owners_of, told
 from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 
@@ -62,7 +62,7 @@ def all_of(scene: Scene, listed: Sequence[Quantity] = LISTED) -> Iterator[Named]
     for quantity in listed:
         kind = quantity.owner
         if kind not in names:
-            names[kind] = owners(scene, kind)
+            names[kind] = owners_of(scene, kind)
         for i, owner in enumerate(names[kind]):
             if told(scene, kind, i) and quantity.only(scene, i):
                 yield Named(quantity.name(owner), quantity, i)
@@ -94,7 +94,7 @@ def find(scene: Scene, name: str) -> Named | None:
                 return Named(name, quantity, 0)
         elif name.startswith(before) and name.endswith(after):
             owner = name[len(before) : len(name) - len(after)]
-            names = owners(scene, kind)
+            names = owners_of(scene, kind)
             if owner in names and quantity.only(scene, names.index(owner)):
                 return Named(name, quantity, names.index(owner))
     return None

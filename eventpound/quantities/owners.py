@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from eventpound.scene.parameters import places_of
+from eventpound.scene.parameters import number_places
 from eventpound.scene.scene import Scene
 from eventpound.scene.structures import structures_of
 
 
-def owners(scene: Scene, kind: str) -> Sequence[str]:
+def owners_of(scene: Scene, kind: str) -> Sequence[str]:
     """Names of the parts of a scene that are of a kind; one without a name for the run."""
     parts = {
         "body": scene.bodies,
@@ -33,5 +33,5 @@ def told(scene: Scene, kind: str, i: int) -> bool:
 
 def _dashpots(scene: Scene) -> list[str]:
     """Names of dashpots as the keys of their numbers have them, ``ground-deck``."""
-    keys = [key for key, place in places_of(scene).items() if place.kind == "dashpot"]
+    keys = [key for key, place in number_places(scene).items() if place.kind == "dashpot"]
     return [key.removeprefix("dashpot.").removesuffix(".coefficient") for key in keys]

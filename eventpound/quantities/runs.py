@@ -66,7 +66,7 @@ def blank_numbers(runs: int, contacts: int) -> ContactNumbers:
     return ContactNumbers(*(np.full((runs, contacts), np.nan) for _ in ContactNumbers._fields))
 
 
-def numbers_of(
+def numbers_of_contacts(
     impacts: Impacts, max_force: Floats, unique: Bools, threshold: float
 ) -> ContactNumbers:
     """Numbers of the contacts.
@@ -145,7 +145,7 @@ def of_recordings(recordings: Sequence[Recording], threshold: float) -> ContactN
     impacts = impacts_of(np.array(rows, float).reshape(-1, len(Impacts._fields)))
     max_force = np.array([r.max_force for r in recordings], float)
     unique = np.array([r.unique_forces for r in recordings], bool)
-    return numbers_of(impacts, max_force, unique, threshold)
+    return numbers_of_contacts(impacts, max_force, unique, threshold)
 
 
 @dataclass(frozen=True)

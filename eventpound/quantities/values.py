@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.base import SIX, Value, name_of
+from eventpound.quantities.base import SIX, Value, path_of_owner
 from eventpound.quantities.runs import Runs
 from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.joints import joints_of
-from eventpound.scene.parameters import places_of, told_of_variants
+from eventpound.scene.parameters import number_places, told_of_variants
 from eventpound.scene.scene import Scene
 from eventpound.scene.separation import correlation, cqc
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic, Linear
@@ -362,7 +362,7 @@ def _peaks_of_ends(many: Runs, i: int) -> tuple[Floats, Floats]:
 
 def _correlations(many: Runs, i: int) -> Floats:
     """Correlation of the two structures at contact i in each run."""
-    places = places_of(many.scene)
+    places = number_places(many.scene)
     numbers = {places[key]: v for key, v in many.parameters.items() if key in places}
     still = {
         place: v for place, v in numbers.items() if place.kind in ("body", "spring", "dashpot")
@@ -380,7 +380,7 @@ def close_work(path: str) -> Value:
 
     def work(many: Runs, i: int) -> float:
         assert many.between is not None
-        return many.between().work(name_of(path, many.scene, i))
+        return many.between().work(path_of_owner(path, many.scene, i))
 
     return work
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.accuracy.compare import compare as compared
 from eventpound.accuracy.compare import entries
+from eventpound.accuracy.compare import judge_entries as compared
 from eventpound.accuracy.comparison_tables import run_table, table_files
 from eventpound.accuracy.work_precision import STEP
 from eventpound.basics.given import Count, checked, number, positive

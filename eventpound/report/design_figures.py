@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from eventpound.quantities.lookup import Named
-from eventpound.quantities.owners import owners
+from eventpound.quantities.owners import owners_of
 from eventpound.report import style
 from eventpound.report.design_tables import joint_names
 from eventpound.report.markers import draw_circles, draw_shocks
@@ -76,7 +76,7 @@ def demand_figure(
         for named, color in zip(drawn, style.colors(len(drawn)), strict=True):
             values = shown[named.name].abs().to_numpy(float) / of
             joint = joint_names(scene).get(named.i) if quantity.path == NEEDED else None
-            label = style.literal(joint or owners(scene, quantity.owner)[named.i])
+            label = style.literal(joint or owners_of(scene, quantity.owner)[named.i])
             axes.plot(numbers, values, "o", markersize=3.0, color=color, label=label)
             of_largest = FRACTILES if named.name == governs.idxmax() else ()
             for fractile, line in zip(of_largest, (":", "--"), strict=False):

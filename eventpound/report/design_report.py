@@ -35,14 +35,14 @@ from eventpound.results import gather
 from eventpound.results.cells import Cells
 from eventpound.results.input_tables import input_tables, rest_words
 from eventpound.results.inputs import inputs_of
-from eventpound.results.manifest import sha256, told_of, versions
+from eventpound.results.manifest import case_in_manifest, sha256, versions
 from eventpound.results.trade import Trade, three_digits, trade_of
 from eventpound.results.workbook import Row
 from eventpound.scene.at_rest import at_rest, told_at_rest
 from eventpound.scene.periods import longest_period
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, Slider
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.study.demands import NEEDED, demands_of
 from eventpound.study.design import FRACTILES
 from eventpound.study.large_scales import large_scales_of
@@ -150,7 +150,7 @@ def governing_record(scene: Scene, design: pd.DataFrame) -> str:
 def motion_under(case: Case, record: str) -> Response:
     """The response to one record of a suite, with its history."""
     member = member_of(case, record)
-    return simulate(member_case(case, member, member.read()))
+    return response_of(member_case(case, member, member.read()))
 
 
 def all_numbers(told: Told) -> Section:
@@ -392,7 +392,7 @@ def _origin(told: Told) -> Iterator[str]:
     solver, record = told.case.solver, told.case.record
     by = ", ".join(f"{name} {version}" for name, version in versions().items() if version)
     yield f"Solver {solver.name}, relative tolerance {solver.rtol:g}. {by}."
-    hashes: dict[str, Any] = {"case": told_of(told.case)["case_sha256"]}
+    hashes: dict[str, Any] = {"case": case_in_manifest(told.case)["case_sha256"]}
     if told.runs is not None:
         hashes["all records"] = sha256("".join(map(str, told.runs["sha256"])).encode())
     elif record is not None:

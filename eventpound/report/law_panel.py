@@ -23,7 +23,7 @@ _TIMES = 3
 """That a loop is gone round which changes."""
 
 
-def laws_of(springs: Iterable[Spring]) -> list[tuple[str, Law]]:
+def laws_shown(springs: Iterable[Spring]) -> list[tuple[str, Law]]:
     """Laws that differ, with the names of their springs; of too many the first of each kind.
 
     Parameters

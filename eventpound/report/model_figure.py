@@ -18,9 +18,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from eventpound.numerics.arrays import Floats
-from eventpound.report.law_panel import draw_law, laws_of
+from eventpound.report.law_panel import draw_law, laws_shown
 from eventpound.report.model_layout import HIGH, LEVEL, WIDE, Box, Layout, layout_of
-from eventpound.report.model_links import WALL, LinkPath, routes_of
+from eventpound.report.model_links import WALL, LinkPath, links_drawn
 from eventpound.report.style import PALETTE, arrow, literal, new_figure, say, styled
 from eventpound.results.trade import Trade
 from eventpound.scene.body import Body
@@ -124,7 +124,7 @@ def model_figure(
     """
     standing = grounded(scene)
     layout = layout_of(standing)
-    routes = routes_of(standing, layout)
+    routes = links_drawn(standing, layout)
     boxes = layout.boxes.values()
     left = min(box.left for box in boxes) - _MARGIN
     right = max(box.right for box in boxes) + _MARGIN
@@ -140,7 +140,7 @@ def model_figure(
     labels = [_label_of(layout, joint, names) for joint in _joints(standing)]
     tops += [bottom + _UP + names.high(text) for text, bottom in labels]
     tops += [y + 0.4 for route in routes for _, y in route.corners]
-    laws = laws_of(scene.springs) if with_laws else []
+    laws = laws_shown(scene.springs) if with_laws else []
     wide, high = scale * (right - left), scale * (max(tops) - low) + 0.9
     heights = [high, _LAW] if laws else [high]
     figure = new_figure(max(min(4.5, within[0]), wide, _LAW * len(laws)), sum(heights))

@@ -57,7 +57,7 @@ class LinkPath:
         return abs(x_2 - x_1) < abs(y_2 - y_1)
 
 
-def routes_of(scene: Scene, layout: Layout) -> list[LinkPath]:
+def links_drawn(scene: Scene, layout: Layout) -> list[LinkPath]:
     """Springs and dashpots of a scene on one ground, but for dashpots without a place.
 
     Those are from a body above others to the ground, where no spring of it goes, and between two

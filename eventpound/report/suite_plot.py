@@ -27,7 +27,7 @@ from eventpound.report.style import Paper, on_paper
 from eventpound.report.suite_spectrum import suite_spectrum_figure
 from eventpound.report.view import View
 from eventpound.results import gather, write_together
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 
 
 def plot_suite(
@@ -84,7 +84,7 @@ def _drawn(case: Case, wanted: Wanted, done: pd.DataFrame, by: tuple[str, float]
             name = done["record"].iloc[0]
             member = member_of(case, name)
             one = member_case(case, member, member.read())
-            run = simulate(one, *by)
+            run = response_of(one, *by)
             view = View(gather(run, one), one.scene)
             drawn = bridge_response_figure(view, f"{title}: {PurePath(name).name}")
         case _:

@@ -17,7 +17,7 @@ import numpy as np
 from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions
 from eventpound.case.suite import Suite
-from eventpound.case.understood import contact_law, sources_of
+from eventpound.case.understood import contact_law_keys, sources_of
 from eventpound.errors import InputError
 from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
@@ -209,7 +209,7 @@ def _contact(scene: Scene, contact: Contact) -> Row:
     """A contact; of one with a law its constants, ``c`` that of a dashpot (N s/m)."""
     ends = [written(contact.left), written(contact.right)]
     row: Row = {"name": contact.name, "between": ends, "gap": contact.gap}
-    row |= contact_law(contact)
+    row |= contact_law_keys(contact)
     law = contact.law
     masses = {body.name: body.mass for body in scene.bodies}
     inverse = sum(w * w / masses[end] for end, w in contact.direction if end in masses)

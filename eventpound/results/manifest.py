@@ -54,7 +54,7 @@ def describe_run(
         "started": None if started is None else started.isoformat(),
         "wall_time": response.work.seconds,
         "options": _options(response),
-        **told_of(case),
+        **case_in_manifest(case),
         "record": _record_file(case) | _samples(response.scene.motion),
         "versions": versions(),
         "machine": machine(),
@@ -63,7 +63,7 @@ def describe_run(
     }
 
 
-def told_of(case: Case | None) -> dict[str, object]:
+def case_in_manifest(case: Case | None) -> dict[str, object]:
     """What manifests say of a case: as it was understood, with its hash and that of its file."""
     if case is None:
         return dict.fromkeys(("case", "case_sha256", "case_file_sha256"))

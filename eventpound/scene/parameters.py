@@ -83,7 +83,7 @@ class Place:
     part: int = -1
 
 
-def places_of(scene: Scene) -> dict[str, Place]:
+def number_places(scene: Scene) -> dict[str, Place]:
     """Every number of a scene, by its key.
 
     Parameters

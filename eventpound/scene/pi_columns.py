@@ -21,7 +21,7 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
 from eventpound.scene.body import Body
-from eventpound.scene.parameters import motion_with, places_of, value_at
+from eventpound.scene.parameters import motion_with, number_places, value_at
 from eventpound.scene.pi_terms import (
     contact_key,
     delayed_supports,
@@ -75,7 +75,7 @@ def scale_columns(scene: Scene, columns: Mapping[str, Floats]) -> ScaleColumns |
     InputError
         Where the motion refuses a number.
     """
-    places = places_of(scene) if columns else {}
+    places = number_places(scene) if columns else {}
     shaking = {places[key]: v for key, v in columns.items() if places[key].kind == "excitation"}
     scales = scene.motion.scales()
     if scales is None or not shaking:
@@ -145,7 +145,7 @@ class _Solving:
         columns: Mapping[str, Floats],
     ) -> None:
         self.scene, self.first, self.terms = scene, first, terms
-        self.columns, self.places = columns, places_of(scene)
+        self.columns, self.places = columns, number_places(scene)
         self.scales = scale_columns(scene, columns)
         self.found: dict[str, Numbers] = {}
 

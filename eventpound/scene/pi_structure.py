@@ -23,7 +23,7 @@ from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.scene.body import Body
 from eventpound.scene.contact import BARRIER, Contact
-from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.parameters import number_places, with_values
 from eventpound.scene.pi_columns import Numbers, numbers_with_terms
 from eventpound.scene.pi_terms import OTHERS, of_all, pi_terms
 from eventpound.scene.scene import Scene
@@ -179,5 +179,5 @@ class PiStructure:
             raise InputError("the ground motion has no scales, so Π-terms give no scene")
         skeleton = self.skeleton(motion, mass)
         numbers = numbers_with_terms(skeleton, self.resolved(skeleton, terms))
-        places = places_of(skeleton)
+        places = number_places(skeleton)
         return with_values(skeleton, {places[key]: float(v) for key, v in numbers.items()})

@@ -27,7 +27,7 @@ from eventpound.quantities.owners import owners
 from eventpound.quantities.values import storeys_of_structure
 from eventpound.response import Response
 from eventpound.scene.scene import Scene
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.study.demands import LEAST, STOREY_DRIFT, Demand, demands_of, words_of
 from eventpound.study.engines.local import engine_of
 from eventpound.study.large_scales import warn_of_scales
@@ -35,7 +35,7 @@ from eventpound.study.plan import RECORD, Plan
 from eventpound.study.records import FAILED
 from eventpound.study.running import run_study
 from eventpound.study.study import Study
-from eventpound.study.suite import plan_of, run_suite
+from eventpound.study.suite import run_suite, suite_plan
 from eventpound.study.table import SUCCESS, SUITE_TABLE, read_table
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def made_of_run(
 ) -> DesignRuns:
     """Run a case once, then what its design numbers need; `again` is called in between."""
     asked = case if isinstance(case, Scene) else asking(case)
-    response = simulate(asked, progress=progress)
+    response = response_of(asked, progress=progress)
     if again is not None:
         again()
     table = design_of_run(response)
@@ -163,7 +163,7 @@ def made_of_suite(
     workers: int | None = None,
 ) -> DesignRuns:
     """Run a case under every record, with what its design numbers need."""
-    plan, own = plan_of(asking(case), None, None, None, intensities=True)
+    plan, own = suite_plan(asking(case), None, None, None, intensities=True)
     run_suite(plan, own, out, progress, workers=workers)
     runs = read_table(out, SUITE_TABLE)
     return DesignRuns(design_of_suite(runs, own), own, runs=runs)

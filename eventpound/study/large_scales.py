@@ -11,7 +11,7 @@ from eventpound.case.case import Case
 from eventpound.case.record_scaling import large_scales
 from eventpound.errors import InputError
 from eventpound.motion.record import Record
-from eventpound.scene.parameters import motion_with, places_of
+from eventpound.scene.parameters import motion_with, number_places
 from eventpound.study.plan import Base
 from eventpound.study.variants import axis_values, rows_with
 
@@ -60,7 +60,7 @@ def _over_axes(base: Base) -> Iterator[float]:
     scene, size = base.case.scene, base.size_of_record
     if not isinstance(scene.motion, Record):
         return
-    places = places_of(scene)
+    places = number_places(scene)
     numbers = rows_with(base, axis_values(base, 0, size), range(size)).numbers
     moving = {places[k]: v for k, v in numbers.items() if places[k].kind == "excitation"}
     columns = np.array([*moving.values()]).reshape(len(moving), size)

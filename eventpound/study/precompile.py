@@ -45,7 +45,7 @@ from eventpound.scene import (
     Support,
 )
 from eventpound.scene.spring import Law
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import knows_laws, solver_named, takes_loads, takes_points
 from eventpound.solvers.events.roots import EVENTS
 from eventpound.study.many import simulate_many
@@ -159,7 +159,7 @@ def _run(solver: str, scene: Scene, energy: bool = False, events: str | None = N
     most = None if solver in _FIXED_STEP else 20_000
     # What cannot be computed has been compiled all the same.
     with contextlib.suppress(ComputationError):
-        simulate(
+        response_of(
             scene,
             solver,
             1e-6,

@@ -14,7 +14,7 @@ from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import InputError
 from eventpound.response import Response
 from eventpound.scene.check import motion_problems
-from eventpound.scene.parameters import motion_with, places_of
+from eventpound.scene.parameters import motion_with, number_places
 from eventpound.scene.scene import Scene
 from eventpound.scene.worst_variants import KnownRanges
 from eventpound.simulation import (
@@ -107,7 +107,7 @@ class Prepared:
 
     def __init__(self, base: Base, ready: ReadyScene, run: RunOptions) -> None:
         self._base, self._ready, self._run = base, ready, run
-        self._places = places_of(self.scene)
+        self._places = number_places(self.scene)
         self._ranges = KnownRanges(self.scene, run.start_time)
         lengths = () if base.own_duration else kinds_that_set_lengths(self.scene)
         kinds = {*lengths, *kinds_that_set_periods(self.scene)}

@@ -15,7 +15,7 @@ from eventpound.case.solver_options import SolverOptions
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.quantities.lookup import chosen, names_of, quantities_asked, unstated
-from eventpound.scene.parameters import places_of
+from eventpound.scene.parameters import number_places
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_solver
 from eventpound.study.plan import Base, Plan
@@ -77,7 +77,7 @@ def planned(
 def _meant(scene: Scene, word: str) -> list[str]:
     """Names of quantities or of a number of a scene by a name or a path; none where it has none."""
     try:
-        return [word] if word in places_of(scene) else chosen(scene, [word])
+        return [word] if word in number_places(scene) else chosen(scene, [word])
     except InputError:
         return []
 
@@ -96,4 +96,4 @@ def quantities_of(scene: Scene) -> list[str]:
     scene : Scene
         A checked scene.
     """
-    return [*names_of(scene), *places_of(scene)]
+    return [*names_of(scene), *number_places(scene)]

@@ -32,7 +32,7 @@ from eventpound.study.intensity import IntensityPlan, read_intensities
 from eventpound.study.kinds import has_records
 from eventpound.study.plan import PART, RECORD, Base, Plan
 from eventpound.study.quantities import planned
-from eventpound.study.table import read_manifest
+from eventpound.study.table import manifest_there
 
 _Document = Mapping[str, object]
 _OF_STUDY = ("study", "figure", "intensity")
@@ -152,7 +152,7 @@ def load_finished(path: Path, results: Path | None) -> tuple[StudyCase, Path, di
     """
     case = load_study(path)
     out = results or case.directory / "results"
-    manifest = read_manifest(out)
+    manifest = manifest_there(out)
     if manifest is None or manifest.get("study_sha256") != case.study.digest:
         raise InputError(f"{out}: no table of this case as it is; `eventpound study` makes it")
     return case, out, manifest

@@ -34,7 +34,7 @@ _SCALES, _MEASURES = ("scale", "PGA", "T_m", "omega_g", "L_e"), ("PGV", "Sa_T1")
 _READ = "seconds.read"
 
 
-def columns_of(members: Sequence[Member], suite: OfSuite) -> tuple[str, ...]:
+def record_columns(members: Sequence[Member], suite: OfSuite) -> tuple[str, ...]:
     """Columns of a suite that tell of its records."""
     supports = [name for name, _ in members[0].supports]
     own = [f"{key}.{name}" for name in supports for key in (FILE, "sha256", "PGA")]

@@ -24,11 +24,11 @@ from eventpound.quantities.lookup import (
     needs_impacts,
     values_of,
 )
-from eventpound.scene.parameters import places_of, value_at
+from eventpound.scene.parameters import number_places, value_at
 from eventpound.scene.scene import Scene
 from eventpound.study.plan import Base
 from eventpound.study.sweep import Sweep, Wanted
-from eventpound.study.variants import Rows, rows_of
+from eventpound.study.variants import Rows, rows_of_base
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Results:
         rows, scene = self.rows, self.rows.scene
         if name in rows.numbers:
             return rows.numbers[name]
-        place = places_of(scene).get(name)
+        place = number_places(scene).get(name)
         if place is None:
             return values_of(self.many, name)
         if place.kind == "excitation" and rows.motion_of is not None:
@@ -82,7 +82,7 @@ class Refused:
     error: InputError
 
 
-def parts_of(base: Base, low: int, high: int, wanted: Wanted) -> Iterator[Results | Refused]:
+def runs_in_parts(base: Base, low: int, high: int, wanted: Wanted) -> Iterator[Results | Refused]:
     """Run the rows `low` to `high` of a scene, and give them in order.
 
     `keep` of what is wanted is given numbers of rows of the scene.
@@ -114,7 +114,7 @@ def _halved(base: Base, low: int, high: int, wanted: Wanted) -> Iterator[Results
         keep = wanted.keep
         own = replace(wanted, keep=lambda i, response: keep(low + i, response))
     try:
-        results = results_of(rows_of(base, low, high), own)
+        results = results_of(rows_of_base(base, low, high), own)
     except InputError as error:
         if high - low == 1:
             yield Refused(base, range(low, high), error)
@@ -193,7 +193,7 @@ def results_of(
 
 def _without_contacts(rows: Rows, other: Scene, struck: Collection[str]) -> tuple[Rows, Ints]:
     """Rows of a scene with these contacts only, each once, and which of them each row is."""
-    places, contacts = places_of(rows.scene), rows.scene.contacts
+    places, contacts = number_places(rows.scene), rows.scene.contacts
     numbers = {
         key: v
         for key, v in rows.numbers.items()

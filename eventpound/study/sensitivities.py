@@ -31,7 +31,7 @@ from eventpound.errors import AccuracyWarning, ComputationError, InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.batch_response import BatchResponse
 from eventpound.quantities.lookup import FREE, Named, chosen, find, values_of
-from eventpound.scene.parameters import dimension_of_number, places_of, value_at
+from eventpound.scene.parameters import dimension_of_number, number_places, value_at
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import PI, NumberAxis
@@ -189,7 +189,7 @@ def _numbers(base: Base, to: Sequence[str] | Mapping[str, float | str]) -> list[
     A case in Π-terms has these only: its runs hold them all, whatever else changes.
     """
     scene, pi = base.case.scene, base.case.pi
-    there = {key: value_at(scene, place) for key, place in places_of(scene).items()}
+    there = {key: value_at(scene, place) for key, place in number_places(scene).items()}
     if pi is not None:
         there = {PI + term: value for term, value in pi.terms.items()}
     steps = to if isinstance(to, Mapping) else {}

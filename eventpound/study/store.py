@@ -23,7 +23,7 @@ from eventpound.results.files import plain_name, write_stream, write_together
 from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import sha256
 from eventpound.study.plan import Plan
-from eventpound.study.table import MANIFEST, SUITE_MANIFEST, files_of, read_manifest
+from eventpound.study.table import MANIFEST, SUITE_MANIFEST, files_of, manifest_there
 
 FORMAT = "eventpound-study/1"
 """Name and number of the form of the files."""
@@ -50,7 +50,7 @@ class Store:
 
     def finished(self) -> bool:
         """Whether the table of this very study is there, whole."""
-        manifest = read_manifest(self.directory, self.manifest)
+        manifest = manifest_there(self.directory, self.manifest)
         if manifest is None or manifest.get(_DIGEST) != self.study.digest:
             return False
         files = manifest.get("files")
@@ -112,7 +112,7 @@ class Store:
 
     def _set_aside(self) -> Path | None:
         """Move the results of another study, suite or run out of the way; where to."""
-        there = {name: read_manifest(self.directory, name) for name in (MANIFEST, SUITE_MANIFEST)}
+        there = {name: manifest_there(self.directory, name) for name in (MANIFEST, SUITE_MANIFEST)}
         found = [m for m in there.values() if m is not None]
         others = [m for m in found if m.get(_DIGEST) != self.study.digest]
         if not others:

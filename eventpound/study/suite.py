@@ -26,7 +26,7 @@ from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import all_of, quantities_asked
 from eventpound.response import Response
-from eventpound.results.manifest import machine, told_of, versions
+from eventpound.results.manifest import case_in_manifest, machine, versions
 from eventpound.results.tables import table_csv
 from eventpound.scene.at_rest import at_rest
 from eventpound.scene.periods import longest_period
@@ -34,7 +34,7 @@ from eventpound.simulation import check_solver
 from eventpound.study.engines.local import Batch
 from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import OfSuite, Plan, base_of, described
-from eventpound.study.records import FAILED, columns_of
+from eventpound.study.records import FAILED, record_columns
 from eventpound.study.running import run_study
 from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
 from eventpound.study.sweep import cores
@@ -109,7 +109,7 @@ def simulate_suite(
     UserWarning
         Where records are scaled by more than ``largest_scale``.
     """
-    plan, case = plan_of(case, solver, rtol, error_estimate, intensities)
+    plan, case = suite_plan(case, solver, rtol, error_estimate, intensities)
     warn_of_scales(plan.bases)
     with TemporaryDirectory() as scratch:
         out = Path(scratch if folder is None else folder)
@@ -139,7 +139,7 @@ def run_suite(
     return run_study(plan, out, engine, progress, details, again=keep is not None)
 
 
-def plan_of(
+def suite_plan(
     case: Case,
     solver: str | None,
     rtol: float | str | None,
@@ -178,7 +178,7 @@ def plan_of(
     period = (longest_period(resting) or math.nan) if intensities else None
     suite, base = OfSuite(period, errors), described(base_of(case, (), members, options))
     names = tuple(dict.fromkeys(quantities))
-    columns = columns_of(members, suite)
+    columns = record_columns(members, suite)
     return Plan(case.title, (base,), columns, names, options.name, options.rtol, suite), case
 
 
@@ -219,7 +219,7 @@ def _manifest(table: pd.DataFrame, case: Case, started: datetime, total: int) ->
             "rtol": case.solver.rtol,
             "settings": dict(case.solver.settings),
         },
-        **told_of(case),
+        **case_in_manifest(case),
         "versions": versions(),
         "machine": machine(),
     }

@@ -36,7 +36,7 @@ from eventpound.quantities.batch_response import (
 from eventpound.quantities.lookup import needs_energy, needs_one
 from eventpound.response import Response
 from eventpound.scene.check import check_scene, motion_problems
-from eventpound.scene.parameters import Place, motion_with, places_of, with_values
+from eventpound.scene.parameters import Place, motion_with, number_places, with_values
 from eventpound.scene.spring import LawName
 from eventpound.scene.worst_variants import worst_variants
 from eventpound.simulation import ReadyScene, options_of, output_times, task_with
@@ -246,7 +246,7 @@ def variants_of(rows: Rows, wanted: Wanted) -> tuple[Rows, Variants]:
     from eventpound.solvers.fast.columns import Variants
 
     scene, start = rows.scene, rows.case.run.start_time
-    places = places_of(scene)
+    places = number_places(scene)
     values = {places[key]: column for key, column in rows.numbers.items()}
     still = {place: column for place, column in values.items() if place.kind != "excitation"}
     shaking = {place: column for place, column in values.items() if place.kind == "excitation"}

@@ -24,7 +24,7 @@ from eventpound.results.read import read_manifest as read_stated
 from eventpound.results.tables import rows_csv
 from eventpound.study.plan import RECORD, Chunk, Plan
 from eventpound.study.records import FAILED, about, peak_errors, reason
-from eventpound.study.runs import Refused, Results, parts_of
+from eventpound.study.runs import Refused, Results, runs_in_parts
 from eventpound.study.sweep import Wanted
 from eventpound.study.variants import axis_cells
 
@@ -55,7 +55,7 @@ def files_of(study: Plan) -> tuple[str, str]:
     return (TABLE, MANIFEST) if study.suite is None else (SUITE_TABLE, SUITE_MANIFEST)
 
 
-def names_of(study: Plan) -> list[str]:
+def column_names(study: Plan) -> list[str]:
     """Names of the columns."""
     names = [*study.columns, *study.quantities]
     if study.suite is None:
@@ -66,7 +66,7 @@ def names_of(study: Plan) -> list[str]:
 
 def header(study: Plan) -> bytes:
     """Line of the names of the columns."""
-    return rows_csv([names_of(study)])
+    return rows_csv([column_names(study)])
 
 
 def compute(study: Plan, chunk: Chunk, keep: Keep | None = None) -> bytes:
@@ -91,16 +91,16 @@ def compute(study: Plan, chunk: Chunk, keep: Keep | None = None) -> bytes:
     if study.suite is not None:
         told = [about(member, study.suite.period) for member in base.records[low:high]]
         if not base.case.scene.bodies:
-            return rows_csv([row.get(name, "") for name in names_of(study)] for row in told)
+            return rows_csv([row.get(name, "") for name in column_names(study)] for row in told)
     own = None if keep is None else lambda i, response: keep(base.records[i], response)
     wanted = Wanted(study.solver, study.rtol, study.quantities, keep=own)
     rows: list[bytes] = []
-    for part in parts_of(base, low, high, wanted):
+    for part in runs_in_parts(base, low, high, wanted):
         at = part.at if isinstance(part, Refused) else part.rows.at
         own_told = told[at.start - low : at.stop - low]
         cells = _cells_of(study, part, own_told)
         empty = [""] * len(at)
-        columns = (cells.get(name, empty) for name in names_of(study))
+        columns = (cells.get(name, empty) for name in column_names(study))
         rows.append(rows_csv(zip(*columns, strict=True)))
     return b"".join(rows)
 
@@ -149,7 +149,7 @@ def _plain(value: object) -> object:
     return "" if value is None or value != value else value
 
 
-def read_manifest(directory: Path, name: str = MANIFEST) -> dict[str, object] | None:
+def manifest_there(directory: Path, name: str = MANIFEST) -> dict[str, object] | None:
     """Manifest of a directory of results; None where there is none that can be read."""
     try:
         return read_json(directory / name)

@@ -22,7 +22,7 @@ from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.at_rest import at_rest
 from eventpound.scene.check import check_scene
-from eventpound.scene.parameters import places_of, told_of_variants, with_values
+from eventpound.scene.parameters import number_places, told_of_variants, with_values
 from eventpound.scene.periods import period_called
 from eventpound.scene.pi_columns import ScaleColumns, numbers_with_terms, scale_columns
 from eventpound.scene.pi_terms import of_all
@@ -86,7 +86,7 @@ class Rows:
         return self.base.case.scene
 
 
-def rows_of(base: Base, low: int, high: int) -> Rows:
+def rows_of_base(base: Base, low: int, high: int) -> Rows:
     """Rows `low` to `high` of a scene.
 
     Raises
@@ -159,7 +159,7 @@ def rows_with(base: Base, values: Mapping[str, Floats], at: range) -> Rows:
 def _own_periods(case: Case, numbers: Mapping[str, Floats], count: int) -> dict[str, Floats]:
     """Periods (s) at which a record is scaled, where they are those of each variant itself."""
     scene, start = case.scene, case.run.start_time
-    motion, places = scene.motion, places_of(scene)
+    motion, places = scene.motion, number_places(scene)
     moving = {places[key]: column for key, column in numbers.items() if key in places}
     moving = {p: v for p, v in moving.items() if p.kind in kinds_that_set_periods(scene)}
     if not (isinstance(motion, Record) and moving) or PSA_PERIOD in numbers:
@@ -216,7 +216,7 @@ def _lengths(rows: Rows, scales: ScaleColumns | None) -> Floats:
     if math.isnan(own):
         own = default_duration(scene, start)
     kinds = kinds_that_set_lengths(scene)
-    places = places_of(scene) if rows.numbers else {}
+    places = number_places(scene) if rows.numbers else {}
     deciding = {places[key]: v for key, v in rows.numbers.items() if places[key].kind in kinds}
     if not deciding:
         return np.full(count, own)
@@ -238,7 +238,7 @@ def kinds_that_set_periods(scene: Scene) -> tuple[str, ...]:
 
 def scene_of_row(rows: Rows, i: int) -> Scene:
     """Scene of one variant."""
-    scene, places = rows.scene, places_of(rows.scene)
+    scene, places = rows.scene, number_places(rows.scene)
     if rows.motion_of is not None:
         scene = replace(scene, motion=rows.motions[rows.motion_of[i]])
     return with_values(scene, {places[key]: float(v[i]) for key, v in rows.numbers.items()})
@@ -246,7 +246,7 @@ def scene_of_row(rows: Rows, i: int) -> Scene:
 
 def unknown_axes(base: Base) -> Iterator[tuple[str, str]]:
     """Keys of axes that the scene does not have, and what is said of them."""
-    places = places_of(base.case.scene)
+    places = number_places(base.case.scene)
     for axis in base.axes:
         if not axis.key.startswith(PI) and axis.key not in places:
             shown = [*list(places)[:_MOST_SHOWN], *(["..."] if len(places) > _MOST_SHOWN else [])]

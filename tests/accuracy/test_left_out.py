@@ -7,7 +7,7 @@ import pytest
 from eventpound.accuracy.left_out import displaced, time_to_limits
 from eventpound.motion.record import Record
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.base import Event, EventKind
 from eventpound.tolerances import EPS
 
@@ -49,7 +49,7 @@ def test_bounces_of_a_run_end_before_their_limit_by_what_is_stated() -> None:
         (Contact("floor", "b", BARRIER, height, e),),
         Record([-g, -g], 4.0),
     )
-    found = simulate(ball, "fast", 1e-12, duration=3.0).recording
+    found = response_of(ball, "fast", 1e-12, duration=3.0).recording
     fall = (2.0 * height / g) ** 0.5
     limit = fall * (1.0 + 2.0 * e / (1.0 - e))
     (end,) = (event for event in found.events if event.kind is EventKind.ACCUMULATION)
@@ -68,7 +68,7 @@ def test_what_ends_in_one_instant_counts_with_what_is_taken_for_rounding() -> No
         (),
         tuple(Contact(f"c{i}", *ends[i : i + 2], 0.0, 0.6) for i in range(4)),
     )
-    found = simulate(row, "fast", duration=1.0).recording
+    found = response_of(row, "fast", duration=1.0).recording
     softest = max(e.gap_velocity_before for e in found.events if e.count > 1)
     assert 1e-13 < -softest < 1e-11
     assert displaced(found, row) > 1e-11

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 from eventpound.accuracy.sequences import (
     KINDS,
+    first_parting,
     instead_of,
     loudness,
-    parted,
     touches,
     weights_for,
 )
@@ -28,7 +28,7 @@ def _matched(ours: list[Event], theirs: list[Event]) -> _Matching:
     paired = pair_events(ours, theirs, 100.0 * UNIT_OF_TIME, KINDS, weights=weights_for())
     one, other = ({id(event): row for row, event in enumerate(side)} for side in (ours, theirs))
     both = [pair for pair in paired.pairs if not math.isnan(pair.shift)]
-    first = parted(paired)
+    first = first_parting(paired)
     pair = next(iter(first.values()), None)
     return _Matching(
         {one[id(pair.reference)]: other[id(pair.found)] for pair in both},

@@ -21,7 +21,7 @@ import numpy as np
 from eventpound import load_case
 from eventpound.accuracy.estimate import estimate_errors
 from eventpound.response import Response
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from tests.benchmarks import yardsticks
@@ -35,7 +35,7 @@ JUDGES = {"cvode": ("fast", "cvode"), "fast": ("fast",)}
 def tasks() -> dict[str, Task]:
     """The yardsticks and a bridge under a record, with a history."""
     found = {name: problem.task for name, problem in yardsticks.load().items()}
-    found["bridge"] = replace(simulate(load_case(BRIDGE), "fast").task, progress=None)
+    found["bridge"] = replace(response_of(load_case(BRIDGE), "fast").task, progress=None)
     return {
         name: replace(task, rtol=RTOL, output_times=np.linspace(task.start, task.end, ROWS))
         for name, task in found.items()

@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.study.plan import Plan
 from eventpound.study.reading import load_study
-from eventpound.study.variants import rows_of, scene_of_row
+from eventpound.study.variants import rows_of_base, scene_of_row
 
 CASES = Path(__file__).parents[2] / "cases"
 REFERENCE, RTOL = "cvode", 1e-10
@@ -42,12 +42,12 @@ def difference(study: Plan, run: int) -> tuple[float, str]:
         if run < base.size:
             break
         run -= base.size
-    rows = rows_of(base, run, run + 1)
+    rows = rows_of_base(base, run, run + 1)
     case = replace(base.case, scene=scene_of_row(rows, 0))
     duration = float(rows.lengths[0])
     peaks = []
     for solver, rtol in ((study.solver, study.rtol), (REFERENCE, RTOL)):
-        response = simulate(case, solver, rtol, duration=duration, output_step=duration)
+        response = response_of(case, solver, rtol, duration=duration, output_step=duration)
         peaks.append(float(response.peaks["abs_max"].iloc[0]))
     values = {key: f"{float(v[0]):.6g}" for key, v in rows.values.items()}
     return abs(peaks[0] - peaks[1]) / peaks[1], f"{dict(base.labels) | values}"

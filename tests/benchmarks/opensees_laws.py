@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from eventpound.scene.contact_law import BY_WORD
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from tests.solvers.laws.test_scenes import pair
 
 END = 1.2
@@ -24,12 +24,12 @@ RTOL = 1e-11
 def errors(word: str) -> list[float]:
     """The error at each step."""
     scene = pair(word)
-    true = simulate(scene, "cvode", RTOL, duration=END).recording
+    true = response_of(scene, "cvode", RTOL, duration=END).recording
     x = true.displacement
     size = float(np.max(np.abs((x.maximum, x.minimum))))
     found = []
     for step in STEPS:
-        run = simulate(scene, "opensees", settings={"time_step": step}, duration=END)
+        run = response_of(scene, "opensees", settings={"time_step": step}, duration=END)
         found.append(float(np.abs(run.recording.u - true.u).max()) / size)
     return found
 

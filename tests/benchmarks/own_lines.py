@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from eventpound import simulate_many
-from eventpound.accuracy.compare import Comparison, compare, entries
+from eventpound.accuracy.compare import Comparison, entries, judge_entries
 from eventpound.accuracy.work_precision import Judged
 from eventpound.case.case import Case
 from eventpound.mechanics.model import assemble
@@ -61,7 +61,9 @@ def with_own_lines(comparison: Comparison, steps: Sequence[float]) -> Comparison
         for run in comparison.runs
         if run.label == FAST and run.errors is not None
     ]
-    own = compare(own_model(comparison.case), entries([("penalty", {})], [], steps), repeats=1)
+    own = judge_entries(
+        own_model(comparison.case), entries([("penalty", {})], [], steps), repeats=1
+    )
     stepped = [replace(run, label=OWN_MODEL) for run in own.runs]
     return replace(comparison, runs=(*comparison.runs, *among, *stepped))
 

@@ -24,7 +24,7 @@ from eventpound.case.member import member_case
 from eventpound.case.suite import Member
 from eventpound.errors import EventpoundError
 from eventpound.motion import Record
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from tests.benchmarks import yardsticks
 from tests.benchmarks.problem import folder_of
@@ -57,7 +57,7 @@ def measure(case: Case, member: Member) -> dict[str, float | str]:
     one = member_case(case, member, data)
     motion = one.scene.motion
     assert isinstance(motion, Record)
-    unit, solve = least_of_two(lambda: fast.solve(task), lambda: simulate(one))
+    unit, solve = least_of_two(lambda: fast.solve(task), lambda: response_of(one))
     return {
         "record": member.name,
         "samples": motion.samples.size,

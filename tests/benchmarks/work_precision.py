@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING
 from PIL import Image
 
 from eventpound import load_case
-from eventpound.accuracy.compare import Comparison, compare, entries
+from eventpound.accuracy.compare import Comparison, entries, judge_entries
 from eventpound.accuracy.comparison_tables import text_table
 from eventpound.accuracy.work_precision import Judged, SolverChoice
 from eventpound.case.case import Case
@@ -106,7 +106,7 @@ def measured(case: Case, words: str, repeats: int) -> Comparison:
             print(f"{case.title}: {tried[0].line} left out: {refusal}", file=sys.stderr)
         else:
             asked += tried
-    return compare(case, asked, repeats=repeats, progress=_say)
+    return judge_entries(case, asked, repeats=repeats, progress=_say)
 
 
 def _refusal(case: Case, entry: SolverChoice) -> str:

@@ -13,8 +13,8 @@ from eventpound.errors import InputError
 from eventpound.results.inputs import inputs_of
 from eventpound.scene import BARRIER, Contact, ContactLaw, Scene
 from eventpound.scene.check import check_scene
-from eventpound.scene.parameters import places_of, value_at, with_values
-from eventpound.simulation import check_solver, simulate
+from eventpound.scene.parameters import number_places, value_at, with_values
+from eventpound.simulation import check_solver, response_of
 
 Table = dict[str, object]
 
@@ -130,12 +130,12 @@ def test_a_contact_with_a_law_may_be_pressed_shut_at_the_start() -> None:
 
 def test_numbers_by_their_keys() -> None:
     scene = case_with(law="kelvin-voigt", stiffness=1e4, restitution=0.5).scene
-    places = places_of(scene)
+    places = number_places(scene)
     place = places["contact.a-b.stiffness"]
     assert value_at(scene, place) == 1e4
     (changed,) = with_values(scene, {place: 2e4}).contacts
     assert changed.law == ContactLaw("kelvin-voigt", 2e4)
-    assert "contact.a-b.stiffness" not in places_of(case_with(restitution=0.5).scene)
+    assert "contact.a-b.stiffness" not in number_places(case_with(restitution=0.5).scene)
 
 
 def test_solvers_without_a_law_refuse_it() -> None:
@@ -143,7 +143,7 @@ def test_solvers_without_a_law_refuse_it() -> None:
     with pytest.raises(
         InputError, match=r"moreau does not know the laws of contacts 'a-b' \(hertz"
     ):
-        simulate(case, solver="moreau")
+        response_of(case, solver="moreau")
     check_solver(replace(case.solver, name="moreau"), replace(case.scene, contacts=()))
 
 

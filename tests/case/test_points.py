@@ -16,7 +16,7 @@ from eventpound.results.input_tables import input_tables
 from eventpound.results.inputs import inputs_of
 from eventpound.scene import BARRIER, GROUND, Contact, ContactLaw, Point, Support
 from eventpound.scene.check import check_scene
-from eventpound.simulation import check_solver, simulate
+from eventpound.simulation import check_solver, response_of
 
 UPPER = {"B1": 0.4, "B2": 0.6}
 
@@ -113,4 +113,4 @@ def test_other_solvers_say_who_can(solver: str) -> None:
     assert "'A-B1+B2'" in message
     assert message.endswith("accepted: cvode, ida, fast")
     with pytest.raises(InputError, match="at a point between bodies"):
-        simulate(case, solver)
+        response_of(case, solver)

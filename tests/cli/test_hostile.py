@@ -89,8 +89,8 @@ def at_call(number: int, act: Callable[[], object], function: Callable) -> Calla
 @pytest.mark.parametrize("number", SIGNALS)
 def test_interrupted_while_loading(number, tmp_path, monkeypatch, capsys):
     folder = written(tmp_path)
-    act = at_call(1, lambda: signal.raise_signal(number), eventpound.cli.arguments.load)
-    monkeypatch.setattr(eventpound.cli.arguments, "load", act)
+    act = at_call(1, lambda: signal.raise_signal(number), eventpound.cli.arguments.loaded_case)
+    monkeypatch.setattr(eventpound.cli.arguments, "loaded_case", act)
     assert run(tmp_path) == 130
     assert names(folder) == []
     assert "interrupted" in capsys.readouterr().err

@@ -359,14 +359,14 @@ def test_without_permission(closed, mode, words, open_folder, capsys):
 def test_a_record_of_a_suite_that_vanishes(tmp_path, monkeypatch):
     """It is a row that says so; the others are run."""
     results = suite(tmp_path, "records/*")
-    begin = eventpound.study.suite.plan_of
+    begin = eventpound.study.suite.suite_plan
 
     def then_gone(*words: object, **options: object) -> object:
         found = begin(*words, **options)  # type: ignore[arg-type]
         (tmp_path / "records" / "1.AT2").unlink()
         return found
 
-    monkeypatch.setattr(eventpound.study.suite, "plan_of", then_gone)
+    monkeypatch.setattr(eventpound.study.suite, "suite_plan", then_gone)
     assert main(["run", str(tmp_path), "--no-figures"]) == 0
     with (results / "suite.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from eventpound.accuracy.quantities import FINAL, PEAKS, errors_of, truth_of
 from eventpound.errors import ComputationError, InputError
 from eventpound.response import Response
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.base import Recording
 from tests.hard.catalogue import Hard
 
@@ -51,7 +51,7 @@ class Baseline:
 def baseline(hard: Hard, solver: str, agreed: Response | None) -> Baseline:
     """Run a scene with the steps that the solver chooses by itself."""
     try:
-        found = simulate(hard.case, solver=solver, settings={}, max_steps=MOST_STEPS)
+        found = response_of(hard.case, solver=solver, settings={}, max_steps=MOST_STEPS)
     except (ComputationError, InputError) as error:
         return Baseline(refusal=str(error))
     if agreed is None:

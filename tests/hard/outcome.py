@@ -14,7 +14,7 @@ from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.model import assemble
 from eventpound.response import Response
 from eventpound.results.summary import summarise
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.events.scales import scene_scales
 from tests.benchmarks.agreement import NUDGE, loud, quantities, sequence
 from tests.hard.catalogue import REFUSED, Hard
@@ -83,7 +83,7 @@ class Verdict:
 def outcome(hard: Hard, solver: str, rtol: float | None = None) -> Outcome:
     """Run a scene by one solver."""
     try:
-        return Outcome(solver, simulate(hard.case, solver=solver, rtol=rtol))
+        return Outcome(solver, response_of(hard.case, solver=solver, rtol=rtol))
     except (ComputationError, InputError) as error:
         return Outcome(solver, None, str(error))
 
@@ -136,7 +136,7 @@ def nudged_runs(hard: Hard, response: Response) -> list[Response]:
     rng = np.random.default_rng(1)
     duration = hard.case.run.duration
     return [
-        simulate(
+        response_of(
             nudged(hard.case.scene, rng, NUDGE * rtol),
             solver=response.solver,
             rtol=rtol,

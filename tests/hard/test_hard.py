@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from eventpound.accuracy.estimate import estimate_errors
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.base import EventKind
 from tests.hard.baselines import BASELINES, Baseline, baseline
 from tests.hard.catalogue import LONG, REFUSED, SOLVERS, WARNED, Hard, catalogue
@@ -66,7 +66,7 @@ def test_scales(solver: str) -> None:
     """Peaks in parts of L_e do not depend on the units of length and time."""
     peaks = []
     for hard in SCALES:
-        response = simulate(hard.case, solver=solver)
+        response = response_of(hard.case, solver=solver)
         scales = hard.case.scene.motion.scales()
         assert scales is not None
         peaks.append(response.peaks["abs_max"].iloc[0] * scales.omega_g**2 / scales.a_g)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from eventpound import simulate
-from eventpound.accuracy.compare import compare, entries
+from eventpound.accuracy.compare import entries, judge_entries
 from eventpound.scene.contact_law import Element
 from tests.benchmarks import own_lines, work_precision, yardsticks
 from tests.benchmarks.work_precision import case_of
@@ -39,7 +39,7 @@ def test_the_lines_stand_beside_the_others(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(own_lines, "RUNS", 20)
     case = case_of("P4", yardsticks.load()["P4"])
     asked = entries([("fast", {}), ("penalty", {})], [1e-6], [0.02])
-    found = own_lines.with_own_lines(compare(case, asked, repeats=1), [0.02])
+    found = own_lines.with_own_lines(judge_entries(case, asked, repeats=1), [0.02])
     runs = {run.label: run for run in found.runs}
     assert list(runs) == [
         "fast", "penalty", own_lines.AMONG_MANY, own_lines.OWN_MODEL,

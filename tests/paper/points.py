@@ -27,7 +27,7 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.study.plan import Plan
 from eventpound.study.reading import load_study
-from eventpound.study.variants import rows_of, scene_of_row
+from eventpound.study.variants import rows_of_base, scene_of_row
 from tests.benchmarks.problem import CASES
 from tests.paper.program import Answer, Kinked, Program, Row, in_series, pulse, sampled
 
@@ -77,7 +77,7 @@ def of_study(name: str, study: Plan, run: int) -> Point:
         if run < base.size:
             break
         run -= base.size
-    rows = rows_of(base, run, run + 1)
+    rows = rows_of_base(base, run, run + 1)
     values = UNIT | {key: float(column[0]) for key, column in rows.values.items()}
     pi = base.case.pi
     assert pi is not None

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eventpound.response import Response
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.base import EventKind
 from tests.reference.problems import Problem, load
 
@@ -175,7 +175,7 @@ def run_all(rtol: float, accuracy: float, solver: str = "cvode") -> list[Compari
     """Run every stored problem and compare."""
     comparisons = []
     for problem in load().values():
-        response = simulate(problem.scene, solver, rtol, duration=problem.end)
+        response = response_of(problem.scene, solver, rtol, duration=problem.end)
         comparisons.append(compare(problem, response, accuracy))
     return comparisons
 

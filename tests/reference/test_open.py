@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from tests.reference.comparison import compare
 from tests.reference.problems import load
 
@@ -31,7 +31,7 @@ steps are looked at nor rounding (5e-16): with a tenth of the smallest step tole
 )
 def test_solved_problem(name, solver, rtol, accuracy):
     problem = PROBLEMS[name]
-    response = simulate(problem.scene, solver, rtol, duration=problem.end)
+    response = response_of(problem.scene, solver, rtol, duration=problem.end)
     failures = compare(problem, response, accuracy).failures
     assert [f for f in failures if f not in UNSEEN.get((name, solver), ())] == []
     drift = response.recording.drift

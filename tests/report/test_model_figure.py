@@ -12,10 +12,10 @@ from matplotlib.colors import to_hex
 from eventpound import modal_damping
 from eventpound.case import load_case
 from eventpound.cli import main
-from eventpound.report.law_panel import laws_of
+from eventpound.report.law_panel import laws_shown
 from eventpound.report.model_figure import _CALLED, _LAWS, model_figure
 from eventpound.report.model_layout import HIGH, LEVEL, Layout, layout_of
-from eventpound.report.model_links import LinkPath, crosses, routes_of
+from eventpound.report.model_links import LinkPath, crosses, links_drawn
 from eventpound.report.style import PALETTE
 from eventpound.scene import (
     BARRIER,
@@ -139,7 +139,7 @@ BRIDGES = [
 @pytest.mark.parametrize("scene", BRIDGES)
 def test_decks_stand_on_their_piers_between_the_abutments(scene: Scene) -> None:
     layout = layout_of(scene)
-    routes = routes_of(scene, layout)
+    routes = links_drawn(scene, layout)
     assert_nothing_is_in_the_way(layout, routes)
     assert len(routes) == len(scene.springs) + len(scene.dashpots)
     decks = [box for name, box in layout.boxes.items() if name.startswith("deck")]
@@ -157,7 +157,7 @@ def test_decks_stand_on_their_piers_between_the_abutments(scene: Scene) -> None:
 def test_two_piers_at_one_joint_stand_beside_each_other() -> None:
     scene = decks_on_piers(3, caps=2, inside=1)
     layout = layout_of(scene)
-    assert_nothing_is_in_the_way(layout, routes_of(scene, layout))
+    assert_nothing_is_in_the_way(layout, links_drawn(scene, layout))
 
 
 def test_a_spring_goes_round_what_is_between_its_ends() -> None:
@@ -171,7 +171,7 @@ def test_a_spring_goes_round_what_is_between_its_ends() -> None:
         contacts=(Contact("ab", "a", "b", 0.1, 0.5), Contact("bc", "b", "c", 0.1, 0.5)),
     )
     layout = layout_of(scene)
-    routes = routes_of(scene, layout)
+    routes = links_drawn(scene, layout)
     assert_nothing_is_in_the_way(layout, routes)
     assert len(routes[-1].corners) == 4
 
@@ -191,7 +191,7 @@ def test_bodies_of_any_scene_stand_apart() -> None:
         layout = layout_of(scene)
         assert layout.boxes.keys() == set(names)
         assert_nothing_is_in_the_way(layout, [])
-        assert len(routes_of(scene, layout)) == len(springs)
+        assert len(links_drawn(scene, layout)) == len(springs)
 
 
 def test_floor_and_column_that_meet_are_drawn_at_one_height() -> None:
@@ -269,7 +269,7 @@ def test_bodies_do_not_overlap_and_stand_within_the_picture(name: str) -> None:
 def test_soil_stands_beside_its_body_at_a_wall() -> None:
     scene = everything()
     layout = layout_of(scene)
-    (route,) = (r for r in routes_of(scene, layout) if r.label == "soil")
+    (route,) = (r for r in links_drawn(scene, layout) if r.label == "soil")
     assert not route.upright
     assert [x < layout.boxes["deck $1"].left for x, _ in route.corners] == [True, False]
 
@@ -314,8 +314,8 @@ def test_the_slack_of_a_cable_is_told_and_seen() -> None:
 def test_laws_of_many_springs_are_one_of_each_kind() -> None:
     springs = [Spring(f"s{i}", (GROUND, f"b{i}"), BoucWen(1.0, 1.0 + i, 1.0)) for i in range(5)]
     springs += [Spring("l", (GROUND, "b0"), Linear(1.0)), Spring("m", (GROUND, "b1"), Linear(1.0))]
-    assert [name for name, _ in laws_of(springs)] == ["s0, one of 5 such laws", "l, m"]
-    assert laws_of(springs[-2:]) == []
+    assert [name for name, _ in laws_shown(springs)] == ["s0, one of 5 such laws", "l, m"]
+    assert laws_shown(springs[-2:]) == []
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -329,11 +329,11 @@ def test_dashpots_of_modal_damping_are_drawn_beside_springs_alone() -> None:
     springs = storeys("A", 4)
     bodies = tuple(Body(spring.between[1], 1.0) for spring in springs)
     scene = Scene(bodies, tuple(springs), modal_damping(bodies, springs, 0.05))
-    drawn = [r.link.between for r in routes_of(scene, layout_of(scene)) if r.link not in springs]
+    drawn = [r.link.between for r in links_drawn(scene, layout_of(scene)) if r.link not in springs]
     assert sorted(drawn) == sorted(spring.between for spring in springs)
     # A damper across two storeys is no modal damping.
     damper = Dashpot(("A1", "A3"), 1.0)
-    routes = routes_of(Scene(bodies, tuple(springs), (damper,)), layout_of(scene))
+    routes = links_drawn(Scene(bodies, tuple(springs), (damper,)), layout_of(scene))
     assert damper in [route.link for route in routes]
 
 

@@ -27,7 +27,7 @@ from eventpound.scene import (
     Series,
     Spring,
 )
-from eventpound.scene.parameters import dimension_of_number, places_of
+from eventpound.scene.parameters import dimension_of_number, number_places
 from eventpound.study.quantities import quantities_of
 from eventpound.units import STANDARD_GRAVITY
 
@@ -63,7 +63,7 @@ def scene(motion: GroundMotion) -> Scene:
 def test_no_column_is_shown_as_its_key(motion: GroundMotion) -> None:
     from matplotlib.mathtext import MathTextParser
 
-    assert all(dimension_of_number(key) is not None for key in places_of(scene(motion)))
+    assert all(dimension_of_number(key) is not None for key in number_places(scene(motion)))
     parser = MathTextParser("path")
     for key in quantities_of(scene(motion)):
         label = axis_label(key)

@@ -10,7 +10,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from eventpound import load_case
-from eventpound.accuracy.compare import compare, entries
+from eventpound.accuracy.compare import entries, judge_entries
 from eventpound.accuracy.comparison_tables import run_table
 from eventpound.accuracy.reference import StatedBounds
 from eventpound.report.work_precision import (
@@ -25,7 +25,7 @@ CASES = Path(__file__).parents[2] / "cases"
 @pytest.fixture(scope="module")
 def comparison():
     asked = entries([("fast", {}), ("cvode", {"method": "BDF"})], [1e-4, 1e-6, 1e-8], [])
-    return compare(load_case(CASES / "elastic-barrier"), asked, repeats=1)
+    return judge_entries(load_case(CASES / "elastic-barrier"), asked, repeats=1)
 
 
 def test_points_are_those_of_the_table(comparison):
@@ -81,7 +81,7 @@ def test_a_certificate_is_named(comparison, tmp_path):
 
 def test_errors_against_the_rigid_law_are_drawn():
     asked = entries([("cvode", {})], [1e-5, 1e-8], [])
-    found = compare(load_case(CASES / "pair-with-law"), asked, repeats=1)
+    found = judge_entries(load_case(CASES / "pair-with-law"), asked, repeats=1)
     table = run_table(found)
     figure = work_precision_figure(found)
     for axes, column in zip(figure.axes, ("rigid_peak_error", "rigid_graph_distance"), strict=True):

@@ -33,7 +33,7 @@ from eventpound.scene import (
     Spring,
     Support,
 )
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 
 _UNUSED = (SolverOptions(), Path("."), "", None, (), {})
 
@@ -187,7 +187,7 @@ def test_supports_as_another_program_reads_them(tmp_path):
             step = solve_ivp(rate, (t[low], t[high]), y, rtol=1e-8, atol=1e-10, max_step=0.02)
             y = step.y[:, -1]
         low = high + 1
-    ours = simulate(scene, "fast", 1e-10, duration=end).recording
+    ours = response_of(scene, "fast", 1e-10, duration=end).recording
     # Rows of the sine lie 0.9 ms apart: h^2/8 of its second derivative, 1e-5 of it.
     assert np.abs(ours.u - y[:2]).max() <= 3e-5 * np.abs(ours.displacement.maximum).max()
     last = np.array([column["s.p"][-1], column["s.q"][-1]])

@@ -28,7 +28,7 @@ from eventpound.scene import (
 from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.check import scene_problems
 from eventpound.scene.modes import modes_of
-from eventpound.scene.parameters import places_of
+from eventpound.scene.parameters import number_places
 from eventpound.scene.periods import joined
 from eventpound.scene.worst_variants import worst_variants
 
@@ -220,7 +220,7 @@ def test_variants_of_negative_dashpots_are_checked_together() -> None:
     scene = unlike_ratios()
     driving = Dashpot((GROUND, "f0"), 1e6)
     scene = replace(scene, dashpots=(driving, Dashpot((GROUND, "f0"), 1e6)))
-    places = [p for key, p in places_of(scene).items() if key.startswith("dashpot")]
+    places = [p for key, p in number_places(scene).items() if key.startswith("dashpot")]
     # Only the third variant has two that drive together.
     columns = np.array([[2e6, -1e6, -1e6, 2e6], [-1e6, 2e6, -0.5e6, -1e6]])
     rows = worst_variants(scene, dict(zip(places, columns, strict=True)), 4)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eig, eigh
 
-from eventpound.case.damping import read_damping
+from eventpound.case.damping import read_group_damping
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.scene import (
@@ -80,7 +80,7 @@ def test_rayleigh_damping_of_modes_is_the_ratio_there() -> None:
     scene, *_ = building()
     names = [body.name for body in scene.bodies]
     table = Table({"bodies": names, "ratio": 0.05, "modes": [1, 3]}, "[[rayleigh]] 1", [])
-    dashpots = read_damping([table], [], scene.bodies, scene.springs)
+    dashpots = read_group_damping([table], [], scene.bodies, scene.springs)
     found = modes_of(Scene(scene.bodies, scene.springs, dashpots), names)
     assert found.damping[[0, 2]] == pytest.approx(0.05, rel=1e-12)
     assert found.damping[1] < 0.05 < found.damping[3]
@@ -92,7 +92,7 @@ def test_modes_that_there_are_not(modes: object) -> None:
     problems: list = []
     names = [body.name for body in scene.bodies]
     table = Table({"bodies": names, "ratio": 0.05, "modes": modes}, "[[rayleigh]] 1", problems)
-    assert read_damping([table], [], scene.bodies, scene.springs) == ()
+    assert read_group_damping([table], [], scene.bodies, scene.springs) == ()
     assert [problem.key for problem in problems] == ["modes"]
 
 

@@ -22,7 +22,7 @@ from eventpound.scene import (
     Support,
 )
 from eventpound.scene.check import scene_problems
-from eventpound.scene.parameters import places_of, value_at, with_values
+from eventpound.scene.parameters import number_places, value_at, with_values
 from eventpound.scene.worst_variants import worst_variants
 
 SCENE = Scene(
@@ -35,7 +35,7 @@ SCENE = Scene(
     contacts=(Contact("c", "a", "b.1", 0.01, 0.5), Contact("wall", "barrier", "a", 0.1, 1.0)),
     motion=Sine(5.0, 6.0),
 )
-PLACES = places_of(SCENE)
+PLACES = number_places(SCENE)
 
 
 def test_every_number_has_a_key():
@@ -79,7 +79,7 @@ def test_a_number_is_changed_and_no_other(key):
 def test_a_record_keeps_its_mean_period():
     record = Record(np.sin(0.3 * np.arange(400)), 0.02)
     scene = replace(SCENE, motion=record)
-    places = places_of(scene)
+    places = number_places(scene)
     assert record.mean_period == record.mean_period
     louder = with_values(scene, {places["excitation.scale"]: 3.0}).motion
     slower = with_values(scene, {places["excitation.time_step"]: 0.04}).motion
@@ -93,13 +93,13 @@ EDGES = (-np.inf, -1.0, -1e-300, 0.0, 1e-300, 0.2, 0.5, 1.0, 1.0 + 1e-15, 1.5, 4
 
 
 def problems_of(scene: Scene, columns: dict[str, np.ndarray], row: int) -> list:
-    places = places_of(scene)
+    places = number_places(scene)
     return scene_problems(with_values(scene, {places[k]: v[row] for k, v in columns.items()}))
 
 
 def told_of(scene: Scene, columns: dict[str, np.ndarray]) -> list[int]:
     """Variants that are looked at; where any is wrong one of them must be."""
-    places, count = places_of(scene), len(next(iter(columns.values())))
+    places, count = number_places(scene), len(next(iter(columns.values())))
     rows = worst_variants(scene, {places[k]: v for k, v in columns.items()}, count).tolist()
     wrong = [row for row in range(count) if problems_of(scene, columns, row)]
     assert bool(wrong) == any(row in wrong for row in rows)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from eventpound.errors import InputError
 from eventpound.motion import Cosine, NoMotion
 from eventpound.scene import BoucWen, Linear
-from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.parameters import number_places, with_values
 from eventpound.scene.pi_columns import numbers_with_terms, scale_columns
 from eventpound.scene.pi_structure import Kind, PiStructure
 from eventpound.scene.pi_terms import pi_terms
@@ -90,7 +90,7 @@ def test_columns_are_scenes_one_by_one():
     columns = {"excitation.amplitude": rng.uniform(0.1, 10.0, 5)}
     terms = {"omega_s": rng.uniform(0.1, 3.0, 5), "Q.1": rng.uniform(0.1, 3.0, 5), "m.2": 2.0}
     numbers = numbers_with_terms(scene, terms, columns)
-    places = places_of(scene)
+    places = number_places(scene)
     scales = scale_columns(scene, columns)
     assert scales is not None
     for i in range(5):

@@ -11,7 +11,7 @@ from eventpound.errors import InputError
 from eventpound.motion.base import Scales
 from eventpound.motion.free import NoMotion
 from eventpound.scene import Body, BoucWen, Contact, Linear, Scene, Spring, Support
-from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.parameters import number_places, with_values
 from eventpound.scene.pi_columns import numbers_with_terms
 from eventpound.scene.pi_structure import Kind, PiStructure
 from eventpound.scene.pi_terms import number_of_terms, of_all, pi_terms
@@ -44,7 +44,7 @@ def pair(motion=None):
 
 
 def with_pi_terms(scene, terms):
-    places = places_of(scene)
+    places = number_places(scene)
     numbers = numbers_with_terms(scene, terms)
     return with_values(scene, {places[key]: float(value) for key, value in numbers.items()})
 

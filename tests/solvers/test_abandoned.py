@@ -7,16 +7,16 @@ import pytest
 
 PROGRAM = """
 import sys, threading, time
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from tests.solvers.test_returned import scenes
 
 shaken = scenes()[1]
-simulate(shaken, sys.argv[1], 1e-6, duration=0.1)
+response_of(shaken, sys.argv[1], 1e-6, duration=0.1)
 begun = threading.Event()
 
 def work():
     while True:
-        simulate(shaken, sys.argv[1], 1e-13, duration=10.0, progress=lambda t: begun.set())
+        response_of(shaken, sys.argv[1], 1e-13, duration=10.0, progress=lambda t: begun.set())
 
 for _ in range(3):
     threading.Thread(target=work, daemon=True).start()

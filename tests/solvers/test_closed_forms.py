@@ -10,7 +10,7 @@ import pytest
 from eventpound.motion.pulses import Sine
 from eventpound.motion.record import Record
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.base import EventKind
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.exact import Oscillator
@@ -26,7 +26,7 @@ def test_a_body_that_first_goes_the_other_way(solver: str, last: float) -> None:
     wall = Contact("wall", "m", BARRIER, 1e3, 0.5)
     scene = Scene((Body("m", 1.0),), (), (), (wall,), motion=Record(np.array([a, b, b]), dt))
     s = (b - a) / dt
-    run = simulate(scene, solver, rtol=RTOL, duration=dt).recording
+    run = response_of(scene, solver, rtol=RTOL, duration=dt).recording
     lowest = -2.0 / 3.0 * a**3 / s**2
     assert run.displacement.minimum[0] == pytest.approx(lowest, rel=1e-6)
     assert run.displacement.time_of_minimum[0] == pytest.approx(-2.0 * a / s, rel=1e-5)
@@ -56,7 +56,7 @@ def test_elastic_oscillator_with_a_barrier(
     solver: str, exact: Oscillator, u: float, v: float, end: float, rtol: float
 ) -> None:
     times, speeds, u_end, v_end = exact.solve(u, v, end)
-    run = simulate(_oscillator_scene(exact, u, v), solver, rtol=rtol, duration=end).recording
+    run = response_of(_oscillator_scene(exact, u, v), solver, rtol=rtol, duration=end).recording
     impacts = [e for e in run.events if e.kind is EventKind.IMPACT]
     assert len(run.events) == len(impacts) == len(times)
     scale = max(speeds)
@@ -84,7 +84,7 @@ def test_peaks_are_located_not_sampled(solver: str) -> None:
     # u = cos(t - 1) over two periods, no contact: 1 at t = 1, -1 at 1 + π, first attainments.
     spring = Spring("k", (GROUND, "m"), Linear(1.0))
     body = Body("m", 1.0, math.cos(1.0), math.sin(1.0))
-    run = simulate(
+    run = response_of(
         Scene((body,), (spring,)), solver, rtol=1e-12, duration=4 * math.pi, output_step=3.0
     )
     x = run.recording.displacement
@@ -112,7 +112,7 @@ def test_bouncing_ball_reaches_its_limit(solver: str, eps: float, side: str, rto
     # Push a = 2: first impact at t_1 = sqrt(2 δ/a) = 1/2 with v = a t_1 = 1, then
     # intervals 2 v ε^i/a: t_∞ = t_1 + 2 v ε/(a (1 - ε)).
     limit = 0.5 + eps / (1.0 - eps)
-    run = simulate(_pushed_ball(eps, side), solver, rtol=rtol, duration=20.0).recording
+    run = response_of(_pushed_ball(eps, side), solver, rtol=rtol, duration=20.0).recording
     rest = [e for e in run.events if e.kind is EventKind.REST]
     assert len(rest) == 1
     # The promise is 1e-10 of the limit time at the tightest tolerance: 100 rtol.
@@ -150,7 +150,7 @@ def test_rest_ends_where_the_push_turns(solver: str) -> None:
         (Contact("wall", "m", BARRIER, 0.25, 0.5),),
         Record(samples, 10.0),
     )
-    run = simulate(scene, solver, rtol=RTOL, duration=25.0).recording
+    run = response_of(scene, solver, rtol=RTOL, duration=25.0).recording
     last = run.events[-1]
     assert last.kind is EventKind.DETACHMENT
     # The first move is of third order in time: g = 0.4 τ³/6; force noise over its slope.
@@ -174,7 +174,7 @@ def test_light_body_between_heavy_ones_collapses(solver: str, light: float, eps:
     # and the closed gaps say where they are.
     scene = _squeezed_light_body(light, eps)
     end = 3.0
-    run = simulate(scene, solver, rtol=RTOL, duration=end).recording
+    run = response_of(scene, solver, rtol=RTOL, duration=end).recording
     mass = np.array([b.mass for b in scene.bodies])
     v0 = np.array([b.velocity for b in scene.bodies])
     mean = mass @ v0 / mass.sum()
@@ -193,7 +193,7 @@ def test_elastic_oscillator_over_a_hundred_periods(solver: str) -> None:
     spring = Spring("k", (GROUND, "m"), Linear(4.0))
     scene = Scene((Body("m", 1.0, 0.3, -0.5),), (spring,))
     end = 100.0 * math.pi + 1.0
-    run = simulate(scene, solver, rtol=1e-11, duration=end, energy=True)
+    run = response_of(scene, solver, rtol=1e-11, duration=end, energy=True)
     u = 0.3 * math.cos(2.0 * end) - 0.25 * math.sin(2.0 * end)
     v = -0.6 * math.sin(2.0 * end) - 0.5 * math.cos(2.0 * end)
     # A hundred periods instead of a few: ten times as many steps.
@@ -212,7 +212,7 @@ def test_a_record_without_a_mean_period(solver: str) -> None:
         (Spring("s", (GROUND, "b"), Linear(2.0 * omega**2)),),
         motion=Record(np.full(2, a), end),
     )
-    response = simulate(scene, solver, RTOL, duration=12.0)
+    response = response_of(scene, solver, RTOL, duration=12.0)
     static = a / omega**2
     # At 10.25 s it is at -a/ω² with the speed -a/ω: an amplitude of 2^½ a/ω² about zero after that.
     assert response.peaks.loc["b", "min"] == pytest.approx(-2.0 * static, rel=100.0 * RTOL)

@@ -14,7 +14,7 @@ from eventpound.motion.record import Record
 from eventpound.motion.ricker import Ricker
 from eventpound.numerics.compiled import by_python
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Force, Scene, Spring
-from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.parameters import number_places, with_values
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
@@ -125,7 +125,7 @@ def forget_arrays(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def with_numbers_of(scene: Scene, numbers: dict[str, float]) -> Scene:
-    places = places_of(scene)
+    places = number_places(scene)
     return with_values(scene, {places[key]: value for key, value in numbers.items()})
 
 

@@ -12,7 +12,7 @@ from eventpound import simulate, simulate_many
 from eventpound.motion import NoMotion
 from eventpound.response import Response
 from eventpound.scene import BARRIER, GROUND, Backfill, Body, Contact, Linear, Scene, Spring
-from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.parameters import number_places, with_values
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from tests.solvers import test_backfill, test_degrading
@@ -88,7 +88,7 @@ def test_errors_follow_the_tolerance(scene: Scene) -> None:
 
 
 def changed(scene: Scene, numbers: dict[str, list[float]], i: int) -> Scene:
-    places = places_of(scene)
+    places = number_places(scene)
     return with_values(scene, {places[key]: values[i] for key, values in numbers.items()})
 
 
@@ -113,7 +113,7 @@ def test_variants_are_single_runs_to_the_last_bit(which: str) -> None:
     ready = solver_named("fast").ready(task)  # type: ignore[attr-defined]
     for i in range(3):
         one = run(changed(scene, numbers, i), 3.0, rtol=1e-8).recording
-        values = {places_of(scene)[key]: column[i] for key, column in numbers.items()}
+        values = {number_places(scene)[key]: column[i] for key, column in numbers.items()}
         again = ready.run(values, task)()
         for u, z in ((many.u[i], many.z[i]), (again.u, again.z)):
             np.testing.assert_array_equal(u, one.u)

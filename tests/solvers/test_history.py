@@ -19,7 +19,7 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.events.recorder import history_of, row_width
 
 # A record that begins with a jump to 1 m/s².
@@ -41,7 +41,7 @@ def _meeting(gap: float = 0.0) -> Scene:
 
 
 def test_an_impact_at_the_start_has_the_state_before_it(solver: str) -> None:
-    response = simulate(_meeting(), solver, 1e-8, duration=1.0, output_step=0.02)
+    response = response_of(_meeting(), solver, 1e-8, duration=1.0, output_step=0.02)
     history = response.recording.history
     assert history.t[:3].tolist() == [0.0, 0.0, 0.02]
     assert history.v[0].tolist() == [0.5, 0.0]
@@ -59,7 +59,7 @@ def test_an_impact_at_the_start_has_the_state_before_it(solver: str) -> None:
 
 
 def test_the_start_has_one_line_where_nothing_happens(solver: str) -> None:
-    response = simulate(_meeting(10.0), solver, 1e-8, duration=1.0, output_step=0.02)
+    response = response_of(_meeting(10.0), solver, 1e-8, duration=1.0, output_step=0.02)
     history = response.recording.history
     assert not response.recording.events
     assert history.t[:3].tolist() == [0.0, 0.02, 0.04]
@@ -72,7 +72,7 @@ def test_an_output_time_at_an_event_has_no_line_of_its_own(solver: str) -> None:
         (Spring("s", (GROUND, "a"), Linear(0.0)),),
         contacts=(Contact("wall", "a", BARRIER, 1.0, 0.5),),
     )
-    history = simulate(scene, solver, 1e-8, duration=2.0, output_step=0.5).recording.history
+    history = response_of(scene, solver, 1e-8, duration=2.0, output_step=0.5).recording.history
     rows = np.column_stack((history.t, history.u, history.v))
     assert not (rows[1:] == rows[:-1]).all(axis=1).any()
     near = np.abs(history.t - 1.0) < 1e-9

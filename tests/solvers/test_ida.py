@@ -17,7 +17,7 @@ from eventpound.mechanics.descriptor_motion import solve_contact_forces, to_movi
 from eventpound.mechanics.model import assemble
 from eventpound.numerics.compiled import by_python
 from eventpound.scene import GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.events.integrator import Bounds
@@ -55,7 +55,7 @@ def _thrown(m_a: float = 2.0, m_b: float = 0.7, damping: float = 0.0) -> Scene:
 def test_force_and_release_of_a_thrown_body(rtol: float) -> None:
     # Together u = -0.3 cos 2t, and λ = m_b u'' = 0.7 · 1.2 cos 2t until t = π/4; then b
     # flies at 0.6 m/s and a swings on alone, ω_a² = 4 · 2.7/2.
-    response = simulate(_thrown(), "ida", rtol, duration=1.5, output_step=0.05)
+    response = response_of(_thrown(), "ida", rtol, duration=1.5, output_step=0.05)
     recording = response.recording
     release = math.pi / 4.0
     assert [e.kind for e in recording.events] == [EventKind.REST, EventKind.DETACHMENT]
@@ -125,7 +125,7 @@ def test_the_force_is_an_unknown_of_ida(name: str) -> None:
 
 
 def test_energy_closes() -> None:
-    response = simulate(pounding_pair(), "ida", 1e-9, duration=6.0, energy=True)
+    response = response_of(pounding_pair(), "ida", 1e-9, duration=6.0, energy=True)
     assert abs(response.energy.closure) < allowed(1.0, 1e-9)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from eventpound.numerics.compiled import PLAIN, by_python
 from eventpound.numerics.compiled.linked import Entry
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.base import Recording
 from eventpound.solvers.events.instant import proceed
 from tests.solvers.random_scenes import random_scene
@@ -21,7 +21,7 @@ SEEDS = (36, 57)
 
 def recorded(seed: int) -> Recording:
     scene, duration = random_scene(seed)
-    found = simulate(scene, "cvode", 1e-7, duration=duration, energy=True).recording
+    found = response_of(scene, "cvode", 1e-7, duration=duration, energy=True).recording
     return replace(found, work=replace(found.work, seconds=0.0, compilation=0.0))
 
 

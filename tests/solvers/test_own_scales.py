@@ -23,7 +23,7 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import (
     SPARE,
@@ -62,7 +62,7 @@ def _scales(scene: Scene) -> SceneScales:
 @pytest.mark.parametrize("omega", [1e2, 1e3])
 def test_a_stiff_body_beside_a_soft_one(solver: str, omega: float, rtol: float) -> None:
     """``u'' + ω² u = -a sin Ωt``, to a part of its own motion."""
-    recording = simulate(_beside_a_soft_one(omega), solver, rtol, duration=0.9).recording
+    recording = response_of(_beside_a_soft_one(omega), solver, rtol, duration=0.9).recording
     c, t = -A / (omega**2 - OMEGA**2), 0.9
     u = c * (math.sin(OMEGA * t) - OMEGA / omega * math.sin(omega * t))
     v = c * OMEGA * (math.cos(OMEGA * t) - math.cos(omega * t))
@@ -76,8 +76,8 @@ def test_a_stiff_body_under_a_record(solver: str) -> None:
     rng = np.random.default_rng(3)
     record = Record(np.cumsum(rng.normal(size=100)), 0.01, pga=A)
     scene = replace(_beside_a_soft_one(1e4), motion=record)
-    truth = simulate(scene, "fast", 1e-14, duration=0.5).recording
-    found = simulate(scene, solver, 1e-9, duration=0.5).recording
+    truth = response_of(scene, "fast", 1e-14, duration=0.5).recording
+    found = response_of(scene, solver, 1e-9, duration=0.5).recording
     static = A / 1e8
     assert abs(found.u[0] - truth.u[0]) <= GROWTH * 1e-9 * 1e4 * static
 
@@ -145,7 +145,7 @@ def test_impacts_and_rests_of_a_stiff_body(solver: str, rtol: float) -> None:
     bodies = (Body("stiff", 1.0), Body("soft", 1.0, 0.0, -speed))
     springs = (Spring("s", (GROUND, "stiff"), Linear(omega**2)),)
     scene = Scene(bodies, springs, (), (Contact("c", "stiff", "soft", 0.0, 0.0),))
-    recording = simulate(scene, solver, rtol, duration=0.01).recording
+    recording = response_of(scene, solver, rtol, duration=0.01).recording
     together = omega / math.sqrt(2.0)
     rest = float(recording.resting_time[0])
     # Both swing back through zero, where the force changes sign.

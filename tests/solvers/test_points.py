@@ -32,7 +32,7 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.from_samples import inferred_impacts
@@ -169,7 +169,9 @@ def test_many_at_once_are_those_one_by_one() -> None:
     )
     for i, gap in enumerate(gaps):
         contacts = tuple(replace(c, gap=gap) if c.name == "roof" else c for c in scene.contacts)
-        one = simulate(replace(scene, contacts=contacts), "fast", rtol=1e-9, duration=4.0).recording
+        one = response_of(
+            replace(scene, contacts=contacts), "fast", rtol=1e-9, duration=4.0
+        ).recording
         np.testing.assert_array_equal(many.u[i], one.u)
         np.testing.assert_array_equal(many.displacement.maximum[i], one.displacement.maximum)
         assert many.acceleration is not None
@@ -326,7 +328,7 @@ for scene in (pounding_pair(), towers()):
 def test_what_follows_from_rows_knows_the_points() -> None:
     """The largest opening between rows, and impacts read off the motion alone."""
     scene = towers()
-    response = simulate(scene, rtol=1e-10, duration=4.0, output_step=1e-3)
+    response = response_of(scene, rtol=1e-10, duration=4.0, output_step=1e-3)
     h, found = response.recording.history, response.recording
     for j, contact in enumerate(scene.contacts):
         opening = response.quantity(f"contacts.{contact.name}.largest_gap")
@@ -342,17 +344,17 @@ def test_what_follows_from_rows_knows_the_points() -> None:
 
 def test_the_gap_that_would_have_avoided_it() -> None:
     scene = towers()
-    run = simulate(scene, rtol=1e-11, duration=4.0)
+    run = response_of(scene, rtol=1e-11, duration=4.0)
     names = {c.name: f"contacts.{c.name}.avoiding_gap" for c in scene.contacts}
     needed = {contact: run.quantity(name) or 0.0 for contact, name in names.items()}
     assert all(needed.values())
     wide = replace(
         scene, contacts=tuple(replace(c, gap=needed[c.name] + 1e-7) for c in scene.contacts)
     )
-    assert not simulate(wide, rtol=1e-11, duration=4.0).recording.events
+    assert not response_of(wide, rtol=1e-11, duration=4.0).recording.events
     for contact in wide.contacts:
         touching = tuple(replace(c, gap=c.gap - 2e-7) if c == contact else c for c in wide.contacts)
-        found = simulate(replace(wide, contacts=touching), rtol=1e-11, duration=4.0)
+        found = response_of(replace(wide, contacts=touching), rtol=1e-11, duration=4.0)
         assert {e.contact for e in found.recording.events} == {wide.contacts.index(contact)}
 
 

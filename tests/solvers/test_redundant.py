@@ -11,7 +11,7 @@ import pytest
 from eventpound.motion.delayed import travelled
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from tests.solvers.random_scenes import driven_scene, random_scene
@@ -32,8 +32,8 @@ def _row(middle: dict[str, tuple[float, float]]) -> Scene:
 
 def test_two_halves_side_by_side_move_as_the_whole(solver: str):
     rtol = 1e-9
-    whole = simulate(_row({"B": (1.0, 1.0)}), solver, rtol, duration=25.0)
-    split = simulate(_row({"B": (0.5, 0.5), "C": (0.5, 0.5)}), solver, rtol, duration=25.0)
+    whole = response_of(_row({"B": (1.0, 1.0)}), solver, rtol, duration=25.0)
+    split = response_of(_row({"B": (0.5, 0.5), "C": (0.5, 0.5)}), solver, rtol, duration=25.0)
     for body in ("A", "B", "D"):
         wanted = whole.history[f"u.{body}"]
         # The two runs take the same steps; their difference is rounding through
@@ -60,7 +60,7 @@ def test_a_locked_row_is_pressed_as_little_as_may_be(solver: str) -> None:
         for i, (left, right) in enumerate(pairwise([BARRIER, *names, BARRIER]))
     )
     scene = Scene(bodies, springs, (), contacts, Sine(3.0, 1.0))
-    recording = simulate(scene, solver, 1e-9, duration=1.5, output_step=0.01).recording
+    recording = response_of(scene, solver, 1e-9, duration=1.5, output_step=0.01).recording
     assert not recording.unique_forces.any()
     history = recording.history
     force = history.contact_force[history.t > 0.0]
@@ -77,7 +77,7 @@ def test_a_contact_that_others_keep_closed_has_no_force_of_a_mode_before() -> No
     # Two bodies without play between two barriers, locked after a cascade at the start.
     scene, end = random_scene(149)
     fast, wanted = (
-        simulate(scene, solver, 1e-9, duration=end).recording for solver in ("fast", "cvode")
+        response_of(scene, solver, 1e-9, duration=end).recording for solver in ("fast", "cvode")
     )
     np.testing.assert_allclose(fast.max_force, wanted.max_force, rtol=1e-7)
 

@@ -16,7 +16,7 @@ from eventpound import simulate_many
 from eventpound.motion.record import Record
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from tests.solvers.scenes import pounding_pair
 
 SHAKEN = Record(np.sin(np.arange(200) * 0.3), 0.02)
@@ -70,7 +70,7 @@ def returned(monkeypatch: pytest.MonkeyPatch) -> Callable[[], dict[str, Any]]:
 def test_no_objects_of_python_classes(solver: str, returned: Callable[[], dict[str, Any]]) -> None:
     settings = {"time_step": 1e-3} if solver in ("moreau", "penalty") else None
     for scene in scenes():
-        simulate(scene, solver, 1e-6, duration=2.0, energy=True, settings=settings)
+        response_of(scene, solver, 1e-6, duration=2.0, energy=True, settings=settings)
     found = returned()
     assert found
     assert not {name: kind for name, kind in found.items() if runs_python(kind)}

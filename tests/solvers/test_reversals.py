@@ -17,7 +17,7 @@ from eventpound.motion.harmonic import Harmonic
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Scene, Spring
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.solvers.cvode import integrator
@@ -183,10 +183,10 @@ STRUCK = Scene(
 @pytest.mark.parametrize("events", ["own", "sundials"])
 def test_a_tighter_tolerance_gives_a_smaller_error(events: str) -> None:
     """Some hundred rtol at most; where reversals were stepped over, 3000."""
-    truth = simulate(STRUCK, "fast", 1e-13, duration=LENGTH).recording
+    truth = response_of(STRUCK, "fast", 1e-13, duration=LENGTH).recording
     size = abs(truth.displacement.minimum[0])
     for rtol in np.geomspace(0.99 * HELD_BELOW, 1e-12, 9):
-        run = simulate(
+        run = response_of(
             STRUCK, "cvode", rtol, duration=LENGTH, settings={"events": events}
         ).recording
         assert abs(run.u[0] - truth.u[0]) < 400.0 * rtol * size

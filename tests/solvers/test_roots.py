@@ -26,7 +26,7 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
-from eventpound.simulation import check_solver, simulate
+from eventpound.simulation import check_solver, response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.cvode import Cvode, integrator
@@ -106,7 +106,9 @@ HARD = (
 )
 def test_solved_problem(nothing_else_looks, solver, rtol, name) -> None:
     problem = load()[name]
-    response = simulate(problem.scene, solver, rtol, duration=problem.end, settings=SUNDIALS_ROOTS)
+    response = response_of(
+        problem.scene, solver, rtol, duration=problem.end, settings=SUNDIALS_ROOTS
+    )
     failures = compare(problem, response, TOLERANCES[solver, rtol]).failures
     assert [f for f in failures if f not in UNSEEN.get((name, solver), ())] == []
 
@@ -122,7 +124,7 @@ def test_solved_problem(nothing_else_looks, solver, rtol, name) -> None:
 def test_hard_scene(hard: Hard) -> None:
     """Motion, counts and resting times of both finders; where they differ, a warning."""
     ways = (("cvode", {}), ("cvode", SUNDIALS_ROOTS), ("ida", SUNDIALS_ROOTS))
-    responses = [simulate(hard.case, solver=s, settings=settings) for s, settings in ways]
+    responses = [response_of(hard.case, solver=s, settings=settings) for s, settings in ways]
     if hard.name == "chaotic":
         # The warning names the contact at which the first event differs, not all of them.
         assert all(estimate_errors(response)["warnings"] for response in responses)
@@ -150,7 +152,7 @@ def test_a_dip_within_a_step_is_found(overshoot: float, rtol: float) -> None:
     peak = (math.sin(omega * t) - omega * math.sin(t)) / (1.0 - omega**2)
     scene = _oscillator(abs(peak) * (1.0 - overshoot))
     for solver in ("cvode", "ida"):
-        response = simulate(scene, solver, rtol, duration=t + 0.5, settings=SUNDIALS_ROOTS)
+        response = response_of(scene, solver, rtol, duration=t + 0.5, settings=SUNDIALS_ROOTS)
         first = response.recording.events[0]
         assert first.kind is EventKind.IMPACT
         # Before the minimum, by sqrt(2 overshoot peak / u''), u'' = peak + sin(ωt).
@@ -204,7 +206,9 @@ def test_a_kink_and_a_release() -> None:
     scene = Scene(bodies, (spring,), (), (Contact("joint", "a", "b", 0.0, 0.5),))
     for solver in ("cvode", "ida"):
         rtol = 1e-9
-        recording = simulate(scene, solver, rtol, duration=2.0, settings=SUNDIALS_ROOTS).recording
+        recording = response_of(
+            scene, solver, rtol, duration=2.0, settings=SUNDIALS_ROOTS
+        ).recording
         assert [e.kind for e in recording.events] == [EventKind.REST, EventKind.DETACHMENT]
         # Together at ω = 2; b leaves at the kink with 0.6 m/s, a swings at ω = sqrt(2) on.
         release = math.pi / 4.0
@@ -233,7 +237,7 @@ def test_a_rate_that_has_died_away_turns_no_more() -> None:
     assert (pairs[:, 1] > 0.0).tolist() == [True, True, False]
     assert pairs[0, 1] * pairs[1, 1] > 0.0
     scene, end = resting_scene(500384)
-    by = {name: simulate(scene, name, 1e-8, duration=end).recording for name in ("ida", "fast")}
+    by = {name: response_of(scene, name, 1e-8, duration=end).recording for name in ("ida", "fast")}
     assert np.abs(by["ida"].u - by["fast"].u).max() < 1e-6 * np.abs(by["fast"].u).max()
 
 
@@ -253,10 +257,10 @@ def test_a_root_that_is_found_again_and_again_is_an_end() -> None:
 
 def test_it_is_what_ida_takes_unless_told_otherwise(nothing_else_looks) -> None:
     scene = _oscillator(1.0)
-    assert simulate(scene, "ida", 1e-6, duration=1.0).recording.success
+    assert response_of(scene, "ida", 1e-6, duration=1.0).recording.success
     for solver, settings in (("ida", {"events": "own"}), ("cvode", {})):
         with pytest.raises(AssertionError):
-            simulate(scene, solver, 1e-6, duration=1.0, settings=settings)
+            response_of(scene, solver, 1e-6, duration=1.0, settings=settings)
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
@@ -266,7 +270,7 @@ def test_a_word_that_is_none(solver: str) -> None:
     with pytest.raises(InputError, match=message):
         check_solver(options)
     with pytest.raises(InputError, match=message):
-        simulate(_oscillator(1.0), solver, settings={"events": "foo"})
+        response_of(_oscillator(1.0), solver, settings={"events": "foo"})
 
 
 @pytest.mark.parametrize(
@@ -290,7 +294,9 @@ def test_through_scikit_sundae_it_finds_the_same(
     monkeypatch.setattr(library, "library", lambda: None)
     monkeypatch.setattr(library, "ida_library", lambda: None)
     problem = load()[name]
-    response = simulate(problem.scene, solver, rtol, duration=problem.end, settings=SUNDIALS_ROOTS)
+    response = response_of(
+        problem.scene, solver, rtol, duration=problem.end, settings=SUNDIALS_ROOTS
+    )
     failures = compare(problem, response, allowed_error).failures
     assert [f for f in failures if f not in UNSEEN.get((name, solver), ())] == []
 
@@ -318,7 +324,7 @@ def test_through_scikit_sundae_every_search_has_a_log_of_its_own(monkeypatch, so
     monkeypatch.setattr(integrators.Wrapped, "_step", watched)
     bodies, wall = (Body("b", 1.0, 0.0, -1.0),), Contact("wall", BARRIER, "b", 0.5, 1.0)
     springs = (Spring("k", (GROUND, "b"), Linear(1.0)),)
-    response = simulate(
+    response = response_of(
         Scene(bodies, springs, (), (wall,)), solver, 1e-8, duration=20.0, settings=SUNDIALS_ROOTS
     )
     # One that ends a segment, and a dip before it.
@@ -360,7 +366,7 @@ def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str) -> None:
 
 def test_a_limit_of_steps_is_kept() -> None:
     with pytest.raises(ComputationError, match="the limit of 300 steps") as caught:
-        simulate(pounding_pair(), "cvode", duration=6.0, settings=SUNDIALS_ROOTS, max_steps=300)
+        response_of(pounding_pair(), "cvode", duration=6.0, settings=SUNDIALS_ROOTS, max_steps=300)
     recording = caught.value.recording
     assert recording is not None
     assert recording.work.steps == 300
@@ -371,7 +377,7 @@ def test_rows_of_a_step_with_a_root_at_its_end_are_on_its_polynomial(seed: int) 
     # The root is the bottom of a dip: the step goes on, but IDA has no more of it to tell.
     scene, end = random_scene(seed)
     settings = {"events": "sundials"}
-    found = simulate(scene, "ida", duration=end, rtol=1e-9, settings=settings).recording
+    found = response_of(scene, "ida", duration=end, rtol=1e-9, settings=settings).recording
     u, extremes = found.history.u, found.displacement
     noise = 1e-9 * np.abs(u).max()
     assert np.all(u <= extremes.maximum + noise)

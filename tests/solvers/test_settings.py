@@ -12,7 +12,7 @@ from eventpound.case.loading import load_case
 from eventpound.errors import InputError
 from eventpound.motion.record import Record
 from eventpound.scene import GROUND, Body, Linear, Scene, Spring
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 
@@ -43,12 +43,12 @@ def _with(case, **changes):
 )
 def test_refused(case, changes, message):
     with pytest.raises(InputError, match=message.replace("(", r"\(")):
-        simulate(_with(case, **changes))
+        response_of(_with(case, **changes))
 
 
 def test_adams_and_bdf_agree(case):
-    adams = simulate(case)
-    bdf = simulate(_with(case, settings={"method": "BDF"}))
+    adams = response_of(case)
+    bdf = response_of(_with(case, settings={"method": "BDF"}))
     wanted = adams.peaks["min"].iloc[0]
     # Two methods, each within some hundred times rtol = 1e-9 of the motion.
     assert bdf.peaks["min"].iloc[0] == pytest.approx(wanted, rel=2e-7)

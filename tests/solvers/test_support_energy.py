@@ -13,7 +13,7 @@ from eventpound.motion.constant import PhasedSine
 from eventpound.results.summary import summarise
 from eventpound.scene import GROUND, Body, Contact, Force, Linear, Scene, Spring, Support
 from eventpound.scene.contact_law import ContactLaw
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.base import EventKind
 from tests.solvers.random_scenes import driven_scene
 from tests.solvers.test_supports import SOLVERS, DeckBetween, pounding_on_two, run
@@ -144,7 +144,7 @@ def test_closes_on_random_scenes() -> None:
 
 def test_summary_names_them() -> None:
     scene = replace(pounding_on_two(), forces=(Force("b", PhasedSine(6.0, 0.7, cycles=1.0)),))
-    response = simulate(scene, "fast", 1e-8, duration=3.0, energy=True)
+    response = response_of(scene, "fast", 1e-8, duration=3.0, energy=True)
     energy = summarise(response)["energy"]
     assert isinstance(energy, dict)
     assert list(energy["supports"]) == ["pier"]
@@ -152,5 +152,5 @@ def test_summary_names_them() -> None:
     balance = energy["initial"] + energy["input"] + energy["supports"]["pier"]
     spent = sum(energy[k] for k in ("kinetic", "elastic", "hysteretic", "viscous", "impact"))
     assert balance == pytest.approx(spent, rel=1e-7)
-    alone = simulate(replace(scene, supports=(Support("pier", 0.0),)), "fast", duration=1.0)
+    alone = response_of(replace(scene, supports=(Support("pier", 0.0),)), "fast", duration=1.0)
     assert alone.energy is None

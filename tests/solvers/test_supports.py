@@ -35,7 +35,7 @@ from eventpound.scene import (
 from eventpound.scene.check import check_scene
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.pi_terms import pi_terms
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Extremes, Recording, Task
 from tests.properties.transforms import scaled
@@ -614,12 +614,12 @@ def test_supports_close_in_only_where_they_approach(solver: str, reverse: bool) 
     )
     # The joints are closed, but nothing moves them yet.
     with pytest.raises(ComputationError, match="limit of 1 steps"):
-        simulate(scene, solver, 1e-6, duration=1.0, max_steps=1)
+        response_of(scene, solver, 1e-6, duration=1.0, max_steps=1)
     if not reverse:
-        assert simulate(scene, solver, 1e-6, duration=1.0).recording.success
+        assert response_of(scene, solver, 1e-6, duration=1.0).recording.success
         return
     with pytest.raises(ComputationError, match=r"t = 0\.5.*close in.*left, right"):
-        simulate(scene, solver, 1e-6, duration=1.0)
+        response_of(scene, solver, 1e-6, duration=1.0)
 
 
 def closed_beside(order: tuple[str, str], support: Support) -> Scene:
@@ -655,7 +655,7 @@ def test_a_joint_that_was_closed_too_far_is_refused() -> None:
     scene = closed_beside(("abutment", "deck"), Support("abutment", 0.4))
     late = replace(scene, bodies=(Body("deck", 1e5, -1e-9),))
     with pytest.raises(InputError, match="not penetrated at the start"):
-        simulate(late, "fast", duration=1.0)
+        response_of(late, "fast", duration=1.0)
 
 
 def test_a_rest_that_no_force_decides_does_not_come_again_for_ever() -> None:
@@ -671,7 +671,7 @@ def test_others_refuse(name: str) -> None:
         (replace(pounding_pair(), forces=(Force("a", 1.0),)), "forces"),
     ):
         with pytest.raises(InputError, match=f"{name}.*{word}"):
-            simulate(scene, name, settings={"time_step": 1e-3}, duration=1.0)
+            response_of(scene, name, settings={"time_step": 1e-3}, duration=1.0)
 
 
 def test_delays_in_one_call() -> None:
@@ -680,7 +680,7 @@ def test_delays_in_one_call() -> None:
     many = simulate_many(scene, {"support.pier.delay": delays}, rtol=1e-8)
     for i, delay in enumerate(delays):
         own = replace(scene, supports=(Support("pier", delay),))
-        alone = simulate(own, "fast", 1e-8)
+        alone = response_of(own, "fast", 1e-8)
         assert alone.task.end == many.t[i]
         assert np.array_equal(many.u[i], alone.recording.u)
     with pytest.raises(InputError, match=r"variant 1 .*delay: found -0.1"):
@@ -700,7 +700,7 @@ def test_a_run_lasts_until_the_last_motion_has_died_down() -> None:
 
 
 def test_columns() -> None:
-    response = simulate(pounding_on_two(), "fast", 1e-6, duration=2.0)
+    response = response_of(pounding_on_two(), "fast", 1e-6, duration=2.0)
     table = response.history
     assert list(table.columns)[-3:] == ["s.pier", "sv.pier", "sf.pier"]
     gap = 0.06 + table["s.pier"] - table["u.b"]
@@ -712,7 +712,7 @@ def test_columns() -> None:
 def test_forces_on_supports(solver: str) -> None:
     """What stands on pier and ground pushes them by what its mass resists."""
     scene = replace(pounding_on_two(), forces=(Force("b", 70.0),))
-    table = simulate(scene, solver, 1e-9, duration=4.0).rows(jumps=False)
+    table = response_of(scene, solver, 1e-9, duration=4.0).rows(jumps=False)
     inertia = sum(body.mass * table[f"a.{body.name}"] for body in scene.bodies)
     ground = table["force.frame a"] + 0.3 * table["v.a"] - table["lambda.left"]
     total = table["sf.pier"] + ground + inertia - 70.0
@@ -726,7 +726,7 @@ def test_forces_on_supports(solver: str) -> None:
 def test_summary_has_base_shears() -> None:
     """Of the ground and of each support apart, which the force on a support attains."""
     scene = replace(pounding_on_two(), contacts=pounding_on_two().contacts[:2])
-    response = simulate(scene, "fast", 1e-8, duration=4.0, output_step=0.001)
+    response = response_of(scene, "fast", 1e-8, duration=4.0, output_step=0.001)
     shear = summarise(response)["supports"]
     assert isinstance(shear, dict)
     table = response.history
@@ -736,7 +736,7 @@ def test_summary_has_base_shears() -> None:
     ground = response.summary["base_shear.abs_max"]
     assert ground != pytest.approx(shear["pier"]["abs_max_shear"], rel=0.1)
     still = replace(scene, supports=(Support("pier", 0.0),))
-    same = simulate(still, "fast", 1e-8, duration=4.0, output_step=0.001)
+    same = response_of(still, "fast", 1e-8, duration=4.0, output_step=0.001)
     on_pier = same.summary["supports.pier.max_shear"]
     assert on_pier == pytest.approx(same.history["sf.pier"].max(), rel=1e-4)
     # A support that moves with the ground is a part of it.

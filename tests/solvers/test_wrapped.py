@@ -17,7 +17,7 @@ from eventpound.mechanics.descriptor import Descriptor, descriptor_form
 from eventpound.mechanics.descriptor_motion import constraint_errors, onto_constraints
 from eventpound.mechanics.model import assemble
 from eventpound.scene import GROUND, Body, Contact, Linear, Scene, Spring
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import ida, solver_named
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.cvode import integrator
@@ -66,7 +66,7 @@ def test_both_are_chosen_there(out_of_reach) -> None:
 )
 def test_solved_problem(out_of_reach, name, rtol, accuracy, solver) -> None:
     problem = load()[name]
-    response = simulate(problem.scene, solver, rtol, duration=problem.end)
+    response = response_of(problem.scene, solver, rtol, duration=problem.end)
     assert compare(problem, response, accuracy).failures == []
 
 
@@ -156,10 +156,10 @@ import json
 from eventpound.solvers.sundials import library
 library.library = lambda: None
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 scene = Scene((Body("m", 1.0, 0.3),), (Spring("k", (GROUND, "m"), Linear(4.0)),), (),
               (Contact("wall", BARRIER, "m", 0.0, 0.5),))
-times = {s: [e.t for e in simulate(scene, s, 1e-8, duration=3.0).recording.events]
+times = {s: [e.t for e in response_of(scene, s, 1e-8, duration=3.0).recording.events]
          for s in ("cvode", "ida")}
 import sys
 loaded = [m for m in sys.modules if m.startswith("eventpound.solvers.sundials.")]

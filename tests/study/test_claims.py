@@ -8,7 +8,7 @@ import pytest
 from eventpound import simulate_many
 from eventpound.motion import Cosine
 from eventpound.scene.pi_structure import Kind, PiStructure
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.study.reading import load_study
 from tests.benchmarks.figure_agreement import CASES, LIMIT, difference
 from tests.study.test_figure_cases import NAMES
@@ -19,7 +19,7 @@ TERMS = {"uy": 0.2, "Q": 0.4, "delta": 0.5, "epsilon": 0.7}
 
 def peak(kind, terms):
     scene = PiStructure(kind, ("0", "barrier")).scene(Cosine(1.0, PERIOD), terms)
-    run = simulate(scene, "fast", 1e-12, duration=6 * PERIOD)
+    run = response_of(scene, "fast", 1e-12, duration=6 * PERIOD)
     return float(run.peaks.loc["0", "abs_max"])
 
 
@@ -39,7 +39,7 @@ def test_a_symmetric_triplet_has_no_direction():
     peaks = []
     for reverse in (False, True):
         scene = structure.scene(Cosine(1.0, PERIOD, reverse), terms)
-        peaks.append(float(simulate(scene, "fast", 1e-10).peaks.loc["0", "abs_max"]))
+        peaks.append(float(response_of(scene, "fast", 1e-10).peaks.loc["0", "abs_max"]))
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-12)
 
 

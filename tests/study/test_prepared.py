@@ -15,7 +15,7 @@ from eventpound.motion import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
 from eventpound.scene import Body, Contact, Dashpot, Linear, Series, Spring
-from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.parameters import number_places, with_values
 from tests.benchmarks import yardsticks
 from tests.solvers.scenes import pounding_pair
 
@@ -49,7 +49,7 @@ NUMBERS: list[tuple[Scene, str, dict[str, float]]] = [
 
 
 def _with(scene: Scene, numbers: Mapping[str, float]) -> Scene:
-    places = places_of(scene)
+    places = number_places(scene)
     return with_values(scene, {places[key]: value for key, value in numbers.items()})
 
 

@@ -11,7 +11,7 @@ from eventpound.errors import InputError
 from eventpound.report.symbols import axis_label
 from eventpound.study.reading import load_study
 from eventpound.study.table import compute, header
-from eventpound.study.variants import rows_of
+from eventpound.study.variants import rows_of_base
 from tests.study.conftest import ELASTOPLASTIC
 
 PAIR = """
@@ -49,7 +49,7 @@ def test_rows_are_a_product_the_last_axis_fastest(make_study):
     study = make_study().study
     assert study.columns == ("excitation.reverse", "pi.delta", "pi.Q")
     assert (study.size, len(study.bases)) == (160, 2)
-    rows = rows_of(study.bases[1], 39, 42)
+    rows = rows_of_base(study.bases[1], 39, 42)
     assert rows.base.case.scene.motion.reverse
     assert rows.values["pi.delta"].tolist() == [0.1, 0.5, 0.5]
     assert rows.values["pi.Q"] == pytest.approx([1.6, 0.1, 0.1 + 1.5 / 39], rel=1e-15)
@@ -94,7 +94,7 @@ zip = "motion"
     )
     study = make_study(text).study
     assert study.size == 320
-    rows = rows_of(study.bases[0], 0, 2)
+    rows = rows_of_base(study.bases[0], 0, 2)
     a_g, omega_g = np.array([0.2 * 9.80665, 1.0]), 2 * np.pi / np.array([0.05, 2.0])
     assert rows.numbers["excitation.period"].tolist() == [0.05, 2.0]
     assert rows.numbers["spring.0.strength"] == pytest.approx(0.1 * a_g, rel=1e-14)
@@ -124,7 +124,7 @@ spacing = "logarithmic"
     )
     study = make_study(text).study
     assert study.quantities == ("pi_um", "amplification", "impacts", "resting_time")
-    rows = rows_of(study.bases[0], 0, 12)
+    rows = rows_of_base(study.bases[0], 0, 12)
     assert rows.numbers["contact.joint.gap"].tolist() == [0.001] * 6 + [0.02] * 6
     own = study.bases[0].case.scene.springs[0].law.stiffness
     expected = own / np.tile(np.repeat([0.5, 2.0], 3), 2) ** 2

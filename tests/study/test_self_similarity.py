@@ -7,7 +7,7 @@ import pytest
 
 from eventpound.motion import Cosine, Ricker, Sine
 from eventpound.scene.pi_structure import Kind, PiStructure
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 
 ROWS = {
     Kind.ELASTIC: ("0", "barrier"),
@@ -36,6 +36,6 @@ def test_ten_motions_one_response(seed):
     for a_g, omega_g in 10.0 ** rng.uniform(-2.0, 2.0, (10, 2)):
         period = 2.0 * math.pi / omega_g
         scene = structure.scene(motion(float(a_g), period), terms, float(rng.uniform(0.1, 1e6)))
-        run = simulate(scene, "fast", 1e-10, duration=PERIODS * period)
+        run = response_of(scene, "fast", 1e-10, duration=PERIODS * period)
         found.append(float(run.peaks.loc["0", "abs_max"]) / scene.motion.scales().length)
     assert max(found) - min(found) <= 1e-9 * max(found)

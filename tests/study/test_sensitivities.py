@@ -29,7 +29,7 @@ from eventpound import (
 from eventpound.basics.input_files import read_columns
 from eventpound.cli import main
 from eventpound.report.tornado import tornado_figure
-from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.parameters import number_places, with_values
 from tests.study.saltation import Array, LinearSystem, final_sensitivity
 
 BRIDGE = Path(__file__).parents[2] / "cases" / "bridge-el-centro"
@@ -135,7 +135,7 @@ def beside(scene: Scene, system: LinearSystem, p: Array, keys: list[str]) -> Non
 def test_through_the_impacts_of_a_bridge_they_are_those_of_another_solver(key: str) -> None:
     case, of = load_case(BRIDGE), "peaks.segment2.abs_max"
     row = sensitivities(case, of=[of], to=[key]).iloc[0]
-    place, step = places_of(case.scene)[key], 1e-5 * row["at"]
+    place, step = number_places(case.scene)[key], 1e-5 * row["at"]
 
     def peak(value: float) -> float:
         varied = replace(case, scene=with_values(case.scene, {place: value}))

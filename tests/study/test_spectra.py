@@ -7,7 +7,7 @@ import pytest
 
 from eventpound.cli import main
 from eventpound.motion.base import Scales
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.study.engines.local import Batch
 from eventpound.study.running import run_study
 from eventpound.study.spectra import dimensional_name, dimensional_spectrum
@@ -106,5 +106,5 @@ def test_command(make_study, capsys):
 def test_its_first_point_is_a_run(table_of, make_study):
     table = table_of(BILINEAR.format(excitation=""), "unit")
     base = make_study(BILINEAR.format(excitation=""), "unit").study.bases[0]
-    run = simulate(base.case, "fast", 1e-9)
+    run = response_of(base.case, "fast", 1e-9)
     assert table["pi_um"][0] == float(run.peaks.loc["0", "abs_max"])

@@ -22,7 +22,7 @@ from eventpound.scene import (
     Spring,
     Support,
 )
-from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.parameters import number_places, with_values
 from eventpound.study.table import read_table
 from tests.motion.readers.writers import at2, motion
 from tests.study.conftest import ELASTOPLASTIC
@@ -47,7 +47,7 @@ def test_rows_are_the_runs_that_simulate_makes(scene: Scene) -> None:
     found = Study(scene, AXES, quantities=QUANTITIES).run()
     assert list(found.table.columns) == [*AXES, *QUANTITIES, "success", "message"]
     assert len(found) == 6
-    places = places_of(scene)
+    places = number_places(scene)
     for i, (gap, strength) in enumerate(product(GAPS, (50.0, 100.0, 200.0))):
         row = found.table.iloc[i]
         assert row["contact.joint.gap"] == gap

@@ -7,10 +7,10 @@ import pytest
 
 from eventpound.errors import ComputationError
 from eventpound.scene.parameters import with_values
-from eventpound.simulation import ReadyScene, simulate
+from eventpound.simulation import ReadyScene, response_of
 from eventpound.study.plan import Chunk
 from eventpound.study.table import TABLE, compute, header, read_table
-from eventpound.study.variants import rows_of, scene_of_row
+from eventpound.study.variants import rows_of_base, scene_of_row
 from tests.study.conftest import ELASTOPLASTIC
 
 
@@ -34,11 +34,11 @@ def test_rows_are_the_runs_that_simulate_makes(make_study, table):
     assert (found.message == "").all()
     for i in (0, 57, 80, 159):
         base = study.bases[i // 80]
-        rows = rows_of(base, i % 80, i % 80 + 1)
+        rows = rows_of_base(base, i % 80, i % 80 + 1)
         scene = scene_of_row(rows, 0)
         duration = float(rows.lengths[0])
-        run = simulate(scene, "fast", study.rtol, duration=duration)
-        free = simulate(replace(scene, contacts=()), "fast", study.rtol, duration=duration)
+        run = response_of(scene, "fast", study.rtol, duration=duration)
+        free = response_of(replace(scene, contacts=()), "fast", study.rtol, duration=duration)
         peaks = [float(r.peaks.loc["0", "abs_max"]) for r in (run, free)]
         row, scales = found.iloc[i], scene.motion.scales()
         assert row["pi_um"] == peaks[0] / scales.length

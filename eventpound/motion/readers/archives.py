@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from eventpound.motion.readers.base import Source
 from eventpound.motion.readers.block import StatedCount, read_block
-from eventpound.motion.readers.extents import Extent, groups_of, word_pattern
+from eventpound.motion.readers.extents import Extent, named_groups, word_pattern
 from eventpound.motion.readers.labelled import Dialect, Labelled
 from eventpound.motion.readers.numbers import NUMBER, to_count
 
@@ -120,7 +120,9 @@ def _cosmos_extent(source: Source, start: int, line: int) -> Extent | None:
         return None
     if numbers["units"].casefold().startswith("count"):
         raise _expected(source, line, "accelerations and not counts, as its V1 and V2 have, are")
-    known = groups_of(numbers, line) | {"step": (_cosmos_step(source, line, reals, numbers), line)}
+    known = named_groups(numbers, line) | {
+        "step": (_cosmos_step(source, line, reals, numbers), line)
+    }
     if len(integers) > _AZIMUTH_AT and integers[_AZIMUTH_AT] != _UNKNOWN:
         known["azimuth"] = (f"{integers[_AZIMUTH_AT]:g}", line)
     return Extent(start, last, line, known)

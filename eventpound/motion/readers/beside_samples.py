@@ -72,7 +72,7 @@ def without_head(
     return rows, Header(), ()
 
 
-def body_of(rows: NumberRows) -> NumberRows:
+def without_edges(rows: NumberRows) -> NumberRows:
     """Rows without those before them that are shorter, and without their numbers at either end."""
     for _ in range(_LONGEST):
         if _stands_apart(rows) or (rows.width == 1 and len(rows.rows) > 2):

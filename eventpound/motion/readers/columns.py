@@ -23,7 +23,12 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.motion.parametric import require_positive
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
-from eventpound.motion.readers.beside_samples import body_of, counts, without_counts, without_head
+from eventpound.motion.readers.beside_samples import (
+    counts,
+    without_counts,
+    without_edges,
+    without_head,
+)
 from eventpound.motion.readers.block import FOLLOWING_WORD
 from eventpound.motion.readers.header import Header, ask_for_missing, record_data
 from eventpound.motion.readers.numbers import to_float
@@ -91,7 +96,7 @@ class ColumnTable:
 _OTHERS = (Content.VELOCITY, Content.DISPLACEMENT, Content.FORCE)
 
 
-def table_of(source: Source, given: Given) -> ColumnTable:
+def numeric_rows(source: Source, given: Given) -> ColumnTable:
     """What stands in a file, as far as its numbers can be read.
 
     Raises
@@ -149,7 +154,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         acceleration, or several columns of which none is a time, unless one is asked for.
     """
     refuse_decimal_commas(source)
-    table = table_of(source, given)
+    table = numeric_rows(source, given)
     rows, components = table.rows, table.components
     if len(components) > 1 and rows.width > 2 and not table.times and given.component is None:
         raise UnstatedError(
@@ -187,7 +192,7 @@ COLUMNS = Reader("columns", _detect, _channels)
 
 def _detect_along_lines(source: Source) -> bool:
     """Whether there are lines of three numbers and more, along which a series runs."""
-    return numbers_begin(source) is not None and runs_along_lines(body_of(read_rows(source)))
+    return numbers_begin(source) is not None and runs_along_lines(without_edges(read_rows(source)))
 
 
 def _channels_along_lines(source: Source, given: Given) -> list[Channel]:

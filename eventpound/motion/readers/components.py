@@ -11,7 +11,9 @@ from eventpound.motion.readers.numbers import to_count
 _PLACE = re.compile(r"#([1-9]\d*)")
 
 
-def chosen(source: Source, channels: Sequence[Channel], component: str | None) -> Channel:
+def component_asked_for(
+    source: Source, channels: Sequence[Channel], component: str | None
+) -> Channel:
     """The component asked for; it must be told where there are several.
 
     Parameters

@@ -10,8 +10,8 @@ from eventpound.motion.readers.base import Given, Source
 from eventpound.motion.readers.block import StatedCount, after_last, read_block
 from eventpound.motion.readers.extents import (
     Extent,
-    groups_of,
     line_like,
+    named_groups,
     of_length,
     until_like,
     while_like,
@@ -55,7 +55,7 @@ def _at2_extent(source: Source) -> list[Extent]:
     end, match = found
     dated = enumerate(source.lines[: end - 1], start=1)
     number, line = next(((i, x) for i, x in dated if _DATE.search(x)), (0, ""))
-    return [Extent(1, end - 1, end, groups_of(match, end) | _at2_identity(line, number))]
+    return [Extent(1, end - 1, end, named_groups(match, end) | _at2_identity(line, number))]
 
 
 def _at2_identity(line: str, number: int) -> dict[str, tuple[str, int]]:
@@ -279,7 +279,7 @@ def _two_lines(source: Source) -> list[Extent]:
         raise source.error(
             1, "not an ITSAK header; expected 'NAME STATION 5702 Values', then '(8F15.0) 0.005'"
         )
-    return [Extent(1, 2, 2, groups_of(first, 1) | groups_of(second, 2))]
+    return [Extent(1, 2, 2, named_groups(first, 1) | named_groups(second, 2))]
 
 
 def _filled_numbers(dialect: Dialect, head: Labelled, stated: StatedCount, given: Given) -> Trace:

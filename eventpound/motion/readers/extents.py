@@ -73,7 +73,7 @@ def line_like(source: Source, pattern: str, within: int) -> int:
     return max((i for i, line in numbered if like.match(line)), default=0)
 
 
-def groups_of(match: re.Match[str], line: int) -> dict[str, tuple[str, int]]:
+def named_groups(match: re.Match[str], line: int) -> dict[str, tuple[str, int]]:
     """Values of a match in one line by the names of its groups, blanks for underscores."""
     found = match.groupdict().items()
     return {name.replace("_", " "): (text.strip(), line) for name, text in found if text}

@@ -9,7 +9,7 @@ from itertools import islice, takewhile
 
 from eventpound.motion.readers.base import Given, Source
 from eventpound.motion.readers.block import StatedCount, numbers_of_block
-from eventpound.motion.readers.extents import Extent, groups_of, word_pattern
+from eventpound.motion.readers.extents import Extent, named_groups, word_pattern
 from eventpound.motion.readers.header import Header
 from eventpound.motion.readers.labelled import Dialect, Labelled, Trace, refuse_other_times
 from eventpound.motion.readers.numbers import (
@@ -41,7 +41,7 @@ def _timeseries_extents(source: Source) -> Iterator[Extent]:
             if name in names:
                 raise source.error(number, f"channel {name} begins again, after a gap")
             names.add(name)
-            known = groups_of(found, number)
+            known = named_groups(found, number)
             if "units" in known and known["units"][0].casefold() in ("count", "counts"):
                 del known["units"]
             yield Extent(number, number, number, known)

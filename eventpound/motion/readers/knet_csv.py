@@ -27,7 +27,7 @@ from dataclasses import replace
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import StatedCount, miscounted
-from eventpound.motion.readers.columns import read_column, table_of
+from eventpound.motion.readers.columns import numeric_rows, read_column
 from eventpound.motion.readers.dialects import KNET
 from eventpound.motion.readers.header import Header
 from eventpound.motion.readers.numbers import split_token, to_float
@@ -76,7 +76,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     count = round(rate * number(_DURATION))
     if not (rate > 0.0 and count > 0):
         raise source.error(line, f"{rate:g} Hz for {number(_DURATION):g} s is no number of samples")
-    table = table_of(source, given)
+    table = numeric_rows(source, given)
     rows = table.rows
     if rows.bad:
         raise InputError(source.unreadable(rows.bad))

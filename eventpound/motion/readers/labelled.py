@@ -18,7 +18,7 @@ from typing import NamedTuple
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import SAME_STEP, Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import StatedCount, miscounted, numbers_of_block
-from eventpound.motion.readers.extents import Extent, Extents, groups_of, word_pattern
+from eventpound.motion.readers.extents import Extent, Extents, named_groups, word_pattern
 from eventpound.motion.readers.header import Header, Peak, record_data
 from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 from eventpound.motion.readers.rows import NumberRows, read_rows
@@ -220,7 +220,7 @@ class Dialect:
         joined = "\n".join(text) if self.patterns else ""
         for pattern in self.patterns:
             if match := word_pattern(pattern).search(joined):
-                for label, (value, _) in groups_of(match, 0).items():
+                for label, (value, _) in named_groups(match, 0).items():
                     above = joined.count("\n", 0, match.start(label.replace(" ", "_")))
                     found.setdefault(label.casefold(), (value, extent.start + above))
         return Labelled(source, extent, found)

@@ -21,7 +21,7 @@ from eventpound.motion.readers.base import (
     UnstatedError,
     load,
 )
-from eventpound.motion.readers.components import chosen, component_names
+from eventpound.motion.readers.components import component_asked_for, component_names
 from eventpound.motion.readers.header import unit_factor
 from eventpound.motion.readers.registry import reader_of
 from eventpound.units import Dimension
@@ -80,7 +80,7 @@ def read_record(
     given = Given(units, step, component, None if response is None else str(response))
 
     def read(source: Source, known: Given) -> RecordData:
-        return chosen(source, _channels(source, format, known), known.component).read()
+        return component_asked_for(source, _channels(source, format, known), known.component).read()
 
     return _noting_others(_answering(load(path), given, as_needed, read), given)
 

@@ -18,7 +18,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import Given, Source, UnstatedError
 from eventpound.motion.readers.block import END_OF_CHANNEL, StatedCount, numbers_of_block
-from eventpound.motion.readers.extents import Extent, Extents, groups_of, line_like, word_pattern
+from eventpound.motion.readers.extents import Extent, Extents, line_like, named_groups, word_pattern
 from eventpound.motion.readers.labelled import Dialect, Labelled, Trace
 from eventpound.motion.readers.numbers import NUMBER, to_float
 from eventpound.motion.readers.time_column import even_step
@@ -212,7 +212,7 @@ def _csmip_extents(source: Source) -> Iterator[Extent]:
             numbers = next(filter(None, matches), None)
         if numbers is not None:
             found = True
-            yield Extent(start, number, number, groups_of(numbers, number))
+            yield Extent(start, number, number, named_groups(numbers, number))
         if numbers or line.startswith(END_OF_CHANNEL):
             start = number + 1
     if not found:

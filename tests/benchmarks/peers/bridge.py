@@ -20,7 +20,7 @@ from eventpound import ComputationError, load_case
 from eventpound.case.case import Case
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import ContactLaw
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers.opensees import PACKAGE
 
 CASE = Path(__file__).parents[3] / "cases" / "bridge-el-centro"
@@ -40,7 +40,7 @@ def peaks(case: Case, solver: str, **options: Any) -> tuple[Floats | None, float
     """Peaks of the bodies (m), None where the run fails, and its processor time (s)."""
     began = time.process_time()
     try:
-        found = simulate(case, solver, **{"rtol": RTOL} | options).recording.displacement
+        found = response_of(case, solver, **{"rtol": RTOL} | options).recording.displacement
     except ComputationError:
         return None, time.process_time() - began
     return np.maximum(found.maximum, -found.minimum), time.process_time() - began

@@ -25,8 +25,8 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.scene.contact_law import BY_WORD
-from eventpound.scene.parameters import places_of, with_values
-from eventpound.simulation import simulate
+from eventpound.scene.parameters import number_places, with_values
+from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.sundials import library
@@ -177,8 +177,8 @@ def test_many_variants_are_the_same_runs() -> None:
     scene, stiffness = pair("hertz-damp"), [2e4, 8e4]
     many = simulate_many(scene, {"contact.joint.stiffness": stiffness}, rtol=1e-8, duration=1.5)
     for i, k in enumerate(stiffness):
-        place = places_of(scene)["contact.joint.stiffness"]
-        one = simulate(with_values(scene, {place: k}), "cvode", 1e-8, duration=1.5)
+        place = number_places(scene)["contact.joint.stiffness"]
+        one = response_of(with_values(scene, {place: k}), "cvode", 1e-8, duration=1.5)
         np.testing.assert_array_equal(many.u[i], one.recording.u)
     assert many.u[0, 0] != many.u[1, 0]
 

@@ -14,7 +14,7 @@ from eventpound.motion.pulses import Sine
 from eventpound.motion.record import Record
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.scene.contact_law import Element
-from eventpound.simulation import simulate
+from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 
@@ -102,7 +102,7 @@ period = 0.5
 def test_units_in_a_case(tmp_path):
     case = _case(tmp_path, 'name = "penalty"\ncontact_steps = 20\ntime_step = "0.5 ms"\n')
     assert case.solver.settings == {"contact_steps": 20, "time_step": 5e-4}
-    assert simulate(case).impacts > 0
+    assert response_of(case).impacts > 0
 
 
 def test_hertz_stiffness_has_its_own_unit(tmp_path):
