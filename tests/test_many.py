@@ -370,7 +370,7 @@ def test_a_contact_at_a_support_is_checked_in_every_variant(key, fine, wrong):
         axes = given_axes("parameters", {key: values})
         base = base_of(SUPPORTED, axes, (), SolverOptions("fast", 1e-6))
         rows = rows_with(base, axis_values(base, 0, 2), range(2))
-        sweep.variants_of(rows, sweep.Wanted("fast", 1e-6))
+        sweep.variants_of(rows, sweep.WantedRuns("fast", 1e-6))
 
     checked(fine, fine)
     with pytest.raises(InputError, match=r"variant 1 .*gap: found 0?-?[.\d]+; .* not penetrated"):

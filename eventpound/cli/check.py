@@ -36,9 +36,9 @@ def _check(options: Options) -> int:
         return _list_quantities(options.case)
     if options.case is None:
         options.parser.error("the following arguments are required: CASE")
-    from eventpound.study.kinds import Kind, kind_of
+    from eventpound.study.kinds import Holds, kind_of
 
-    if kind_of(options.case)[0] is Kind.STUDY:
+    if kind_of(options.case)[0] is Holds.STUDY:
         options.refuse(["--json"], "is for the case of a single run or of a suite, not of a study")
         return _check_study(arguments.loaded_study(options.case))
     case = arguments.loaded_case(options.case)
@@ -105,9 +105,9 @@ def _list_quantities(path: Path | None) -> int:
             print(f"{name:<34} {unit:<6} {text}")
         print(f"* stands for {', '.join(SIX)}")
         return 0
-    from eventpound.study.kinds import Kind, kind_of
+    from eventpound.study.kinds import Holds, kind_of
 
-    if kind_of(path)[0] is Kind.STUDY:
+    if kind_of(path)[0] is Holds.STUDY:
         from eventpound.study.quantities import quantities_of
 
         scenes = [base.case.scene for base in arguments.loaded_study(path).study.bases]

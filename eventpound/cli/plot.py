@@ -46,11 +46,11 @@ def add_plot(commands: Commands) -> None:
 
 def _plot(options: Options) -> int:
     from eventpound.report.run_figures import plot
-    from eventpound.study.kinds import Kind, kind_of_results
+    from eventpound.study.kinds import Holds, kind_of_results
 
     out = options.results
     kind, document = kind_of_results(out, options.case)
-    if kind is Kind.FOLDER:
+    if kind is Holds.FOLDER:
         options.refuse_others("--out", "is for a single case, and this is a folder of cases")
         return plot_folder(options.case, options.out or Path("figures"))
     paper = options.paper()
@@ -58,7 +58,7 @@ def _plot(options: Options) -> int:
         options.refuse_others("--model --out" + arguments.PAPER, "is not for --model")
         _plot_model(options.case, out, paper)
         return 0
-    if kind is Kind.RUN:
+    if kind is Holds.RUN:
         if options.zoom:
             options.refuse_others("--zoom --out", "is not for --zoom")
             arguments.write(out, _zoom(out))
@@ -68,7 +68,7 @@ def _plot(options: Options) -> int:
     else:
         why = f"is for a single run, and these are the results of a {kind}"
         options.refuse_others("--out" + arguments.PAPER, why)
-        draw = _plot_suite if kind is Kind.SUITE else _plot_study
+        draw = _plot_suite if kind is Holds.SUITE else _plot_study
         drawn = draw(options, out, paper)
     for path in drawn:
         print(path)
@@ -108,10 +108,10 @@ def _plot_model(directory: Path, out: Path, paper: Paper) -> None:
     """Draw the bodies of a case and what joins them, of a study those of its first run."""
     from eventpound.report.model_figure import model_figure
     from eventpound.report.style import on_paper
-    from eventpound.study.kinds import Kind, kind_of
+    from eventpound.study.kinds import Holds, kind_of
     from eventpound.study.reading import load_study
 
-    if kind_of(directory)[0] is Kind.STUDY:
+    if kind_of(directory)[0] is Holds.STUDY:
         case = load_study(directory).study.bases[0].case
     else:
         case = arguments.loaded_case(directory)

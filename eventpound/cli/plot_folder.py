@@ -42,10 +42,10 @@ def plot_folder(folder: Path, out: Path) -> int:
 
 def _maker(directory: Path) -> Callable[[Path, Path], GalleryEntry] | None:
     """What makes the figures of a case; None where it has none."""
-    from eventpound.study.kinds import Kind, kind_of
+    from eventpound.study.kinds import Holds, kind_of
 
     kind, document = kind_of(directory)
-    if kind is Kind.STUDY:
+    if kind is Holds.STUDY:
         return _study_entry if "figure" in document or "intensity" in document else None
     return _suite_entry if "figure" in document else None
 

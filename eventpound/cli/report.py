@@ -57,9 +57,9 @@ def add_report(commands: Commands) -> None:
 
 
 def _report(options: Options) -> int:
-    from eventpound.study.kinds import Kind, kind_of
+    from eventpound.study.kinds import Holds, kind_of
 
-    if kind_of(options.case)[0] is not Kind.FOLDER:
+    if kind_of(options.case)[0] is not Holds.FOLDER:
         _one(options, options.out or options.results / _FOLDER)
         return 0
     options.refuse_others("--out", "is for a single case, and this is a folder of cases")
@@ -81,9 +81,9 @@ def _one(options: Options, out: Path) -> str:
     """Make the report of one case; its title."""
     from eventpound.results.tables import table_csv
     from eventpound.study.design import DESIGN_TABLE
-    from eventpound.study.kinds import Kind, kind_of
+    from eventpound.study.kinds import Holds, kind_of
 
-    if kind_of(options.case)[0] is Kind.STUDY:
+    if kind_of(options.case)[0] is Holds.STUDY:
         options.refuse(["--suite"], "is for a case without a [study]")
         study = arguments.loaded_study(options.case)
         title, table, pages = study.study.title, *_of_study(study, options, out)

@@ -38,9 +38,9 @@ def add_sensitivities(commands: Commands) -> None:
 
 def _scene_of(path: Path) -> Case:
     """The case as it is, without what its [study] varies."""
-    from eventpound.study.kinds import Kind, kind_of
+    from eventpound.study.kinds import Holds, kind_of
 
-    if kind_of(path)[0] is not Kind.STUDY:
+    if kind_of(path)[0] is not Holds.STUDY:
         return arguments.loaded_case(path)
     bases = arguments.loaded_study(path).study.bases
     if len(bases) > 1 or bases[0].records:

@@ -13,7 +13,7 @@ from eventpound.errors import InputError, told_of
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import FROM_FURTHER, FROM_ONE, Quantity, TakenFrom, parts_of
 from eventpound.quantities.listed import LISTED
-from eventpound.quantities.owners import owners_of, told
+from eventpound.quantities.owners import is_told, owners_of
 from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 
@@ -64,7 +64,7 @@ def all_of(scene: Scene, listed: Sequence[Quantity] = LISTED) -> Iterator[Named]
         if kind not in names:
             names[kind] = owners_of(scene, kind)
         for i, owner in enumerate(names[kind]):
-            if told(scene, kind, i) and quantity.only(scene, i):
+            if is_told(scene, kind, i) and quantity.only(scene, i):
                 yield Named(quantity.name(owner), quantity, i)
 
 

@@ -26,7 +26,7 @@ def owners_of(scene: Scene, kind: str) -> Sequence[str]:
     return [group[0] for group in structures_of(scene)] if kind == "structure" else [""]
 
 
-def told(scene: Scene, kind: str, i: int) -> bool:
+def is_told(scene: Scene, kind: str, i: int) -> bool:
     """Whether tables tell of it: a coupling of a frame means nothing by itself."""
     return kind != "spring" or scene.springs[i].frame is None
 

@@ -14,7 +14,7 @@ CASES = f"*/{CASE_FILE}"
 """Pattern of the cases of a folder."""
 
 
-class Kind(StrEnum):
+class Holds(StrEnum):
     """What a case is, or its results are of."""
 
     RUN = "run"
@@ -29,7 +29,7 @@ def has_records(document: Mapping[str, object]) -> bool:
     return isinstance(excitation, dict) and bool({"suite", "synthetic"} & set(excitation))
 
 
-def kind_of(path: Path) -> tuple[Kind, Mapping[str, object]]:
+def kind_of(path: Path) -> tuple[Holds, Mapping[str, object]]:
     """What a directory holds, and the tables of its case.
 
     Raises
@@ -38,22 +38,22 @@ def kind_of(path: Path) -> tuple[Kind, Mapping[str, object]]:
         Where there is neither a case nor a folder of cases.
     """
     if not (path / CASE_FILE).is_file() and any(path.glob(CASES)):
-        return Kind.FOLDER, {}
+        return Holds.FOLDER, {}
     document, _, _ = read_document(path)
     if "study" in document:
-        return Kind.STUDY, document
-    return Kind.SUITE if has_records(document) else Kind.RUN, document
+        return Holds.STUDY, document
+    return Holds.SUITE if has_records(document) else Holds.RUN, document
 
 
-def kind_of_results(out: Path, path: Path) -> tuple[Kind, Mapping[str, object]]:
+def kind_of_results(out: Path, path: Path) -> tuple[Holds, Mapping[str, object]]:
     """What results are of, by their table, else by the case, which need not be there any more."""
     try:
         kind, document = kind_of(path)
     except InputError:
-        kind, document = Kind.RUN, {}
-    if kind is not Kind.FOLDER and (out / SUITE_TABLE).is_file():
-        return Kind.SUITE, document
-    if kind is not Kind.FOLDER and (out / TABLE).is_file():
-        return Kind.STUDY, document
+        kind, document = Holds.RUN, {}
+    if kind is not Holds.FOLDER and (out / SUITE_TABLE).is_file():
+        return Holds.SUITE, document
+    if kind is not Holds.FOLDER and (out / TABLE).is_file():
+        return Holds.STUDY, document
     # A suite without its table is drawn as the run whose results are there.
-    return (Kind.RUN if kind is Kind.SUITE else kind), document
+    return (Holds.RUN if kind is Holds.SUITE else kind), document

@@ -21,7 +21,7 @@ from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
 from eventpound.study.plan import base_of, solver_of
 from eventpound.study.runs import results_of
-from eventpound.study.sweep import Wanted, cores
+from eventpound.study.sweep import WantedRuns, cores
 from eventpound.study.variants import axis_values, rows_with, unknown_axes
 from eventpound.units import Dimension
 
@@ -104,7 +104,7 @@ def simulate_many(
         raise InputError(unknown)
     stated = base.case.run.stated
     names = list(dict.fromkeys([*chosen(case.scene, quantities, stated), *asked]))
-    wanted = Wanted(solver.name, solver.rtol, names, accelerations)
+    wanted = WantedRuns(solver.name, solver.rtol, names, accelerations)
     values = axis_values(base, 0, base.size)
     rows = replace(rows_with(base, values, range(base.size)), lengths=lengths)
     many = results_of(rows, wanted, workers or cores(), progress).many

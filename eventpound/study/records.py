@@ -22,7 +22,7 @@ from eventpound.scene.plausibility import motion_doubts
 from eventpound.solvers.base import Extremes
 from eventpound.study.plan import OfSuite
 from eventpound.study.runs import Results
-from eventpound.study.sweep import Sweep, Wanted
+from eventpound.study.sweep import Sweep, WantedRuns
 
 FILE, FAILED = "file", "failed"
 UNLIKELY = "hardly meant: "
@@ -104,7 +104,7 @@ def peak_errors(part: Results, solver: str, rtol: float) -> Floats:
 
     A run whose finer one failed is marked as failed.
     """
-    better = Sweep(part.rows, Wanted(solver, rtol_of_judge(rtol, solver, itself=True))).run()
+    better = Sweep(part.rows, WantedRuns(solver, rtol_of_judge(rtol, solver, itself=True))).run()
     many = part.many
     for i in np.flatnonzero(many.success & ~better.success).tolist():
         many.success[i], many.message[i], many.t[i] = False, better.message[i], better.t[i]

@@ -27,7 +27,7 @@ from eventpound.quantities.lookup import (
 from eventpound.scene.parameters import number_places, value_at
 from eventpound.scene.scene import Scene
 from eventpound.study.plan import Base
-from eventpound.study.sweep import Sweep, Wanted
+from eventpound.study.sweep import Sweep, WantedRuns
 from eventpound.study.variants import Rows, rows_of_base
 
 
@@ -82,7 +82,9 @@ class Refused:
     error: InputError
 
 
-def runs_in_parts(base: Base, low: int, high: int, wanted: Wanted) -> Iterator[Results | Refused]:
+def runs_in_parts(
+    base: Base, low: int, high: int, wanted: WantedRuns
+) -> Iterator[Results | Refused]:
     """Run the rows `low` to `high` of a scene, and give them in order.
 
     `keep` of what is wanted is given numbers of rows of the scene.
@@ -105,7 +107,7 @@ def runs_in_parts(base: Base, low: int, high: int, wanted: Wanted) -> Iterator[R
     yield from _halved(base, begun, high, wanted)
 
 
-def _halved(base: Base, low: int, high: int, wanted: Wanted) -> Iterator[Results | Refused]:
+def _halved(base: Base, low: int, high: int, wanted: WantedRuns) -> Iterator[Results | Refused]:
     """Run rows; where a scene cannot be run at all, halve until it stands alone."""
     if low == high:
         return
@@ -128,7 +130,7 @@ def _halved(base: Base, low: int, high: int, wanted: Wanted) -> Iterator[Results
 
 def results_of(
     rows: Rows,
-    wanted: Wanted,
+    wanted: WantedRuns,
     workers: int = 1,
     progress: Counted | None = None,
 ) -> Results:
@@ -138,7 +140,7 @@ def results_of(
     ----------
     rows : Rows
         What is run.
-    wanted : Wanted
+    wanted : WantedRuns
         What is kept.
     workers : int
         Threads of the fast solver.
@@ -155,7 +157,7 @@ def results_of(
     own, rows = sweep.run(workers, progress), sweep.rows
 
     def instead(
-        other: Scene, kept: Wanted, struck: Collection[str] = ()
+        other: Scene, kept: WantedRuns, struck: Collection[str] = ()
     ) -> tuple[BatchResponse, Ints]:
         """Runs of another scene; those that differ in contacts that it has not are one run."""
         if rows.case.run.in_equilibrium:
@@ -181,7 +183,7 @@ def results_of(
         struck = {c.name for i, c in enumerate(scene.contacts) if i not in widened}
 
         def run(other: Scene) -> BatchResponse:
-            many, rows_of_many = instead(other, Wanted(wanted.solver, wanted.rtol), struck)
+            many, rows_of_many = instead(other, WantedRuns(wanted.solver, wanted.rtol), struck)
             which[:] = [rows_of_many]
             return many
 
@@ -214,7 +216,7 @@ def _without_contacts(rows: Rows, other: Scene, struck: Collection[str]) -> tupl
     return fewer, which
 
 
-def _of_sweep(scene: Scene, wanted: Wanted, prefix: str) -> Wanted:
+def _of_sweep(scene: Scene, wanted: WantedRuns, prefix: str) -> WantedRuns:
     """What a sweep has to keep: quantities of a prefix, which others are computed from."""
     named = [
         name.removeprefix(prefix)

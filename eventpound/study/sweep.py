@@ -54,7 +54,7 @@ CHUNKS_A_WORKER = 8
 
 
 @dataclass(frozen=True)
-class Wanted:
+class WantedRuns:
     """What is kept of each run, and how it is computed.
 
     Parameters
@@ -88,7 +88,7 @@ class Sweep:
     ----------
     rows : Rows
         What is run.
-    wanted : Wanted
+    wanted : WantedRuns
         What is kept of it.
 
     Raises
@@ -97,7 +97,7 @@ class Sweep:
         Where a row or an option cannot be run; then nothing is run.
     """
 
-    def __init__(self, rows: Rows, wanted: Wanted) -> None:
+    def __init__(self, rows: Rows, wanted: WantedRuns) -> None:
         self.rows, self.variants = variants_of(rows, wanted)
         scene = rows.scene
         one_by_one = [q for q in wanted.quantities if needs_one(scene, q, rows.numbers)]
@@ -235,7 +235,7 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-def variants_of(rows: Rows, wanted: Wanted) -> tuple[Rows, Variants]:
+def variants_of(rows: Rows, wanted: WantedRuns) -> tuple[Rows, Variants]:
     """Rows with all that their motions decide, ready to run, every one of them checked.
 
     Raises
@@ -287,7 +287,7 @@ def _motions_of(rows: Rows, shaking: Mapping[Place, Floats]) -> tuple[list[Groun
     return motions, motion_of
 
 
-def _task(case: Case, wanted: Wanted, length: float) -> Task:
+def _task(case: Case, wanted: WantedRuns, length: float) -> Task:
     energy = needs_energy(wanted.quantities) or None
     run, options = options_of(case, duration=length, output_step=length, energy=energy)
     options = replace(options, name=wanted.solver, rtol=wanted.rtol)

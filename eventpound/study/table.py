@@ -25,7 +25,7 @@ from eventpound.results.tables import rows_csv
 from eventpound.study.plan import RECORD, Chunk, Plan
 from eventpound.study.records import FAILED, about, peak_errors, reason
 from eventpound.study.runs import Refused, Results, runs_in_parts
-from eventpound.study.sweep import Wanted
+from eventpound.study.sweep import WantedRuns
 from eventpound.study.variants import axis_cells
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def compute(study: Plan, chunk: Chunk, keep: Keep | None = None) -> bytes:
         if not base.case.scene.bodies:
             return rows_csv([row.get(name, "") for name in column_names(study)] for row in told)
     own = None if keep is None else lambda i, response: keep(base.records[i], response)
-    wanted = Wanted(study.solver, study.rtol, study.quantities, keep=own)
+    wanted = WantedRuns(study.solver, study.rtol, study.quantities, keep=own)
     rows: list[bytes] = []
     for part in runs_in_parts(base, low, high, wanted):
         at = part.at if isinstance(part, Refused) else part.rows.at
