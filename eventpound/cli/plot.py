@@ -61,7 +61,7 @@ def _plot(options: Options) -> int:
     if kind is Holds.RUN:
         if options.zoom:
             options.refuse_others("--zoom --out", "is not for --zoom")
-            arguments.write(out, _zoom(out))
+            arguments.write_and_print(out, _zoom(out))
             return 0
         pi = options.pi or "pi" in document
         drawn = plot(out, out, paper, options.xlim, _beside(options, out), pi)

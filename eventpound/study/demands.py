@@ -9,7 +9,7 @@ from eventpound.case.run_options import Stated
 from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import Named, all_of, find, unstated
-from eventpound.quantities.owners import owners
+from eventpound.quantities.owners import owners_of
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, BoucWen, Hysteretic, Slider
@@ -205,7 +205,7 @@ def words_of(scene: Scene, demand: Demand, stated: Stated) -> dict[str, object]:
     return {
         "kind": demand.kind.name,
         "quantity": named.name,
-        "of": owners(scene, quantity.owner)[named.i],
+        "of": owners_of(scene, quantity.owner)[named.i],
         "demand": called,
         "unit": quantity.dimension.unit,
     }

@@ -23,7 +23,7 @@ from eventpound.case.loading import CASE_FILE
 from eventpound.case.run_options import Stated
 from eventpound.errors import ComputationError, InputError
 from eventpound.quantities.base import TakenFrom
-from eventpound.quantities.owners import owners
+from eventpound.quantities.owners import owners_of
 from eventpound.quantities.values import storeys_of_structure
 from eventpound.response import Response
 from eventpound.scene.scene import Scene
@@ -290,7 +290,7 @@ def _with_storeys(table: pd.DataFrame, scene: Scene) -> pd.DataFrame:
     """The table with the storey in which the largest drift of each structure is, in ``at``."""
     if table.empty or not table["quantity"].str.endswith(STOREY_DRIFT).any():
         return table
-    rows, structures = table.set_index("quantity"), owners(scene, "structure")
+    rows, structures = table.set_index("quantity"), owners_of(scene, "structure")
     column = rows["largest" if "largest" in rows else "value"]
     found = []
     for name, of in zip(table["quantity"], table["of"], strict=True):
