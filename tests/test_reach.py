@@ -14,7 +14,7 @@ OTHERS = {
     "accuracy/bound.py",
     "accuracy/conditioning.py",
     "accuracy/work_precision.py",
-    "cli/finished.py",
+    "cli/fragility.py",
     "mechanics/series.py",
     "motion/mavroeidis_papageorgiou.py",
     "motion/pulse_fit.py",
