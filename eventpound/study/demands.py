@@ -60,7 +60,7 @@ def _elastic(compression: bool, extension: bool) -> Callable[[Scene, int], bool]
 
 
 @dataclass(frozen=True)
-class Kind:
+class ElementKind:
     """Elements of one kind, and what is asked of them.
 
     Parameters
@@ -79,9 +79,9 @@ class Kind:
 
 
 KINDS = (
-    Kind("Joints", (NEEDED,)),
-    Kind("Seats", ("seats.<seat>.max_opening",)),
-    Kind(
+    ElementKind("Joints", (NEEDED,)),
+    ElementKind("Seats", ("seats.<seat>.max_opening",)),
+    ElementKind(
         "Contacts",
         _paths(
             "contact",
@@ -89,9 +89,11 @@ KINDS = (
             "impacts_faster fastest_closing max_impulse estimated_force max_force largest_overlap",
         ),
     ),
-    Kind("Structure", ("base_shear.abs_max",)),
-    Kind("Structures", _paths("structure", "abs_max_base_shear roof_drift storey_drift_ratio")),
-    Kind(
+    ElementKind("Structure", ("base_shear.abs_max",)),
+    ElementKind(
+        "Structures", _paths("structure", "abs_max_base_shear roof_drift storey_drift_ratio")
+    ),
+    ElementKind(
         "Piers and other yielding springs",
         _paths(
             "spring",
@@ -100,7 +102,7 @@ KINDS = (
         ),
         _of_law(BoucWen),
     ),
-    Kind(
+    ElementKind(
         "Sliding bearings",
         _paths(
             "spring",
@@ -108,27 +110,27 @@ KINDS = (
         ),
         _of_law(Slider),
     ),
-    Kind(
+    ElementKind(
         "Bearings and other elastic springs",
         _paths("spring", f"abs_max_elongation {_FORCED}"),
         _elastic(compression=True, extension=True),
     ),
-    Kind(
+    ElementKind(
         "Restrainers",
         _paths("spring", f"{_FORCED} slack_left"),
         _elastic(compression=False, extension=True),
     ),
-    Kind(
+    ElementKind(
         "Stops",
         _paths("spring", f"{_FORCED} slack_left"),
         _elastic(compression=True, extension=False),
     ),
-    Kind(
+    ElementKind(
         "Backfill",
         _paths("spring", "passive_depth passive_force residual_gap dissipated_energy"),
         _of_law(Backfill),
     ),
-    Kind(
+    ElementKind(
         "Storeys",
         _paths(
             "spring",
@@ -137,13 +139,13 @@ KINDS = (
         ),
         lambda scene, i: scene.springs[i].height is not None,
     ),
-    Kind(
+    ElementKind(
         "Bodies",
         ("peaks.<body>.abs_max", "residual.<body>", "acceleration.<body>.abs_max"),
     ),
 )
 """Kinds of elements, in the order of a report."""
-_OTHERS = Kind("Others with a capacity", ())
+_OTHERS = ElementKind("Others with a capacity", ())
 DEMANDS = tuple(dict.fromkeys(path for kind in KINDS for path in kind.demands))
 _LISTED = [q for q in LISTED if q.path in DEMANDS]
 
@@ -152,7 +154,7 @@ _LISTED = [q for q in LISTED if q.path in DEMANDS]
 class Demand:
     """A quantity of an element, with its kind."""
 
-    kind: Kind
+    kind: ElementKind
     named: Named
 
 
