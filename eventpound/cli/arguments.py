@@ -196,7 +196,9 @@ def loaded_case(path: Path, suite: str | None = None) -> Case:
 
 def loaded_study(path: Path) -> StudyCase:
     """Load a case with a [study], and show its warnings."""
-    case = loaded_study(path)
+    from eventpound.study.reading import load_study
+
+    case = load_study(path)
     show_warnings(case.warnings)
     return case
 
