@@ -120,6 +120,7 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
         {TEXT: "kind", NEEDED: "stiffness", NUMBER: "damping", FLAG: "tension"},
     ),
     "Point": ({"weights": {"a": 1.0}}, {"NBITLOC": "weights"}),
+    "Seat": ({"name": "e", "between": ("ground", "a")}, {TEXT: "name", THINGS: "between"}),
     "Support": ({"name": "s"}, {TEXT: "name", NUMBER: "delay", "BITLMOC": "motion"}),
     "Force": ({"body": "a", "history": 1.0}, {TEXT: "body", NEEDED: "history", FLAG: "per_mass"}),
     "Scene": (

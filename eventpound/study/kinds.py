@@ -8,7 +8,6 @@ from pathlib import Path
 
 from eventpound.case.loading import CASE_FILE, read_document
 from eventpound.errors import InputError
-from eventpound.study.table import SUITE_TABLE, TABLE
 
 CASES = f"*/{CASE_FILE}"
 """Pattern of the cases of a folder."""
@@ -47,6 +46,9 @@ def kind_of(path: Path) -> tuple[Holds, Mapping[str, object]]:
 
 def kind_of_results(out: Path, path: Path) -> tuple[Holds, Mapping[str, object]]:
     """What results are of, by their table, else by the case, which need not be there any more."""
+    # Who only asks what a case is does not pay for what makes tables.
+    from eventpound.study.table import SUITE_TABLE, TABLE
+
     try:
         kind, document = kind_of(path)
     except InputError:

@@ -202,7 +202,7 @@ def test_rests_and_detachments_are_matched(tmp_path, capsys):
         (["--solvers", "moreau:theta=7", "--steps", "1e-3"], "theta = 7; accepted: a number from"),
         (["--solvers", "penalty:contact=x", "--steps", "1"], "contact is not a setting of penal"),
         (["--solvers", "none"], "--solvers: found 'none'; accepted: that with --against CSV only"),
-        (["--rtol", "1e-15"], "rtol = 1e-15; accepted: 1e-14 to 0.01"),
+        (["--rtol", "1e-15"], "rtol: found 1e-15; accepted: a number from 1e-14 to 0.01"),
         (["--against", "nowhere.csv"], "nowhere.csv: cannot be read"),
         (["--columns", "t"], "--columns: found t; accepted: u.deck=disp1,t=time"),
     ],

@@ -14,6 +14,7 @@ import pandas as pd
 import pytest
 
 from eventpound.cli import main
+from eventpound.report.record_tables import record_names
 from eventpound.results import read
 from tests.study.test_suite import CASE, time_series
 
@@ -201,7 +202,8 @@ def test_page_of_a_suite(suite: Path) -> None:
     # Scene, motion and demands on the sheets; scene, spectra of the records, peaks behind them.
     assert text.count("<svg") == 6
     peaks = done["peaks.deck.abs_max"]
-    assert f"|u| = {peaks.max():.6g} m of deck under {done['record'][peaks.idxmax()]}" in text
+    record = record_names(table)[done["record"][peaks.idxmax()]]
+    assert f"|u| = {peaks.max():.6g} m of deck under {record}" in text
     assert f"<td>{np.percentile(peaks, 84.0):.6g}</td>" in text
     assert "line 2" in text
     assert json.loads((suite / "suite.json").read_text())["case_sha256"] in text

@@ -96,7 +96,10 @@ def test_a_map_has_the_values_of_the_table(drawn):
 @pytest.mark.parametrize(
     ("extra", "said"),
     [
-        ('curves = "pi.delta"\ngrey = "free.pi_um"\n', "map: found True; accepted: a figure with"),
+        (
+            'curves = "pi.delta"\ngrey = "free.pi_um"\n',
+            "kind: found 'map'; accepted: a figure with",
+        ),
         ("", "kind: found 'map'; accepted: a figure with curves"),
         (
             'curves = "excitation.reverse"\n',

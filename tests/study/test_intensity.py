@@ -117,7 +117,7 @@ values = ["1 cm", "2 cm"]
 [intensity]"""
 
 
-@pytest.mark.parametrize("command", ["check", "study", "design"])
+@pytest.mark.parametrize("command", ["check", "study", "report"])
 def test_an_axis_beside_is_refused_before_any_run(records, tmp_path, capsys, command):
     """Under two gaps a record has two demands at one intensity, which is known without a run."""
     directory = records.parent

@@ -59,12 +59,12 @@ def test_a_stopped_study_goes_on_where_it_was(make_study):
     assert not (out / "study.csv").exists()
     assert Store(out, study).stored() == {0, 1}
     rest, seen = Counting(), []
-    run_study(study, out, rest, lambda done, before: seen.append((done, before)))
+    run_study(study, out, rest, lambda done, size: seen.append((done, size)))
     assert rest.asked == list(range(2, total))
     assert (out / "study.csv").read_bytes() == expected_table(study)
     rows = [chunk.high - chunk.low for chunk in study.chunks()]
-    assert seen[0] == (0, sum(rows[:2]))
-    assert seen[-1] == (sum(rows[2:]), sum(rows[:2]))
+    assert seen[0] == (sum(rows[:2]), sum(rows))
+    assert seen[-1] == (sum(rows), sum(rows))
     # Done: nothing is asked for again, and the chunks are gone.
     again = Counting()
     run_study(study, out, again)
