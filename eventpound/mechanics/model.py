@@ -20,7 +20,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements, elements_of
-from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.link_law import (
     KIND,
     SLIDER,
@@ -31,7 +30,6 @@ from eventpound.mechanics.link_law import (
 )
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import in_python
 from eventpound.scene.contact import BARRIER, End, weights_of
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays
 from eventpound.scene.scene import Scene
@@ -309,8 +307,13 @@ def assemble(scene: Scene) -> Model:
         column([getattr(b, key) for b in scene.bodies] + no_mass)
         for key in ("mass", "displacement", "velocity")
     )
-    for values in (u0, v0):
-        in_python(place_points)(weights, values)
+    if points:
+        # It comes with Numba, which no other scene needs to become arrays.
+        from eventpound.mechanics.followers import place_points
+        from eventpound.numerics.compiled import in_python
+
+        for values in (u0, v0):
+            in_python(place_points)(weights, values)
     link_ends = np.array(ends, np.int64).reshape(-1, 2)
     start = differences(u0, *link_ends.T)
     left, right = np.array(at, np.int64).reshape(-1, 2).T.copy()

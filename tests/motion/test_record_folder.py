@@ -59,10 +59,10 @@ def test_a_bad_file_does_not_stop_the_others(tmp_path: Path) -> None:
     folder_of(tmp_path, "at2", "one_column", "knet")
     (tmp_path / "bad.txt").write_text("no numbers\nhere\n")
     files = [RecordFile(path, units="m/s2") for path in files_in(tmp_path)]
-    done: list[int] = []
-    results = dict(read_each(files, done.append))
+    done: list[tuple[int, int]] = []
+    results = dict(read_each(files, lambda *told: done.append(told)))
     by_name = {file.path.name: found for file, found in results.items()}
-    assert done == [0, 1, 2, 3]
+    assert done == [(0, 4), (1, 4), (2, 4), (3, 4)]
     assert isinstance(by_name["bad.txt"], InputError)
     assert "does not state its time step" in str(by_name["one_column"])
     assert all(isinstance(by_name[name], list) for name in ("at2", "knet"))

@@ -98,7 +98,7 @@ def test_a_map_has_the_values_of_the_table(drawn):
     [
         (
             'curves = "pi.delta"\ngrey = "free.pi_um"\n',
-            "kind: found 'map'; accepted: a figure with",
+            "found 'map'; accepted: a figure with",
         ),
         ("", "kind: found 'map'; accepted: a figure with curves"),
         (
