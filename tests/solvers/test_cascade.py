@@ -187,13 +187,21 @@ def test_the_last_impact_of_a_collapse_stands_for_those_that_would_follow(solver
     assert last[0].impulse > 0.0
 
 
+def two_bodies() -> SimpleNamespace:
+    return SimpleNamespace(
+        of_body=np.array([0, 1]),
+        left=np.array([0]),
+        right=np.array([1]),
+        mass=np.ones(2),
+        weights=np.zeros((0, 2)),
+    )
+
+
 @pytest.mark.usefixtures("interpreted")
 def test_rounding_does_not_close_what_has_just_opened() -> None:
     # A gap opens by 4 τ³. After 4e-17 s, where a link turned, an acceleration of one rounding,
     # -4.5e-15 m/s², would close it in 5e-18 s, and so for ever. One that is known does close it.
-    bodies = SimpleNamespace(
-        of_body=np.array([0, 1]), left=np.array([0]), right=np.array([1]), points=np.zeros(0)
-    )
+    bodies = two_bodies()
     state = SimpleNamespace(gap=np.array([2.9e-49]), gap_rate=np.array([2.1e-32]))
     Y = np.zeros((5, 2))
     Y[3] = -4.8, -0.8
@@ -215,9 +223,7 @@ def test_rounding_does_not_close_what_has_just_opened() -> None:
 
 @pytest.mark.usefixtures("interpreted")
 def test_a_gap_that_rounding_has_put_below_zero_closes_though_it_seems_to_open() -> None:
-    bodies = SimpleNamespace(
-        of_body=np.array([0, 1]), left=np.array([0]), right=np.array([1]), points=np.zeros(0)
-    )
+    bodies = two_bodies()
     state = SimpleNamespace(gap=np.array([-5.2e-18]), gap_rate=np.array([1.4e-17]))
     Y = np.zeros((5, 2))
     Y[2] = 0.0, -0.7
