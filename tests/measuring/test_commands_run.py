@@ -83,6 +83,7 @@ ELSEWHERE = {
     "tests.benchmarks.suite": "measuring/test_benchmarks_run.py",
     "tests.benchmarks.work_precision": "measuring/test_work_precision.py",
     "tests.docs.follow": "docs/test_tutorials.py",
+    "tests.docs.solvers": "docs/test_solvers.py",
     "tests.docs.measure": "docs/test_measure.py",
     "tests.equilibria": "equilibria/test_equilibria.py",
     "tests.fuzz": "fuzz/test_fuzz.py",
@@ -99,6 +100,7 @@ ELSEWHERE = {
 """Those whose parts another test calls."""
 
 BY_HAND = {
+    "tests.benchmarks.front": "needs OpenSeesPy, and two minutes of it",
     "tests.benchmarks.first_run": "compiles every kernel anew",
     "tests.oracle.problems": "writes into the problem set what the independent program says",
 }
