@@ -165,7 +165,7 @@ def test_rows_of_many_are_what_each_is_alone() -> None:
     }
     columns["compression"][:, 0] = columns["extension"][:, 0] = stiffness
     laws = LinkLaw(*(np.repeat(x[None], 9, axis=0) for x in law.law))
-    links = Attached(law.ends, laws, **columns)
+    links = Attached(law.ends, laws, **columns, weights=law.weights)
     masses = np.column_stack((mass, np.ones(9)))
     still = np.zeros((9, 2))
     start = InitialState(still, still, np.zeros((9, 0)), model.hysteretic)

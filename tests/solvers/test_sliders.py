@@ -18,7 +18,7 @@ from eventpound.mechanics.model import assemble, with_sliders
 from eventpound.motion import Harmonic, NoMotion, Record, Ricker, Sine
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.constant import Constant
-from eventpound.numerics.compiled import in_python
+from eventpound.numerics.compiled import by_python
 from eventpound.response import Response
 from eventpound.scene import (
     BARRIER,
@@ -706,9 +706,12 @@ def test_an_instant_that_paused_for_room_does_not_end_slips_again(problems: int)
         left=model.left,
         right=model.right,
         mass=model.mass,
+        weights=model.weights,
+        compliance=np.zeros((0, 0)),
         v=np.array([0.3]),
         **{name: np.zeros(1, np.bool_) for name in ("resting", "released")},
     )
-    in_python(begin_beside_sliders)(np.zeros(1), np.ones(1, np.bool_), model.sliders, at)
+    with by_python():
+        begin_beside_sliders(np.zeros(1), np.ones(1, np.bool_), model.sliders, at)
     # An impact of this instant may have set it moving since.
     assert at.v == (0.3 if problems else 0.0)
