@@ -156,24 +156,24 @@ def _write_quantities() -> None:
     (GENERATED / "quantities.txt").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
-def _write_notebook() -> None:
-    """Cells of the notebook, each with its outputs."""
-    cells = json.loads((HERE / "notebook.ipynb").read_text(encoding="utf-8"))["cells"]
+def _write_notebook(path: Path) -> None:
+    """Cells of a notebook, each with its outputs."""
+    name = f"notebook-{path.stem}"
     parts: list[str] = []
-    for number, cell in enumerate(cells):
+    for number, cell in enumerate(json.loads(path.read_text(encoding="utf-8"))["cells"]):
         source = "".join(cell["source"])
         parts.append(source if cell["cell_type"] == "markdown" else f"```python\n{source}\n```")
         for output in cell.get("outputs", ()):
             data = output.get("data", {})
             if "image/png" in data:
-                picture = GENERATED / f"notebook-{number}.png"
+                picture = GENERATED / f"{name}-{number}.png"
                 picture.write_bytes(base64.b64decode("".join(data["image/png"])))
                 parts.append(f"![output]({picture.name})")
             else:
                 text = "".join(data.get("text/plain", output.get("text", "")))
                 parts.append(f"```text\n{text.rstrip()}\n```")
-    parts.append("The notebook itself: {download}`notebook.ipynb <../notebook.ipynb>`.")
-    (GENERATED / "notebook.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+    parts.append(f"The notebook itself: {{download}}`{path.name} <../notebooks/{path.name}>`.")
+    (GENERATED / f"{name}.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
 def _write_generated(app: Any) -> None:
@@ -182,7 +182,8 @@ def _write_generated(app: Any) -> None:
     _write_gallery()
     _write_commands()
     _write_quantities()
-    _write_notebook()
+    for path in sorted((HERE / "notebooks").glob("*.ipynb")):
+        _write_notebook(path)
 
 
 def setup(app: Any) -> None:

@@ -1,4 +1,4 @@
-"""Outputs of notebook.ipynb: `python docs/notebook.py` runs its cells and stores what they give."""
+"""Outputs of the notebooks: `python docs/notebook.py` runs them and stores what cells give."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import matplotlib as mpl
 mpl.use("agg")
 import matplotlib.pyplot as plt
 
-NOTEBOOK = Path(__file__).parent / "notebook.ipynb"
+NOTEBOOKS = Path(__file__).parent / "notebooks"
 
 
 def outputs(source: str, names: dict[str, Any]) -> list[dict[str, Any]]:
@@ -36,7 +36,8 @@ def outputs(source: str, names: dict[str, Any]) -> list[dict[str, Any]]:
         data = {"image/png": base64.b64encode(file.getvalue()).decode()}
         found.append({"output_type": "display_data", "data": data, "metadata": {}})
     elif value is not None:
-        data = {"text/plain": lines(repr(value))}
+        text = value.to_string() if hasattr(value, "to_string") else repr(value)
+        data = {"text/plain": lines(text)}
         found.append({"output_type": "execute_result", "data": data, "metadata": {}})
     return found
 
@@ -46,9 +47,9 @@ def lines(text: str) -> list[str]:
     return text.splitlines(keepends=True)
 
 
-def main() -> None:
-    """Run all cells in order and keep their outputs."""
-    notebook = json.loads(NOTEBOOK.read_text(encoding="utf-8"))
+def run(path: Path) -> None:
+    """Run all cells of a notebook in order and keep their outputs."""
+    notebook = json.loads(path.read_text(encoding="utf-8"))
     names: dict[str, Any] = {}
     cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
     for number, cell in enumerate(cells, start=1):
@@ -58,8 +59,9 @@ def main() -> None:
             if output["output_type"] == "execute_result":
                 output["execution_count"] = number
     text = json.dumps(notebook, indent=1, ensure_ascii=False)
-    NOTEBOOK.write_text(text + "\n", encoding="utf-8")
+    path.write_text(text + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    for each in sorted(NOTEBOOKS.glob("*.ipynb")):
+        run(each)

@@ -539,7 +539,8 @@ class Response:
         ended = "" if self.success else f", incomplete: {self.message}"
         peaks = self.peaks["abs_max"]
         largest = f"largest |u| {peaks.max():.6g} m ({peaks.idxmax()})"
-        run = f"{self.task.start:g} to {self.recording.t:g} s, {self.impacts} impacts"
+        impacts = f"{self.impacts} impact{'s' * (self.impacts != 1)}"
+        run = f"{self.task.start:g} to {self.recording.t:g} s, {impacts}"
         return f"<Response by {self.solver}, rtol {self.task.rtol:g}: {run}, {largest}{ended}>"
 
     def _repr_html_(self) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,12 +13,13 @@ from eventpound.accuracy.compare import judge_entries as compared
 from eventpound.accuracy.comparison_tables import run_table, table_files
 from eventpound.accuracy.work_precision import STEP
 from eventpound.basics.given import Count, checked, number, positive
-from eventpound.case.case import Case
+from eventpound.case.case import Case, case_of
 from eventpound.case.solver_words import solver_word
 from eventpound.report.comparison_page import comparison_page
 from eventpound.report.html import PAGE
 from eventpound.report.work_precision import timed, work_precision_png
 from eventpound.results import check_writable, write_together
+from eventpound.scene import Scene
 from eventpound.solvers import name_of
 from eventpound.solvers.base import Solver
 from eventpound.tolerances import COMPARED, REPEATS
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
 
 @checked
 def compare(
-    case: Case,
+    case: Case | Scene,
     solvers: Sequence[str | Solver],
     *,
     rtol: Sequence[float | str] = COMPARED,
@@ -46,7 +48,7 @@ def compare(
 
     Parameters
     ----------
-    case : Case
+    case : Case or Scene
         What they run.
     solvers : sequence of str or Solver
         Names, with settings as ``"cvode:events=sundials"``, or objects (page "your-solver").
@@ -78,6 +80,8 @@ def compare(
     ComputationError
         Where the reference fails.
     """
+    case = case_of(case)
+    case = replace(case, run=case.run.completed(case.scene))
     words = [solver_word(name_of(s), "solvers", {STEP: "steps"}) for s in solvers]
     tolerances = [positive("rtol", value, Dimension.NUMBER) for value in rtol]
     sizes = [positive("steps", value, Dimension.TIME) for value in steps]

@@ -23,13 +23,15 @@ def shown() -> dict[str, str]:
         name: re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
         for name, text in pages.items()
     }
-    cells = json.loads((DOCS / "notebook.ipynb").read_text(encoding="utf-8"))["cells"]
-    blocks["notebook"] = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    for path in sorted((DOCS / "notebooks").glob("*.ipynb")):
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+        blocks[f"notebook-{path.stem}"] = code
     return {name: "\n".join(found) for name, found in blocks.items() if found}
 
 
 def test_pages_with_python_are_found() -> None:
-    assert {"readme", "python", "many", "studies", "notebook"} <= set(shown())
+    assert {"readme", "python", "many", "studies", "notebook-bridge"} <= set(shown())
 
 
 @pytest.mark.pages
