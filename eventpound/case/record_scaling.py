@@ -138,8 +138,7 @@ class RecordScaling:
         if here and (self.psa is not None or self.each_of == "psa"):
             return self.psa or max(self.each)
         if self.target is not None:
-            periods, psa = map(np.log, self.target.points)
-            return float(np.exp(np.interp(math.log(period), periods, psa)))
+            return float(np.exp(self.target.log_psa(period)))
         return math.nan
 
     def words(self, acceleration: Callable[[float], str] = _in_g) -> str:
@@ -174,8 +173,9 @@ class RecordScaling:
     def _understood(self) -> dict[str, object]:
         """What scales, a target with its points."""
         if self.target is not None:
+            points = zip(self.target.period, self.target.psa, strict=True)
             return {
-                "target": [list(point) for point in zip(*self.target.points, strict=True)],
+                "target": [[*point] for point in points],
                 "target_periods": [self.target.low, self.target.high],
                 "target_damping": self.target.damping,
             }

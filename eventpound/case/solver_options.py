@@ -47,7 +47,7 @@ class SolverOptions:
         Keys of the solver's own (SI).
     """
 
-    name: str = "cvode"
+    name: str = REFERENCE
     rtol: float = number_key(
         "relative tolerance, from 1e-14 to 1e-2",
         Dimension.NUMBER,

@@ -47,10 +47,9 @@ class Target:
     high: float
     damping: float = DAMPING
 
-    @property
-    def points(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Periods (s) and PSA (m/s^2)."""
-        return self.period, self.psa
+    def log_psa(self, periods: float | Floats) -> Floats:
+        """Logarithms of PSA (m/s^2) at periods (s), of their shape; level beyond the points."""
+        return np.asarray(np.interp(np.log(periods), np.log(self.period), np.log(self.psa)))
 
 
 def psa_of(samples: Floats, time_step: float, periods: Floats, damping: float) -> Floats:
@@ -100,8 +99,7 @@ def factor_to(target: Target, samples: Floats, time_step: float) -> float:
         Their distance (s).
     """
     periods = np.geomspace(target.low, target.high, _PERIODS)
-    wanted = np.interp(np.log(periods), np.log(target.period), np.log(target.psa))
     own = psa_of(samples, time_step, periods, target.damping)
     # Of a record of zeros the factor is none; it is refused for its samples.
     with np.errstate(all="ignore"):
-        return float(np.exp(np.mean(wanted - np.log(own))))
+        return float(np.exp(np.mean(target.log_psa(periods) - np.log(own))))

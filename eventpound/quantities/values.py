@@ -11,7 +11,7 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import SIX, Value, path_of_owner
 from eventpound.quantities.runs import Runs
-from eventpound.scene.at_rest import stiffness_of
+from eventpound.scene.at_rest import theta_at_rest
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.joints import joints_of
 from eventpound.scene.parameters import number_places, told_of_variants
@@ -139,8 +139,7 @@ def peak_drift_ratio(many: Runs, i: int) -> Floats:
 
 def has_weight(scene: Scene, i: int) -> bool:
     """Whether P-Delta softens spring i, which resists by itself."""
-    spring = scene.springs[i]
-    return spring.weight is not None and stiffness_of(replace(spring, weight=None)) > 0.0
+    return theta_at_rest(scene.springs[i]) is not None
 
 
 def stability_coefficient(many: Runs, i: int) -> Floats:

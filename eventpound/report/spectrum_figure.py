@@ -116,7 +116,7 @@ def suite_spectra_figure(
         curve = np.percentile(psa, part, axis=0) / g
         axes.plot(periods, curve, dashes, color=style.PALETTE[0], linewidth=1.5, label=label)
     if target is not None:
-        points = np.array(target.points)
+        points = np.array((target.period, target.psa))
         axes.plot(points[0], points[1] / g, color=style.PALETTE[1], linewidth=1.5, label="target")
         axes.axvspan(target.low, target.high, color="#EEEEEE", zorder=0)
     if at is not None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
 from eventpound.motion.base import moves
 from eventpound.motion.record import Record
-from eventpound.scene.at_rest import at_rest, stiffness_of, told_at_rest
+from eventpound.scene.at_rest import at_rest, stiffness_of, theta_at_rest, told_at_rest
 from eventpound.scene.contact import Contact, written
 from eventpound.scene.contact_law import Element
 from eventpound.scene.elastic_laws import reduced
@@ -172,8 +172,7 @@ def _spring(spring: Spring, at_rest: float, mass: float | None) -> Row:
     if isinstance(law, Backfill | Slider):
         return row | law.numbers | ({"at_rest": at_rest} if isinstance(law, Backfill) else {})
     if spring.weight is not None:
-        k = stiffness_of(replace(spring, weight=None))
-        row["theta"] = spring.geometric_stiffness / k if k > 0.0 else None
+        row["theta"] = theta_at_rest(spring)
     k_0 = row["K0"] = law.initial_stiffness if isinstance(law, BoucWen) else law.stiffness
     if isinstance(law, BoucWen):
         row |= {"K_s": law.stiffness, "F_y": k_0 * law.yield_displacement}

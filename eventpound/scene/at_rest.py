@@ -98,6 +98,12 @@ def stiffness_of(spring: Spring, yielded: bool = False) -> float:
     return law.stiffness if isinstance(law, Linear) else _tangent(law, 0.0, 0.0).counts
 
 
+def theta_at_rest(spring: Spring) -> float | None:
+    """P/(k h) of a storey at rest; None without a weight, or where it does not resist by itself."""
+    k = 0.0 if spring.weight is None else stiffness_of(replace(spring, weight=None))
+    return spring.geometric_stiffness / k if k > 0.0 else None
+
+
 def stiffest(scene: Scene) -> Scene:
     """The scene with every spring at its largest stiffness: nothing swings faster."""
 

@@ -20,7 +20,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.spring import GROUND, Linear, Spring
-from eventpound.scene.stability import gives_way, told
+from eventpound.scene.stability import motion_of_links, told
 
 MOST_BODIES = 200
 """Of a frame: a full matrix makes a spring between every two of them."""
@@ -131,16 +131,7 @@ def _check_matrix(key: str, matrix: Floats, ends: Sequence[str]) -> None:
             f"at ({ends[j]}, {ends[i]}); accepted: a matrix that is symmetric to rounding (where "
             "this is rounding, give (K + K')/2)"
         )
-    links = _links(matrix, ends, GROUND)
-    at = {end: i for i, end in enumerate(ends)}
-    whole, sizes = np.zeros((n, n)), np.zeros(n)
-    for (first, second), k in links:
-        places = [at[end] for end in (first, second) if end in at]
-        sizes[places] += abs(k)
-        whole[places, places] += k
-        if len(places) == 2:
-            whole[places, places[::-1]] -= k
-    moves = gives_way(whole, sizes)
+    moves = motion_of_links(ends, [*_links(matrix, ends, GROUND)])
     if moves is not None:
         raise InputError(
             f"{key}: found a matrix that is not positive semidefinite: {told(ends, moves)}; "

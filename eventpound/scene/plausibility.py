@@ -13,7 +13,7 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.intensity import peak_displacement, peak_velocity
 from eventpound.motion.plausible import LENGTH, PEAK, PERIOD, PGD, PGV, STEP
 from eventpound.motion.record import Record
-from eventpound.scene.at_rest import at_rest, stiffness_of
+from eventpound.scene.at_rest import at_rest, stiffness_of, theta_at_rest
 from eventpound.scene.damping import ratio_coefficient
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import local_periods, longest_period
@@ -176,16 +176,16 @@ def _spring_doubts(scene: Scene) -> Iterator[Doubt]:
 def _storey_doubts(scene: Scene) -> Iterator[Doubt]:
     """Storeys that P-Delta softens much, or after yield altogether."""
     for spring in scene.springs:
-        if spring.weight is None:
+        theta = theta_at_rest(spring)
+        if theta is None:
             continue
-        lost, left = spring.geometric_stiffness, stiffness_of(spring)
-        if lost > LARGEST_THETA * (left + lost) > 0.0:
+        if theta > LARGEST_THETA:
             yield (
                 "P-Delta",
-                f"spring '{spring.name}': P-Delta takes {lost / (left + lost):.3g} of its "
+                f"spring '{spring.name}': P-Delta takes {theta:.3g} of its "
                 f"stiffness (theta = P/(k h)); Eurocode 8 accepts up to {LARGEST_THETA:g}",
             )
-        if (after := stiffness_of(spring, yielded=True)) < 0.0 < left:
+        if (after := stiffness_of(spring, yielded=True)) < 0.0 < stiffness_of(spring):
             yield (
                 "P-Delta after yield",
                 f"spring '{spring.name}': after yield P-Delta leaves it {after:.4g} N/m: the "

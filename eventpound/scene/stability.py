@@ -57,12 +57,28 @@ def unstable(scene: Scene, start: float = 0.0) -> Unstable | None:
         if all(stiffness[i] >= 0.0 for i in own):
             continue
         links = [(springs[i].between, stiffness[i]) for i in own]
-        moves = gives_way(joined(group, links), _sizes(group, [(b, abs(k)) for b, k in links]))
+        moves = motion_of_links(group, links)
         if moves is not None:
             u = dict(zip(group, moves.tolist(), strict=True))
             work = [_work(u, *link) for link in links]
             return Unstable(own[int(np.argmin(work))], told(group, moves))
     return None
+
+
+def motion_of_links(
+    bodies: Sequence[str], links: Sequence[tuple[tuple[str, str], float]]
+) -> Floats | None:
+    """A motion, the largest part 1, in which links do negative work; None where none is.
+
+    Parameters
+    ----------
+    bodies : sequence of str
+        Their names.
+    links : sequence
+        Ends of each link, bodies or the ground, and its stiffness or coefficient.
+    """
+    sizes = joined(bodies, [(between, abs(k)) for between, k in links]).diagonal()
+    return gives_way(joined(bodies, links), sizes)
 
 
 def told(bodies: Sequence[str], moves: Floats) -> str:
@@ -87,10 +103,6 @@ def gives_way(stiffness: Floats, sizes: Floats) -> Floats | None:
         return None
     u = unit * vectors[:, 0]
     return np.asarray(u / u[np.argmax(np.abs(u))])
-
-
-def _sizes(group: Sequence[str], links: Sequence[tuple[tuple[str, str], float]]) -> Floats:
-    return joined(group, links).diagonal()
 
 
 def _work(u: dict[str, float], between: tuple[str, str], stiffness: float) -> float:

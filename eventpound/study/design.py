@@ -20,7 +20,7 @@ from eventpound.basics.given import Count, checked
 from eventpound.basics.progress import Counted, Reached
 from eventpound.case.case import Case
 from eventpound.case.loading import CASE_FILE
-from eventpound.case.run_options import Stated
+from eventpound.case.run_options import DEFAULTS, Stated
 from eventpound.errors import ComputationError, InputError
 from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.owners import owners_of
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 DESIGN_TABLE = "report.csv"
 """What the table is called."""
-FRACTILES = (50.0, 84.0)
+FRACTILES = (50.0, DEFAULTS.fractile)
 """Per cent."""
 MOST_CLOSE = 1000
 """Runs of a study beyond which demands are left out that take rows close together."""

@@ -26,6 +26,7 @@ from eventpound.case.solver_options import default_solver, read_solver
 from eventpound.case.suite import RECORDS, with_suite
 from eventpound.case.table import CaseProblem, Table
 from eventpound.errors import InputError
+from eventpound.scene.periods import T_1
 from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
 from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities
@@ -221,7 +222,7 @@ def _bases(
 def _refuse_shocks(document: _Document, numbers: Sequence[NumberAxis]) -> None:
     """Refuse what would take the period of the first variant for all of them."""
     motion = _table(document, "excitation")
-    named = str(motion.get("psa_period", "")).startswith("T1")
+    named = str(motion.get("psa_period", "")).startswith(T_1)
     if isinstance(motion.get("psa"), list) and named and numbers:
         raise InputError(
             "[excitation]: psa_period: found a period of the scene for shocks that are scaled each "
