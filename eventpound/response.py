@@ -12,6 +12,7 @@ import numpy as np
 
 from eventpound.basics.given import checked, number, positive
 from eventpound.case.run_options import DEFAULTS, Stated
+from eventpound.contact.event import STRIKES
 from eventpound.errors import EventpoundError, InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
@@ -556,11 +557,7 @@ class Response:
     @property
     def impacts(self) -> int:
         """Number of impact rows, with the impacts that accumulations stand for."""
-        return sum(
-            e.count
-            for e in self.recording.events
-            if e.kind in (EventKind.IMPACT, EventKind.ACCUMULATION)
-        )
+        return sum(e.count for e in self.recording.events if e.kind in STRIKES)
 
 
 def _shock_at(motion: GroundMotion, t: float) -> dict[str, Any]:

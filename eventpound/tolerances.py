@@ -67,6 +67,8 @@ CANCELLED = 1e-13
 """Part of its terms below which what is left of a gap rate is their rounding."""
 BALANCE_ROUNDING = 64.0 * EPS
 """Part of the sum of its terms up to which a balance of momentum is rounding."""
+TIE_ROUNDING = 64.0 * EPS
+"""The same of what eliminations leave of the coefficients of coordinates that follow others."""
 LCP_ROUNDING = 512.0 * EPS
 """Entries of w of an LCP below this part of the terms they are summed from count as zero."""
 SINGULAR = 1e-9

@@ -21,6 +21,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 from eventpound.contact.cascade import TIRED, last_speed
+from eventpound.contact.event import STRIKES
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import LawName
 from eventpound.solvers.base import Event, EventKind, Recording
@@ -52,7 +53,7 @@ def _taken(events: Sequence[Event], last: float) -> float:
     groups: defaultdict[float, set[int]] = defaultdict(set)
     ends: defaultdict[float, int] = defaultdict(int)
     for event in events:
-        if event.kind in (EventKind.IMPACT, EventKind.ACCUMULATION):
+        if event.kind in STRIKES:
             groups[event.t].add(event.group)
         if event.kind is EventKind.ACCUMULATION:
             ends[event.t] += event.count

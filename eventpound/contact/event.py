@@ -21,6 +21,8 @@ class EventKind(StrEnum):
     """A contact with a law was closed, an impact that the end of the run cuts."""
 
 
+STRIKES = (EventKind.IMPACT, EventKind.ACCUMULATION)
+"""What an approach ends in: an impact, or infinitely many."""
 ENDS_OF_REST = (EventKind.DETACHMENT, EventKind.SEPARATION)
 """What ends a rest."""
 

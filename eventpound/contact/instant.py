@@ -19,6 +19,7 @@ from eventpound.contact.modes import ACCELERATION, duty
 from eventpound.contact.rest import Touching, rest_contacts
 from eventpound.contact.state import Instant
 from eventpound.mechanics.elements import memory_on_branches
+from eventpound.mechanics.followers import on_body
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -89,13 +90,10 @@ def _keep_released(at: Instant) -> None:
 @scalar_kernel
 def _struck(end: int, at: Instant) -> bool:
     """Whether an impact has changed the velocity of a body, or of one that a point is on."""
-    if at.v[end] != at.before[end]:
-        return True
-    bodies = at.mass.size - at.weights.shape[0]
-    for b in range(bodies if end >= bodies else 0):
-        if at.weights[end - bodies, b] != 0.0 and at.v[b] != at.before[b]:
-            return True
-    return False
+    struck = at.v[end] != at.before[end]
+    for b in range(at.mass.size if at.weights.shape[0] > 0 else 0):
+        struck |= on_body(end, b, at.weights) and at.v[b] != at.before[b]
+    return struck
 
 
 @scalar_kernel

@@ -24,6 +24,7 @@ from eventpound.mechanics.contact_problem import (
     solve_contacts,
 )
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
+from eventpound.mechanics.followers import felt_mass
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import (
@@ -361,15 +362,9 @@ def _pass_on(
                 error = max(error, rounding[order, c])
         for c in system.ends[a]:
             if c >= 0:
-                part = error / (_felt_mass(c, system) * (order + 2))
+                part = error / (felt_mass(c, system.mass, system.compliance) * (order + 2))
                 rounding[order + 1, c] += damping[a] * part
                 rounding[order + 2, c] += stiffness[a] * part / (order + 3)
-
-
-@scalar_kernel
-def _felt_mass(c: int, system: Reduced) -> float:
-    """What a force at a cluster has to move (kg)."""
-    return 1.0 / system.compliance[c, c] if system.compliance.size > 0 else system.mass[c]
 
 
 @kernel

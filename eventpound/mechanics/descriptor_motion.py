@@ -36,6 +36,7 @@ from eventpound.motion.loads import (
 )
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
+from eventpound.numerics.small_systems import dot
 
 
 class DescriptorProblem(NamedTuple):
@@ -47,15 +48,6 @@ class DescriptorProblem(NamedTuple):
     d: Descriptor
     forcing: Forcing
     frame: Floats
-
-
-@kernel
-def dot(row: Floats, values: Floats) -> float:
-    """Σ row_i values_i, without the cost of a library call for a few numbers."""
-    total = 0.0
-    for i in range(row.size):
-        total += row[i] * values[i]
-    return total
 
 
 @kernel

@@ -11,7 +11,6 @@ from eventpound.mechanics.descriptor_motion import (
     accelerations,
     body_loads,
     contact_forces,
-    dot,
     ledger_rates,
     link_states,
     loaded_powers,
@@ -23,6 +22,7 @@ from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
+from eventpound.numerics.small_systems import dot
 
 
 @kernel

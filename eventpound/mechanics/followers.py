@@ -25,7 +25,8 @@ import numpy as np
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.lcp import solve_dense
-from eventpound.tolerances import DEPENDENT, EPS, PIVOT
+from eventpound.numerics.small_systems import dot, solve_definite, solve_transposed
+from eventpound.tolerances import DEPENDENT, PIVOT, TIE_ROUNDING
 
 
 class Rests(NamedTuple):
@@ -58,14 +59,33 @@ def place_points(weights: Floats, values: Floats) -> None:
 
 
 @scalar_kernel
+def on_body(node: int, b: int, weights: Floats) -> bool:
+    """Whether a coordinate is that of a point on a body."""
+    first = weights.shape[1] - weights.shape[0]
+    return node >= first and weights[node - first, b] != 0.0
+
+
+@scalar_kernel
+def row_answer(c: int, count: int, compliance: Floats, force: Floats) -> float:
+    """``A f`` of one of the clusters, `count` of them."""
+    total = 0.0
+    for d in range(count):
+        total += compliance[c, d] * force[d]
+    return total
+
+
+@scalar_kernel
 def answers(compliance: Floats, force: Floats, values: Floats) -> None:
     """``A f`` into `values`, all of the size of the clusters at least."""
     count = compliance.shape[0]
     for c in range(count):
-        total = 0.0
-        for d in range(count):
-            total += compliance[c, d] * force[d]
-        values[c] = total
+        values[c] = row_answer(c, count, compliance, force)
+
+
+@scalar_kernel
+def felt_mass(c: int, mass: Floats, compliance: Floats) -> float:
+    """What a force at a cluster has to move (kg); `compliance` is empty without points."""
+    return 1.0 / compliance[c, c] if compliance.shape[0] > 0 else float(mass[c])
 
 
 @deferred_kernel
@@ -82,11 +102,11 @@ def examine_rests(rests: Rests, weights: Floats) -> None:
             left = rows[i].copy()
             for _ in range(2):
                 for k in range(count):
-                    share = _dot(basis[k], left)
+                    share = dot(basis[k], left)
                     parts[i, k] += share
                     left -= share * basis[k]
-            length = np.sqrt(_dot(left, left))
-            if length > DEPENDENT * np.sqrt(_dot(rows[i], rows[i])):
+            length = np.sqrt(dot(left, left))
+            if length > DEPENDENT * np.sqrt(dot(rows[i], rows[i])):
                 basis[count], parts[i, count], order[count] = left / length, length, i
                 rests.carrying[i] = True
                 count += 1
@@ -94,7 +114,7 @@ def examine_rests(rests: Rests, weights: Floats) -> None:
     for a in range(count):
         lower[a] = parts[order[a], :count]
     for b in range(first):
-        _solve_transposed(lower, basis[:count, b].copy(), order, rests.force_map[:, b])
+        solve_transposed(lower, basis[:count, b].copy(), order, rests.force_map[:, b])
     for d in range(weights.shape[0]):
         for b in range(first):
             rests.force_map[:, first + d] += weights[d, b] * rests.force_map[:, b]
@@ -103,7 +123,7 @@ def examine_rests(rests: Rests, weights: Floats) -> None:
     for i in range(R):
         if not rests.carrying[i]:
             rests.unique[i] = False
-            _solve_transposed(lower, parts[i, :count].copy(), order, parts_of)
+            solve_transposed(lower, parts[i, :count].copy(), order, parts_of)
             for a in range(count):
                 if abs(parts_of[order[a]]) > DEPENDENT:
                     rests.unique[order[a]] = False
@@ -126,24 +146,6 @@ def _rows(rests: Rests, weights: Floats) -> Floats:
     return rows
 
 
-@scalar_kernel
-def _dot(a: Floats, b: Floats) -> float:
-    total = 0.0
-    for i in range(a.size):
-        total += a[i] * b[i]
-    return total
-
-
-@kernel
-def _solve_transposed(lower: Floats, given: Floats, order: Ints, found: Floats) -> None:
-    """Solve ``Lᵀ x = given`` (overwritten), entry a of x into the place ``order[a]``."""
-    for a in range(given.size - 1, -1, -1):
-        for b in range(a + 1, given.size):
-            given[a] -= lower[b, a] * given[b]
-        given[a] /= lower[a, a]
-        found[order[a]] = given[a]
-
-
 @kernel
 def held_closed(rows: Floats) -> Bools:
     """Contacts (R,) that cannot open: pressures of all others balance one on it.
@@ -156,9 +158,9 @@ def held_closed(rows: Floats) -> Bools:
     for j in range(R):
         others = np.flatnonzero(np.arange(R) != j)
         for a in range(R - 1):
-            q[a] = _dot(rows[others[a]], rows[j])
+            q[a] = dot(rows[others[a]], rows[j])
             for b in range(R - 1):
-                G[a, b] = _dot(rows[others[a]], rows[others[b]])
+                G[a, b] = dot(rows[others[a]], rows[others[b]])
         found, _, solved = solve_dense(G, q, 0.0)
         x[:], x[j] = 0.0, 1.0
         for a in range(R - 1):
@@ -166,8 +168,8 @@ def held_closed(rows: Floats) -> Bools:
         left = np.zeros(rows.shape[1])
         for i in range(R):
             left += x[i] * rows[i]
-        size = np.sqrt(_dot(rows[j], rows[j]))
-        locked[j] = solved and np.sqrt(_dot(left, left)) <= DEPENDENT * size
+        size = np.sqrt(dot(rows[j], rows[j]))
+        locked[j] = solved and np.sqrt(dot(left, left)) <= DEPENDENT * size
     return locked
 
 
@@ -276,7 +278,7 @@ def _eliminate(ties: Floats, mass: Floats) -> Ints:
                         change = factor * ties[e, c]
                         size = abs(ties[f, c]) + abs(change)
                         ties[f, c] -= change
-                        if c < groups and abs(ties[f, c]) <= 64.0 * EPS * size:
+                        if c < groups and abs(ties[f, c]) <= TIE_ROUNDING * size:
                             ties[f, c] = 0.0
                     ties[f, best] = 0.0
     return row_of
@@ -309,7 +311,7 @@ def _put_compliance(N: Floats, mass: Floats, out: Grouped) -> None:
         for a in range(free):
             for b in range(a + 1):
                 K[a, b] += mass[c] * N[c, a] * N[c, b]
-    answer = _solve_definite(K, N.T.copy())
+    answer = solve_definite(K, N.T.copy())
     out.compliance[:] = 0.0
     for c in range(moving):
         out.carried[c] = 0.0
@@ -318,31 +320,5 @@ def _put_compliance(N: Floats, mass: Floats, out: Grouped) -> None:
                 out.compliance[c, d] += N[c, a] * answer[a, d]
             out.carried[c] += out.compliance[c, d] * mass[d]
         # What leans on no ground is carried by it whole.
-        if abs(out.carried[c] - 1.0) <= 64.0 * moving * EPS:
+        if abs(out.carried[c] - 1.0) <= TIE_ROUNDING * moving:
             out.carried[c] = 1.0
-
-
-@kernel
-def _solve_definite(K: Floats, right: Floats) -> Floats:
-    """Solve ``K X = right`` with the lower triangle of K (n, n), by ``K = L D Lᵀ``; overwritten.
-
-    Where K is diagonal, a division.
-    """
-    n = K.shape[0]
-    for j in range(n):
-        for k in range(j):
-            K[j, j] -= K[j, k] * K[j, k] * K[k, k]
-        for i in range(j + 1, n):
-            for k in range(j):
-                K[i, j] -= K[i, k] * K[j, k] * K[k, k]
-            K[i, j] /= K[j, j]
-    for c in range(right.shape[1]):
-        for i in range(n):
-            for k in range(i):
-                right[i, c] -= K[i, k] * right[k, c]
-        for i in range(n):
-            right[i, c] /= K[i, i]
-        for i in range(n - 1, -1, -1):
-            for k in range(i + 1, n):
-                right[i, c] -= K[k, i] * right[k, c]
-    return right

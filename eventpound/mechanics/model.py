@@ -307,13 +307,8 @@ def assemble(scene: Scene) -> Model:
         column([getattr(b, key) for b in scene.bodies] + no_mass)
         for key in ("mass", "displacement", "velocity")
     )
-    if points:
-        # It comes with Numba, which no other scene needs to become arrays.
-        from eventpound.mechanics.followers import place_points
-        from eventpound.numerics.compiled import in_python
-
-        for values in (u0, v0):
-            in_python(place_points)(weights, values)
+    for values in (u0, v0):
+        values[len(scene.bodies) :] = weights @ values
     link_ends = np.array(ends, np.int64).reshape(-1, 2)
     start = differences(u0, *link_ends.T)
     left, right = np.array(at, np.int64).reshape(-1, 2).T.copy()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eventpound.contact.event import STRIKES
 from eventpound.errors import ComputationError
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.lookup import tabled, values_of
@@ -21,7 +22,7 @@ from eventpound.quantities.runs import (
     of_recordings,
 )
 from eventpound.scene.scene import Scene
-from eventpound.solvers.base import EventKind, Extremes, Recording
+from eventpound.solvers.base import Extremes, Recording
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -233,7 +234,7 @@ def keep_recording(many: BatchResponse, i: int, recording: Recording) -> None:
         many.largest_gap[i] = recording.largest_gap
     many.impacts[i] = 0.0
     for event in recording.events:
-        if event.kind in (EventKind.IMPACT, EventKind.ACCUMULATION):
+        if event.kind in STRIKES:
             many.impacts[i, event.contact] += event.count
     if many.struck is not None:
         numbers = of_recordings([recording], many.stated.threshold_speed)

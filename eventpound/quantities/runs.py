@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eventpound.case.run_options import DEFAULTS, Stated
+from eventpound.contact.event import STRIKES
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.scene import Scene
-from eventpound.solvers.base import EventKind, Extremes, Recording
+from eventpound.solvers.base import Extremes, Recording
 
 if TYPE_CHECKING:
     from eventpound.quantities.between import Between
 
-_STRUCK = (EventKind.IMPACT, EventKind.ACCUMULATION)
 _WHOLE = ("run", "group", "contact", "number")
 
 
@@ -140,7 +140,7 @@ def of_recordings(recordings: Sequence[Recording], threshold: float) -> ContactN
         (i, e.t, e.group, e.contact, *e[4:])
         for i, recording in enumerate(recordings)
         for e in recording.events
-        if e.kind in _STRUCK
+        if e.kind in STRIKES
     ]
     impacts = impacts_of(np.array(rows, float).reshape(-1, len(Impacts._fields)))
     max_force = np.array([r.max_force for r in recordings], float)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.contact.event import ENDS_OF_REST, STRIKES
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.quantities.loops import loop_of
@@ -20,14 +21,10 @@ from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, LawName
 from eventpound.scene.structures import joined_groups
-from eventpound.solvers.base import EventKind
 from eventpound.units import STANDARD_GRAVITY
 
 # A gap below this part of the largest one is closed: rounding of stored gaps.
 _CLOSED = 1e-9
-
-_OPENINGS = (EventKind.DETACHMENT.value, EventKind.SEPARATION.value)
-_IMPACTS = (EventKind.IMPACT.value, EventKind.ACCUMULATION.value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,11 +207,11 @@ class View:
 
     def impact_times(self, contact: str) -> Floats:
         """Times of the impacts of a contact and of the limits they accumulate at."""
-        return self._event_times(contact, _IMPACTS)
+        return self._event_times(contact, STRIKES)
 
     def opening_times(self, contact: str) -> Floats:
         """Times at which a resting contact opened."""
-        return self._event_times(contact, _OPENINGS)
+        return self._event_times(contact, ENDS_OF_REST)
 
     def rests(self, contact: str) -> list[tuple[float, float]]:
         """Stretches over which the contact stayed closed between two rows."""

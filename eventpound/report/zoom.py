@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.contact.event import STRIKES
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.report.html import document
 from eventpound.report.loops import nonlinear_springs
 from eventpound.report.view import View
 from eventpound.results.jsontext import canonical
 from eventpound.results.trade import Trade
-from eventpound.solvers.base import EventKind
 from eventpound.units import Dimension
 
 ZOOM_PAGE = "motion.html"
@@ -26,7 +26,6 @@ ZOOM_PAGE = "motion.html"
 _MOST_ROWS, _MOST_EVENTS, _MOST_LOOPS = 40_000, 5_000, 24
 """Of a page: 40 000 rows of ten columns are some 4 MB."""
 _DIGITS = 7
-_STRUCK = (EventKind.IMPACT.value, EventKind.ACCUMULATION.value)
 _BODY = """\
 <h1>{title}</h1>
 <p>Wheel: zoom. Drag: move. Double click: all. A click on a mark or on a row: that event.
@@ -132,7 +131,7 @@ def _events(view: View, trade: Trade) -> Iterator[dict[str, Any]]:
         closing, size = -float(before), trade.number(float(impulse), Dimension.IMPULSE.unit)
         unit = trade.unit(Dimension.IMPULSE.unit)[0]
         said = f"{kind} of {contact} at {float(t):.6f} s"
-        if struck := kind in _STRUCK:
+        if struck := kind in STRIKES:
             said += f", closing at {closing:.3g} m/s, impulse {size} {unit}"
         yield {
             **{"t": float(t), "kind": str(kind), "contact": str(contact), "struck": struck},

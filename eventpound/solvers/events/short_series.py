@@ -17,6 +17,7 @@ from eventpound.contact.rest import acceleration_noise, closing_time, is_none
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents, element_pull
 from eventpound.mechanics.elements import bends_at_zero, z_bend
+from eventpound.mechanics.followers import on_body
 from eventpound.mechanics.observables import Bodies
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
@@ -69,7 +70,7 @@ def gap_series(
     problem, under the `ground`'s own and with the least that counts (m/s²). `time`: T (s).
     """
     order, gap, gap_rate = Y.shape[0] - 1, state.gap, state.gap_rate
-    of_body, first = bodies.of_body, bodies.mass.size - bodies.weights.shape[0]
+    of_body = bodies.of_body
     C, level = np.zeros((gap.size, order + 1)), np.zeros((gap.size, order + 1))
     for j in range(gap.size):
         # One that rounding has put below zero, and that opens as if by rounding, may close at once.
@@ -81,9 +82,9 @@ def gap_series(
                 own = Y[k, system.iq[of_body[body]]]
                 C[j, k] += sign * own
                 level[j, k] = _with_rounding(level[j, k], k, own, ground, acceleration)
-                for b in range(first if body >= first else 0):
+                for b in range(of_body.size if bodies.weights.shape[0] > 0 else 0):
                     # What a point has errs as the bodies that it is a sum of.
-                    if bodies.weights[body - first, b] != 0.0 and of_body[b] >= 0:
+                    if on_body(body, b, bodies.weights) and of_body[b] >= 0:
                         own = Y[k, system.iq[of_body[b]]]
                         level[j, k] = _with_rounding(level[j, k], k, own, ground, acceleration)
     for j in range(gap.size):

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.clusters import is_support
-from eventpound.mechanics.followers import place_points
+from eventpound.mechanics.followers import place_points, row_answer
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.by_address import by_address
+from eventpound.numerics.small_systems import dot
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.followed import follows, observe_followed
 from eventpound.solvers.fast.links import add_pull, elongation, gap_of, link_force
@@ -118,9 +119,8 @@ def _answer_coupled(run: FastRun) -> None:
         c = series.of_body[b]
         observed.a[b] = ground
         if c >= 0:
-            observed.a[b] = (1.0 - series.carried[c]) * ground
-            for d in range(clusters):
-                observed.a[b] += series.compliance[c, d] * series.force[d]
+            answer = row_answer(c, clusters, series.compliance, series.force)
+            observed.a[b] = (1.0 - series.carried[c]) * ground + answer
 
 
 @compiled
@@ -163,10 +163,7 @@ def spread_forces(out: Floats, run: FastRun) -> None:
     """Contact forces that put `series.force` (N,) on the bodies; it is overwritten."""
     series, residual = run.series, run.series.force
     for i in range(run.state.progress[0].resting if series.free.shape[0] > 0 else 0):
-        total = 0.0
-        for b in range(series.force_map.shape[1]):
-            total += series.force_map[i, b] * residual[b]
-        out[series.resting[i]] = total
+        out[series.resting[i]] = dot(series.force_map[i], residual)
     if series.free.shape[0] > 0:
         return
     for i in range(run.state.progress[0].edges):

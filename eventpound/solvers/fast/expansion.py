@@ -18,6 +18,7 @@ import numpy as np
 from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import INVERSE, begin_curve, next_z, pull_per_z
+from eventpound.mechanics.followers import row_answer
 from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece, ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
@@ -82,10 +83,8 @@ def _add_loads(k: int, mass: Floats, series: FastSeries) -> None:
 def _answer_coupled(k: int, scale: float, clusters: int, series: FastSeries) -> None:
     """Coefficient k + 2 of the displacements where clusters follow others, by `series.force`."""
     for c in range(clusters):
-        total = 0.0
-        for d in range(clusters):
-            total += series.compliance[c, d] * series.force[d]
-        series.X[c, k + 2] = (total - series.carried[c] * series.ground[k]) * scale
+        answer = row_answer(c, clusters, series.compliance, series.force)
+        series.X[c, k + 2] = (answer - series.carried[c] * series.ground[k]) * scale
     series.force[:clusters] = 0.0
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.rest import acceleration_noise, is_none
+from eventpound.mechanics.followers import on_body
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
 from eventpound.solvers.fast.compiled import compiled, compiled_noinline
@@ -128,6 +129,16 @@ def bound_of_pair(first: int, second: int, bounds: Floats) -> float:
 
 
 @compiled
+def _with_rounding(level: float, k: int, c: int, limits: Limits, series: FastSeries) -> float:
+    """The rounding `level` of coefficient k of a gap, with that of a cluster's own."""
+    if c < 0:
+        return level
+    if k == 2:
+        return max(level, 0.5 * acceleration_level(c, limits, series))
+    return level + GAP_COEFFICIENT * abs(series.X[c, k])
+
+
+@compiled
 def gap_polynomial(j: int, order: int, run: FastRun) -> None:
     """Coefficients of a gap into `series.c`: the first two are its own variables.
 
@@ -146,10 +157,7 @@ def gap_polynomial(j: int, order: int, run: FastRun) -> None:
     for k in range(2, order + 1):
         level = 0.0
         for end in (first, second):
-            if end >= 0 and k == 2:
-                level = max(level, 0.5 * acceleration_level(end, limits, series))
-            elif end >= 0:
-                level += GAP_COEFFICIENT * abs(series.X[end, k])
+            level = _with_rounding(level, k, end, limits, series)
         if series.free.shape[0] > 0:
             level = _level_at_points(j, k, level, run)
         if not is_none(k, c[k], level, c[1], limits.time):
@@ -161,14 +169,10 @@ def gap_polynomial(j: int, order: int, run: FastRun) -> None:
 def _level_at_points(j: int, k: int, level: float, run: FastRun) -> float:
     """`level` with the rounding of coefficient k of bodies that the points of a gap are sums of."""
     contacts, series = run.plan.contacts, run.series
-    bodies = run.plan.mass.size - contacts.weights.shape[0]
     for end in (contacts.left[j], contacts.right[j]):
-        for b in range(bodies if end >= bodies else 0):
-            c = series.of_body[b]
-            if contacts.weights[end - bodies, b] != 0.0 and c >= 0 and k == 2:
-                level = max(level, 0.5 * acceleration_level(c, run.plan.limits, series))
-            elif contacts.weights[end - bodies, b] != 0.0 and c >= 0:
-                level += GAP_COEFFICIENT * abs(series.X[c, k])
+        for b in range(series.of_body.size):
+            if on_body(end, b, contacts.weights):
+                level = _with_rounding(level, k, series.of_body[b], run.plan.limits, series)
     return level
 
 

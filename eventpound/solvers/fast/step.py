@@ -10,6 +10,7 @@ import numpy as np
 
 from eventpound.contact.cascade import LONGEST_CASCADE, is_fleeting
 from eventpound.contact.impacts import DONE
+from eventpound.mechanics.followers import felt_mass
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.numerics.borrowing import copy_numbers
@@ -215,10 +216,7 @@ def _contact_force_error(tau: float, order: int, run: FastRun) -> float:
 @compiled
 def _mass_at(end: int, run: FastRun) -> float:
     """What a contact force has to move at an end by itself (kg), inf at a barrier."""
-    if end < 0:
-        return np.inf
-    free = run.series.free
-    return 1.0 / free[end, end] if free.shape[0] > 0 else float(run.plan.mass[end])
+    return felt_mass(end, run.plan.mass, run.series.free) if end >= 0 else np.inf
 
 
 @compiled

@@ -15,7 +15,6 @@ from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor_motion import (
     DescriptorProblem,
     constraint_errors,
-    dot,
     solve_contact_forces,
     to_moving_frame,
 )
@@ -33,6 +32,7 @@ from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
+from eventpound.numerics.small_systems import dot
 from eventpound.solvers.events.event_bounds import inspect_step
 from eventpound.solvers.events.step_check import CLEAR, MARKED, Examination, audit
 from eventpound.solvers.sundials.memory import Tolerances

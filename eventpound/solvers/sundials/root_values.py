@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.descriptor import Descriptor
-from eventpound.mechanics.descriptor_motion import DescriptorProblem, dot
+from eventpound.mechanics.descriptor_motion import DescriptorProblem
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,
@@ -14,6 +14,7 @@ from eventpound.mechanics.observables import (
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
+from eventpound.numerics.small_systems import dot
 from eventpound.solvers.sundials.callback_data import Roots, evaluate
 from eventpound.solvers.sundials.descriptor_steps import observe_interpolated
 

@@ -1,0 +1,54 @@
+"""Linear systems of a few unknowns, by plain loops: for these a library costs more to call.
+
+Sums run in the order of the entries, so that the same numbers give the same bits everywhere.
+"""
+
+from __future__ import annotations
+
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import kernel, scalar_kernel
+
+
+@scalar_kernel
+def dot(a: Floats, b: Floats) -> float:
+    """Σ a_i b_i."""
+    total = 0.0
+    for i in range(a.size):
+        total += a[i] * b[i]
+    return total
+
+
+@kernel
+def solve_transposed(lower: Floats, given: Floats, order: Ints, found: Floats) -> None:
+    """Solve ``Lᵀ x = given`` (overwritten), entry a of x into the place ``order[a]``."""
+    for a in range(given.size - 1, -1, -1):
+        for b in range(a + 1, given.size):
+            given[a] -= lower[b, a] * given[b]
+        given[a] /= lower[a, a]
+        found[order[a]] = given[a]
+
+
+@kernel
+def solve_definite(K: Floats, right: Floats) -> Floats:
+    """Solve ``K X = right`` with the lower triangle of K (n, n), by ``K = L D Lᵀ``; overwritten.
+
+    Where K is diagonal, a division.
+    """
+    n = K.shape[0]
+    for j in range(n):
+        for k in range(j):
+            K[j, j] -= K[j, k] * K[j, k] * K[k, k]
+        for i in range(j + 1, n):
+            for k in range(j):
+                K[i, j] -= K[i, k] * K[j, k] * K[k, k]
+            K[i, j] /= K[j, j]
+    for c in range(right.shape[1]):
+        for i in range(n):
+            for k in range(i):
+                right[i, c] -= K[i, k] * right[k, c]
+        for i in range(n):
+            right[i, c] /= K[i, i]
+        for i in range(n - 1, -1, -1):
+            for k in range(i + 1, n):
+                right[i, c] -= K[k, i] * right[k, c]
+    return right
