@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from eventpound.basics.cores import cores
 from eventpound.basics.given import Count, checked, positive
 from eventpound.basics.progress import Counted
 from eventpound.case.case import Case, case_of
@@ -21,7 +22,7 @@ from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
 from eventpound.study.plan import base_of, solver_of
 from eventpound.study.runs import results_of
-from eventpound.study.sweep import WantedRuns, cores
+from eventpound.study.sweep import WantedRuns
 from eventpound.study.variants import axis_values, rows_with, unknown_axes
 from eventpound.units import Dimension
 

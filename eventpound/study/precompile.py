@@ -9,7 +9,6 @@ energy ledger) compile all that a solver has.
 from __future__ import annotations
 
 import contextlib
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from dataclasses import replace
@@ -19,6 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from eventpound.basics.cores import cores
 from eventpound.errors import ComputationError
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.constant import Constant
@@ -259,7 +259,7 @@ def compile_kernels(
     asked = {name: [each for each in job.seconds if each in solvers] for name, job in _JOBS.items()}
     lengths = {name: sum(_JOBS[name].seconds[each] for each in asked[name]) for name in asked}
     jobs = [name for name in asked if asked[name]]
-    workers = min(processes or os.cpu_count() or 1, len(jobs))
+    workers = min(processes or cores(), len(jobs))
     whole, done = sum(lengths.values()), 0.0
     if progress is not None:
         progress(0.0, "")

@@ -12,6 +12,7 @@ from threading import Lock
 from typing import TYPE_CHECKING
 
 from eventpound.accuracy.judge import KEEPING
+from eventpound.basics.cores import cores
 from eventpound.basics.given import Count, checked, positive
 from eventpound.basics.progress import Counted
 from eventpound.case.case import Case
@@ -37,7 +38,6 @@ from eventpound.study.plan import OfSuite, Plan, base_of, described
 from eventpound.study.records import FAILED, record_columns
 from eventpound.study.running import run_study
 from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
-from eventpound.study.sweep import cores
 from eventpound.study.table import SUITE_FORMAT, SUITE_TABLE, read_table
 from eventpound.units import Dimension
 

@@ -7,7 +7,6 @@ of a run, takes them one by one. Either way a row is, to the last bit, what `sim
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -226,13 +225,6 @@ class Sweep:
             end=task.start + length,
             output_times=output_times(replace(run, duration=length, output_step=step)),
         )
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def variants_of(rows: Rows, wanted: WantedRuns) -> tuple[Rows, Variants]:

@@ -24,6 +24,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
+from eventpound.basics.cores import cores
+
 try:
     import fcntl
 except ImportError:  # Windows, where every process compiles for itself.
@@ -53,7 +55,7 @@ def compile_beside(wanted: Wanted) -> None:
     Nothing is done where there is one core, or in a process of several that work together.
     """
     global _process
-    if fcntl is None or _cores() < 2 or multiprocessing.parent_process() is not None:
+    if fcntl is None or cores() < 2 or multiprocessing.parent_process() is not None:
         return
     # Where that fails, the part is compiled here when a run comes to it.
     with contextlib.suppress(OSError):
@@ -62,13 +64,6 @@ def compile_beside(wanted: Wanted) -> None:
         pipe: Any = _process.stdin
         pickle.dump(wanted, pipe)
         pipe.flush()
-
-
-def _cores() -> int:
-    """How many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _started() -> subprocess.Popen[bytes]:

@@ -22,13 +22,13 @@ from itertools import chain
 from multiprocessing import get_context, parent_process
 from threading import Thread
 
+from eventpound.basics.cores import cores
 from eventpound.basics.interruption import Deferred
 from eventpound.basics.warned import show_warning
 from eventpound.case.solver_options import FAST
 from eventpound.errors import ComputationError
 from eventpound.study.engines.base import Engine
 from eventpound.study.plan import Chunk, Plan
-from eventpound.study.sweep import cores
 from eventpound.study.table import Keep, compute
 
 _MOST_BREAKS = 8

@@ -20,10 +20,10 @@ pytestmark = pytest.mark.skipif(
 KERNELS = """\
 from __future__ import annotations
 
-from eventpound.numerics.compiled import kernel, parallel_kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel
 
 
-@parallel_kernel
+@deferred_kernel.but(ahead=True)
 def cubed(x: float) -> float:
     return x * x * x
 
@@ -67,7 +67,7 @@ def test_a_part_is_made_by_another_process(file, cores, times):
     wait = WAIT if times else ""
     program = f"""
 from eventpound.numerics.compiled import beside
-beside._cores = lambda: {cores}
+beside.cores = lambda: {cores}
 from kernels import cubed, whole
 assert whole(1.0) == 0.0
 {wait}
