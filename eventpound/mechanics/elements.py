@@ -55,7 +55,7 @@ from eventpound.mechanics.link_law import (
     YIELDING_SOIL,
 )
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import F, compile_with, kernel, scalar_kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel, step_kernel
 from eventpound.numerics.power_series import integer_power, power_coefficient, sign_after
 from eventpound.tolerances import NO_Z
 
@@ -69,17 +69,7 @@ INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MOST_TERMS)])
 """1/k."""
 
 
-def _part(function: F) -> F:
-    """Compile into whoever calls it."""
-    return compile_with(function, counted=False, inlined=True)
-
-
-def _fused_part(function: F) -> F:
-    """As `_part`, a product and a sum perhaps one rounding."""
-    return compile_with(function, counted=False, inlined=True, fused=True)
-
-
-@_part
+@step_kernel
 def link_force(
     a: int, memory: Floats, k: float, f: float, c: float, x: float, x_rate: float, z: float
 ) -> float:
@@ -91,31 +81,31 @@ def link_force(
     return float(k * x + f + c * x_rate + memory[a, STRENGTH] * z)
 
 
-@_part
+@step_kernel
 def pull_per_z(a: int, memory: Floats) -> float:
     """∂F/∂z of link a (N), 0 without a memory."""
     return float(memory[a, STRENGTH])
 
 
-@_part
+@step_kernel
 def memory_stiffness(a: int, memory: Floats) -> float:
     """What memory adds to the stiffness of link a at z = 0 (N/m)."""
     return float(memory[a, STRENGTH] / memory[a, YIELD])
 
 
-@_part
+@step_kernel
 def contact_code(a: int, memory: Floats) -> int:
     """Code of link a, where it is a contact element, else not negative."""
     return int(memory[a, KIND])
 
 
-@_part
+@step_kernel
 def number_beside(a: int, memory: Floats) -> int:
     """The link whose internal variable the rate of that of link a depends on, too; or a itself."""
     return int(memory[a, BESIDE])
 
 
-@_part
+@step_kernel
 def z_rate(
     a: int, memory: Floats, x_rate: float, direction: float, z: float, beside: float
 ) -> float:
@@ -141,7 +131,7 @@ def z_rate(
     return rate
 
 
-@_part
+@step_kernel
 def z_slopes(a: int, memory: Floats, x_rate: float, z: float, beside: float) -> tuple[float, float]:
     """Derivatives of `z_rate` by the elongation rate (1/m) and by z (1/s)."""
     if memory[a, KIND] == YIELDING_SOIL:
@@ -162,7 +152,7 @@ def z_slopes(a: int, memory: Floats, x_rate: float, z: float, beside: float) -> 
     return (1.0 - kappa * power * size) / yields, by_size if z > 0.0 else -by_size
 
 
-@_part
+@step_kernel
 def slope_beside(a: int, memory: Floats, x_rate: float, z: float, beside: float) -> float:
     """Derivative of `z_rate` by the variable beside (1/s), where that is not z itself."""
     if memory[a, KIND] == ITS_ENERGY:
@@ -176,7 +166,7 @@ def slope_beside(a: int, memory: Floats, x_rate: float, z: float, beside: float)
     return float((weaker - here * memory[a, DELTA_ETA]) / eta)
 
 
-@_part
+@step_kernel
 def _knee_worn(a: int, memory: Floats, beside: float) -> float:
     """ν/η, by which what is nonlinear in the rate of z is larger than at first."""
     if memory[a, KIND] != DEGRADING:
@@ -184,13 +174,13 @@ def _knee_worn(a: int, memory: Floats, beside: float) -> float:
     return float((1.0 + memory[a, DELTA_NU] * beside) / (1.0 + memory[a, DELTA_ETA] * beside))
 
 
-@_part
+@step_kernel
 def _has_one_formula(a: int, memory: Floats) -> bool:
     """Whether dz/dx of link a takes no power of z, as on each branch of a law that has branches."""
     return bool(memory[a, BETA] == memory[a, GAMMA] == 0.0)
 
 
-@_part
+@step_kernel
 def z_bend(a: int, memory: Floats, z: float, beside: float, travel: float) -> float:
     """By how much z departs from a line over a `travel` of the elongation (m), at most."""
     if _has_one_formula(a, memory):
@@ -199,26 +189,26 @@ def z_bend(a: int, memory: Floats, z: float, beside: float, travel: float) -> fl
     return float(linear * (abs(z) + linear) ** memory[a, EXPONENT] * _knee_worn(a, memory, beside))
 
 
-@_part
+@step_kernel
 def reversal_jump(a: int, memory: Floats, z: float, beside: float) -> float:
     """By how much dz/dx jumps where the elongation of link a reverses (1/m), z >= 0."""
     jump = 2.0 * abs(memory[a, GAMMA]) * z ** memory[a, EXPONENT] / memory[a, YIELD]
     return float(jump * _knee_worn(a, memory, beside))
 
 
-@_part
+@step_kernel
 def bends_at_zero(a: int, memory: Floats) -> bool:
     """Whether the rate of z of link a has another formula on the other side of z = 0."""
     return bool(memory[a, GAMMA] != 0.0)
 
 
-@_part
+@step_kernel
 def has_branches(a: int, memory: Floats) -> bool:
     """Whether the law of link a has branches of its own, beside an elastic part without a kink."""
     return bool(memory[a, KIND] == BACKFILL or memory[a, KIND] == SLIDER)
 
 
-@_part
+@step_kernel
 def slides(a: int, memory: Floats) -> bool:
     """Whether link a is a slider, whose branches end where its slip does."""
     return bool(memory[a, KIND] == SLIDER)
@@ -242,7 +232,7 @@ def memory_on_branches(memory: Floats, branch: Ints) -> Floats:
     return found
 
 
-@_part
+@step_kernel
 def _knee(a: int, memory: Floats, offset: float, x: float, z: float) -> float:
     """How far inside link a is from where it left the backbone to where it comes apart (m).
 
@@ -309,7 +299,7 @@ def branch_within(
     return APART if z >= 0.0 else CLOSED
 
 
-@_part
+@step_kernel
 def _convolution(k: int, first: Floats, second: Floats) -> float:
     """Coefficient k of a product."""
     found = 0.0
@@ -360,7 +350,7 @@ def z_coefficient(
     return float(rate / (1.0 + memory[a, DELTA_ETA] * beside[0]))
 
 
-@_fused_part
+@step_kernel.but(fused=True)
 def begin_curve(
     a: int, memory: Floats, sign: float, z: float, power: Floats, curve: Floats
 ) -> None:
@@ -373,7 +363,7 @@ def begin_curve(
     curve[WEIGHT] = n + 1.0
 
 
-@_fused_part
+@step_kernel.but(fused=True)
 def next_z(
     k: int, x: float, z: Floats, power: Floats, speed: Floats, weighted: Floats, curve: Floats
 ) -> float:

@@ -13,7 +13,8 @@ import math
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import loop_kernel, scalar_kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled.recipe import EVERY_STEP
 
 _TERMS, _FEW_TERMS, _SHORT = 22, 12, 0.1
 """Of a series over at most 1/w, whose last is below 1/21! = 2e-20 of the first; and over at most
@@ -24,7 +25,7 @@ _INSTANT = 1e-6
 """Part of 1/w below which the ends of a cell say all about it."""
 
 
-@loop_kernel
+@kernel.but(recipe=EVERY_STEP)
 def largest_swings(
     h: Floats, push: Floats, jump: Floats, omega: Floats, ratio: float, found: Floats
 ) -> None:

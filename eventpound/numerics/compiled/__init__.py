@@ -15,6 +15,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar, cast
 
 import numba
@@ -36,25 +37,15 @@ INTERPRETED = bool(config.DISABLE_JIT)
 """Whether nothing is compiled, as `NUMBA_DISABLE_JIT` has it: slow, for debuggers."""
 
 
-def compile_with(
-    function: F,
-    *,
-    counted: bool,
-    inlined: bool = False,
-    fused: bool = False,
-    recipe: Recipe = ONCE_AN_EVENT,
-    deferred: bool = False,
-    ahead: bool = False,
-) -> F:
-    """Compile a function.
+@dataclass(frozen=True)
+class KernelKind:
+    """A way in which functions are compiled, and the decorator that has it done.
 
-    Parameters
+    Attributes
     ----------
-    function : callable
-        In Numba's part of Python.
     counted : bool
         Whether arrays are counted references, without which none can be made or
-        returned. Each array named then costs two atomic operations.
+        returned. Each array named then costs two sums.
     inlined : bool
         Compile it into whoever calls it, where the recipe of the whole is `SMALL`.
     fused : bool
@@ -67,33 +58,60 @@ def compile_with(
     ahead : bool
         Whether every run comes to a deferred one, which another process then compiles meanwhile.
     """
-    if INTERPRETED:
-        return function
-    options: dict[str, Any] = {
-        "nogil": True,
-        "error_model": "numpy",
-        "fastmath": {"contract"} if fused else False,
-        "forceinline": inlined,
-        "_nrt": counted,
-    }
-    store = KernelStore(function, (sorted(options.items()), recipe), PLAIN)
-    made: Any
-    if PLAIN:
-        made = numba.njit(**options)(function)
-        made._cache = store
-        made.compile = _timed(made.compile, function)
-    else:
-        from eventpound.numerics.compiled.linked import Entry
 
+    counted: bool = False
+    inlined: bool = False
+    fused: bool = False
+    recipe: Recipe = ONCE_AN_EVENT
+    deferred: bool = False
+    ahead: bool = False
+
+    def but(self, **others: Any) -> KernelKind:
+        """The same with other attributes."""
+        return replace(self, **others)
+
+    def __call__(self, function: F) -> F:
+        """Compile a function, which is in Numba's part of Python."""
+        if INTERPRETED:
+            return function
+        options: dict[str, Any] = {
+            "nogil": True,
+            "error_model": "numpy",
+            "fastmath": {"contract"} if self.fused else False,
+            "forceinline": self.inlined,
+            "_nrt": self.counted,
+        }
+        store = KernelStore(function, (sorted(options.items()), self.recipe), PLAIN)
+        made: Any
+        if PLAIN:
+            made = numba.njit(**options)(function)
+            made._cache = store
+            made.compile = _timed(made.compile, function)
+            return cast(F, made)
         options = {"nopython": True, "boundscheck": None, **options}
-        if deferred:
+        if self.deferred:
             from eventpound.numerics.compiled.deferred import DeferredEntry
 
-            made = DeferredEntry(function, options, recipe, store)
-            made.ahead = ahead
-            return cast(F, made)
-        made = Entry(function, options, recipe, store)
-    return made
+            made = DeferredEntry(function, options, self.recipe, store)
+            made.ahead = self.ahead
+        else:
+            from eventpound.numerics.compiled.linked import Entry
+
+            made = Entry(function, options, self.recipe, store)
+        return cast(F, made)
+
+
+kernel = KernelKind(counted=True)
+"""May make arrays."""
+scalar_kernel = KernelKind()
+"""Makes and returns no arrays."""
+step_kernel = KernelKind(inlined=True)
+"""Makes no arrays either, and is done in every step: a call that copies the groups of arrays it is
+given may cost more than what it does."""
+deferred_kernel = KernelKind(counted=True, recipe=EVERY_STEP, deferred=True)
+"""May make arrays, and is compiled by itself when compiled code first calls it: what only some
+scenes need, or, with `ahead`, what another core compiles meanwhile. What it returns is one of those
+that `eventpound.numerics.compiled.deferred` lists."""
 
 
 def _timed(compile_for: Callable[[Any], Any], function: Callable[..., Any]) -> Any:
@@ -112,34 +130,6 @@ def _timed(compile_for: Callable[[Any], Any], function: Callable[..., Any]) -> A
             return found
 
     return timed
-
-
-def kernel(function: F) -> F:
-    """Compile a function that may make arrays."""
-    return compile_with(function, counted=True)
-
-
-def loop_kernel(function: F) -> F:
-    """Compile a loop over steps that may make arrays."""
-    return compile_with(function, counted=True, recipe=EVERY_STEP)
-
-
-def scalar_kernel(function: F) -> F:
-    """Compile a function that makes and returns no arrays."""
-    return compile_with(function, counted=False)
-
-
-def deferred_kernel(function: F) -> F:
-    """Compile a function that only some scenes need, when one first calls it.
-
-    It may make arrays, and returns what `eventpound.numerics.compiled.deferred` lists.
-    """
-    return compile_with(function, counted=True, recipe=EVERY_STEP, deferred=True)
-
-
-def parallel_kernel(function: F) -> F:
-    """Compile a deferred function to which every run comes, on another core where there is one."""
-    return compile_with(function, counted=True, recipe=EVERY_STEP, deferred=True, ahead=True)
 
 
 class PlainInPython:

@@ -127,10 +127,6 @@ class EntryLibrary(PartLibrary):
         """Link all parts, optimise once, and make machine code."""
         self._raise_if_finalized()
         self._codegen._check_llvm_bugs()
-        self._link_and_optimize()
-        self._finalize_final_module()
-
-    def _link_and_optimize(self) -> None:
         module = self._final_module
         own = {
             function.name
@@ -139,22 +135,16 @@ class EntryLibrary(PartLibrary):
         }
         forced: set[str] = set()
         module.link_in(llvm.parse_assembly(_COUNTING))
-        below = _callers_first(self)
-        for library in below:
+        for library in _callers_first(self):
             self._reload_init.update(library._reload_init)
-            if isinstance(library, SealedLibrary):
-                continue
             part = _module_of(library)
             if self.recipe.forced and getattr(library, "inlined", False):
                 forced.update(f.name for f in part.functions if not f.is_declaration)
             module.link_in(part, preserve=True)
         _hide(module, own, forced)
         self._optimize_final_module()
-        for library in below:
-            if isinstance(library, SealedLibrary):
-                module.link_in(library.shared, preserve=True)
-        _hide(module, own, set())
         module.verify()
+        self._finalize_final_module()
 
     def _optimize_final_module(self) -> None:
         manager, builder = self._codegen._module_pass_manager(
@@ -192,23 +182,6 @@ class EntryLibrary(PartLibrary):
                 yield value.name
 
 
-class SealedLibrary(EntryLibrary):
-    """Code of one function and of everything below it, optimised by itself.
-
-    It is linked once its caller has been optimised, and so is the same to the last bit
-    wherever it is called.
-    """
-
-    def finalize(self) -> None:
-        """Link all parts and optimise once."""
-        self._raise_if_finalized()
-        self._finalized = True
-        self._link_and_optimize()
-
-    def _get_module_for_linking(self) -> Any:
-        return self.shared
-
-
 def _hide(module: Any, own: set[str], forced: set[str]) -> None:
     """Make all functions but its `own` internal to a module, to be compiled in where `forced`."""
     for function in module.functions:
@@ -239,7 +212,7 @@ def _callers_first(library: Any) -> list[Any]:
         for each in caller._linking_libraries:
             if id(each) not in visited:
                 visited.add(id(each))
-                if isinstance(each, PartLibrary) and not isinstance(each, SealedLibrary):
+                if isinstance(each, PartLibrary):
                     visit(each)
                 found.append(each)
 
@@ -267,12 +240,12 @@ class _PartPipeline(_Pipeline):
 
 
 @cache
-def _pipeline(kind: type[EntryLibrary], recipe: Recipe) -> type[_Pipeline]:
-    """The pipeline that makes libraries of a kind."""
+def _pipeline(recipe: Recipe) -> type[_Pipeline]:
+    """The pipeline of entries that are optimised so."""
 
     class Pipeline(_Pipeline):
         def _library(self, name: str) -> PartLibrary:
-            library = kind(self.state.targetctx.codegen(), name)
+            library = EntryLibrary(self.state.targetctx.codegen(), name)
             library.recipe = recipe
             return library
 
@@ -297,14 +270,9 @@ class _EntryCompiler(_FunctionCompiler):
 class KernelPart(CPUDispatcher):
     """A kernel as other compiled functions call it."""
 
-    def __init__(
-        self,
-        function: Callable[..., Any],
-        options: dict[str, Any],
-        pipeline: type[_Pipeline] = _PartPipeline,
-    ) -> None:
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
         super().__init__(function, {}, options)
-        self._compiler = _PartCompiler(function, self.targetdescr, options, {}, pipeline)
+        self._compiler = _PartCompiler(function, self.targetdescr, options, {}, _PartPipeline)
         self._inlined = options.get("forceinline", False)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
@@ -378,7 +346,7 @@ class Entry(CPUDispatcher):
             if "_store" in self.__dict__:
                 function, options = self.py_func, self._options
                 super().__init__(function, {}, options)
-                pipeline = _pipeline(EntryLibrary, self._recipe)
+                pipeline = _pipeline(self._recipe)
                 self._compiler = _EntryCompiler(function, self.targetdescr, options, {}, pipeline)
                 # At last: no other thread calls it before.
                 self._cache = self.__dict__.pop("_store")
@@ -386,10 +354,7 @@ class Entry(CPUDispatcher):
     @cached_property
     def part(self) -> KernelPart:
         """The same function as other compiled functions call it."""
-        pipeline: type[_Pipeline] = _PartPipeline
-        if self._recipe.sealed:
-            pipeline = _pipeline(SealedLibrary, self._recipe)
-        return KernelPart(self.py_func, self._options, pipeline)
+        return KernelPart(self.py_func, self._options)
 
     @property
     def _numba_type_(self) -> Any:
@@ -457,5 +422,5 @@ def linked_callback(function: Callable[..., Any], signature: Any, recipe: Recipe
         How it is optimised.
     """
     types_of = (signature.args, signature.return_type)
-    pipeline = _pipeline(EntryLibrary, recipe)
+    pipeline = _pipeline(recipe)
     return LinkedCallback(function, types_of, locals={}, options={}, pipeline_class=pipeline)

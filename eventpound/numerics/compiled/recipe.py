@@ -15,14 +15,10 @@ class Recipe(NamedTuple):
     forced : bool
         Parts marked as inlined are compiled into whoever calls them. Otherwise LLVM
         chooses, which takes half the time for large kernels.
-    sealed : bool
-        Compiled code that calls the function calls the very code that Python calls, the same
-        to the last bit, instead of compiling it into itself.
     """
 
     level: int
     forced: bool
-    sealed: bool = False
 
 
 ONCE_AN_EVENT = Recipe(level=1, forced=False)

@@ -86,8 +86,6 @@ class KernelStore:
                 first = next(self._places(signature, context.codegen()))
                 self._claim = Claim(first, compilation_waits)
                 found = self._kept(signature, context)
-        if found is not None:
-            self.release()
         return found
 
     def _kept(self, signature: Any, context: Any) -> Any:

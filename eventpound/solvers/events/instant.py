@@ -21,7 +21,7 @@ from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import CurrentPiece, longest_safe_step, next_corner
 from eventpound.numerics.by_address import by_address
-from eventpound.numerics.compiled import kernel, parallel_kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel
 from eventpound.solvers.events.dense import Dense, DenseStep, observe_at
 from eventpound.solvers.events.law_contacts import add_shares, switch_elements
 from eventpound.solvers.events.location import any_located, clear_located
@@ -55,7 +55,7 @@ NOT_FINITE, UNENDING = 30, 32
 """How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
 
 
-@parallel_kernel
+@deferred_kernel.but(ahead=True)
 def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
     rules, state, record, located = run.rules, run.state, run.record, run.located

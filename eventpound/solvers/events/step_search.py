@@ -12,7 +12,7 @@ from eventpound.mechanics.observables import Observed
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, next_corner
 from eventpound.numerics.by_address import by_address
-from eventpound.numerics.compiled import kernel, parallel_kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel
 from eventpound.solvers.events.dense import Dense, DenseStep, observe_at, state_at
 from eventpound.solvers.events.event_bounds import inspect_step
 from eventpound.solvers.events.law_contacts import add_shares
@@ -72,7 +72,7 @@ def record_inside(end: float, marked: bool, run: Run, step: DenseStep) -> None:
         write_samples(_observed_at, step, origin, step.dense.start, end, record.journal)
 
 
-@parallel_kernel
+@deferred_kernel.but(ahead=True)
 def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> int:
     """Search a step of an integrator that was marked for events, from sample to sample.
 

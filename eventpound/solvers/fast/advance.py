@@ -18,9 +18,8 @@ from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.by_address import by_address
 from eventpound.solvers.fast.compiled import (
     compiled,
-    compiled_in_parallel,
+    compiled_deferred,
     compiled_noinline,
-    compiled_whole,
 )
 from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.extremes import distance_now, take_instant
@@ -55,7 +54,7 @@ def advance(budget: int, run: FastRun) -> int:
     return carry_on(budget, by_address(run))
 
 
-@compiled_whole
+@compiled_deferred
 def carry_on(budget: int, run: FastRun) -> int:
     """`advance`, the run by address."""
     ground, end = run.plan.ground, run.plan.limits.end
@@ -126,7 +125,7 @@ def _goes_with(b: int, s: int, run: FastRun) -> bool:
     return b == s or (b >= 0 and of_body[b] == of_body[s] >= 0 and not is_support(b, run.plan.mass))
 
 
-@compiled_in_parallel
+@compiled_deferred.but(ahead=True)
 def _settle_instant(run: FastRun) -> int:
     """Do the duties of the present instant and write down what follows it."""
     plan, state, series, observed = run.plan, run.state, run.series, run.observed

@@ -25,11 +25,11 @@ from eventpound.mechanics.elements import (
 )
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
+from eventpound.numerics.compiled import kernel
 from eventpound.solvers.fast.compiled import (
     compiled,
     compiled_deferred,
     compiled_noinline,
-    compiled_with_arrays,
 )
 from eventpound.solvers.fast.links import add_pull, elongation
 from eventpound.solvers.fast.run import LOCAL_SHARE, FastRun
@@ -63,7 +63,7 @@ def put_on_branches(run: FastRun) -> None:
     _put_on_branches(run.plan.links.law.memory, run.state.branch, run.series.memory)
 
 
-@compiled_with_arrays
+@kernel.but(fused=True)
 def _put_on_branches(own: Floats, branch: Ints, out: Floats) -> None:
     found = memory_on_branches(own, branch)
     for a in range(branch.size):

@@ -22,11 +22,11 @@ from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
+from eventpound.numerics.compiled import kernel
 from eventpound.solvers.fast.compiled import (
     compiled,
     compiled_deferred,
     compiled_noinline,
-    compiled_with_arrays,
 )
 from eventpound.solvers.fast.followed import find_branches, follows, put_on_branches
 from eventpound.solvers.fast.links import (
@@ -82,7 +82,7 @@ def _enter_rest(run: FastRun) -> None:
         total[c] = 1.0 / total[c] if total[c] > 0.0 else 0.0
 
 
-@compiled_with_arrays
+@kernel.but(fused=True)
 def _form(run: FastRun) -> tuple[int, int]:
     """Clusters, how the forces of the resting contacts follow from the motion, which are unique.
 

@@ -22,8 +22,8 @@ from eventpound.mechanics.observables import difference, gap_rounding
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import (
     compiled,
+    compiled_deferred,
     compiled_noinline,
-    compiled_whole,
 )
 from eventpound.solvers.fast.run import Contacts, FastObserved, FastPlan, FastRun, FastState, Links
 
@@ -194,7 +194,7 @@ def cross_border(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> 
         state.part[h] = UNLOADING if hysteresis.down[h] < -core else CORE
 
 
-@compiled_whole
+@compiled_deferred
 def all_variables(x: Floats, hysteresis: Hysteresis, state: FastState, out: Floats) -> None:
     """Every z at the elongations x (L,) of the links, into `out` (H,)."""
     for h in range(out.size):

@@ -22,9 +22,10 @@ from eventpound.contact.event_rows import (
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.by_address import by_address
+from eventpound.numerics.compiled.recipe import SMALL
 from eventpound.solvers.fast.advance import carry_on
 from eventpound.solvers.fast.columns import Motions, VariantArrays
-from eventpound.solvers.fast.compiled import compiled, compiled_loop, compiled_noinline
+from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.constants import blank_located, blank_series, clear_scratch
 from eventpound.solvers.fast.evaluate import blank_fast_observed
 from eventpound.solvers.fast.links import all_variables, elongations
@@ -214,7 +215,7 @@ def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kep
     return int(kept.ended.size)
 
 
-@compiled_loop
+@compiled_noinline.but(recipe=SMALL)
 def run_sdof_rows(
     budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kept: Kept
 ) -> int:

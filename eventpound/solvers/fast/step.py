@@ -15,7 +15,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.polynomial import value_and_slope
-from eventpound.solvers.fast.compiled import compiled, compiled_in_parallel, compiled_noinline
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.evaluate import contact_force_series, observe_at, observe_at_noinline
 from eventpound.solvers.fast.expansion import (
     begin_series,
@@ -132,7 +132,7 @@ def _expansion(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[int, fl
     return order, h
 
 
-@compiled_in_parallel
+@compiled_deferred.but(ahead=True)
 def _record_inside(tau: float, t_end: float, order: int, piece: CurrentPiece, run: FastRun) -> bool:
     """Extremes, energy and rows inside a step; whether `observed` was overwritten."""
     plan, state = run.plan, run.state

@@ -30,7 +30,8 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.numerics.borrowing import put_numbers
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel, step_kernel
+from eventpound.numerics.compiled.recipe import SMALL
 from eventpound.numerics.lcp import solve_dense
 from eventpound.solvers.timestepping.equations import (
     FixedStep,
@@ -53,8 +54,6 @@ from eventpound.solvers.timestepping.stepping import (
     gap_of,
     gap_rate,
     pull_together,
-    step_kernel,
-    step_loop,
 )
 from eventpound.tolerances import NO_SPEED, QUIET, STILL_GAP_RATE
 
@@ -258,7 +257,7 @@ def _take_step(step: FixedStep, active: Active, run: Stepping) -> int:
     return outcome
 
 
-@step_loop
+@scalar_kernel.but(recipe=SMALL)
 def advance(span: Span, forcing: Forcing, active: Active, run: Stepping) -> tuple[int, int]:
     """Take steps; see `eventpound.solvers.timestepping.run.Advance`."""
     return take_steps(_take_step, 3 * active.marked.size, span, forcing, active, run)

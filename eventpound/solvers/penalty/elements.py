@@ -30,6 +30,7 @@ from eventpound.mechanics.contact_elements import effective_masses
 from eventpound.mechanics.contact_laws import element_parts
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import step_kernel
 from eventpound.scene.contact_law import ContactLaw, Element
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Task
@@ -37,7 +38,6 @@ from eventpound.solvers.events.law_contacts import DRAG, TOUCH_ROWS
 from eventpound.solvers.events.run import Laws
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.settings import Settings, number
-from eventpound.solvers.timestepping.stepping import step_kernel
 from eventpound.solvers.timestepping.steps import checked_choices, largest_stiffness
 
 _KELVIN_VOIGT, _JANKOWSKI = int(Element.KELVIN_VOIGT), int(Element.JANKOWSKI)

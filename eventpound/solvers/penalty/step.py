@@ -12,6 +12,8 @@ from __future__ import annotations
 
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.banded import factor_banded, solve_banded
+from eventpound.numerics.compiled import scalar_kernel, step_kernel
+from eventpound.numerics.compiled.recipe import SMALL
 from eventpound.solvers.events.law_contacts import (
     CLOSED,
     DRAG,
@@ -43,8 +45,6 @@ from eventpound.solvers.timestepping.stepping import (
     gap_of,
     gap_rate,
     pull_together,
-    step_kernel,
-    step_loop,
 )
 
 MOST_ITERATIONS = 60
@@ -182,7 +182,7 @@ def _take_step(step: FixedStep, elements: PenaltyElements, run: Stepping) -> int
     return outcome
 
 
-@step_loop
+@scalar_kernel.but(recipe=SMALL)
 def advance(
     span: Span, forcing: Forcing, elements: PenaltyElements, run: Stepping
 ) -> tuple[int, int]:

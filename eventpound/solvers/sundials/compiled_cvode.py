@@ -12,7 +12,8 @@ from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
 from eventpound.numerics.by_address import with_address
-from eventpound.numerics.compiled import kernel, loop_kernel
+from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled.recipe import EVERY_STEP
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.reversals import take_directions
@@ -94,7 +95,7 @@ def right_hand_side(tau: float, y: int, rate: int, given: CvodeData) -> int:
     return 0
 
 
-@loop_kernel
+@kernel.but(recipe=EVERY_STEP)
 def advance(
     handles: CvodeHandles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
 ) -> Numbers:

@@ -17,7 +17,8 @@ from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.by_address import with_address
-from eventpound.numerics.compiled import kernel, loop_kernel
+from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled.recipe import EVERY_STEP
 from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import Examination
@@ -117,7 +118,7 @@ def jacobian_function(
     return 0
 
 
-@loop_kernel
+@kernel.but(recipe=EVERY_STEP)
 def advance(
     handles: IdaHandles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
 ) -> Numbers:

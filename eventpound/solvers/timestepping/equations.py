@@ -33,6 +33,7 @@ from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import step_kernel
 from eventpound.solvers.timestepping.stepping import (
     DONE,
     HYSTERETIC,
@@ -45,7 +46,6 @@ from eventpound.solvers.timestepping.stepping import (
     copy_values,
     pull_together,
     record_step,
-    step_kernel,
 )
 from eventpound.tolerances import BALANCE, BALANCE_ROUNDING, ITERATED
 

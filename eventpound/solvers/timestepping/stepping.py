@@ -24,25 +24,11 @@ from eventpound.mechanics.monitored import (
 )
 from eventpound.mechanics.observables import Observed, difference
 from eventpound.numerics.arrays import Floats, Ints, Records
-from eventpound.numerics.compiled import F, compile_with, in_python
-from eventpound.numerics.compiled.recipe import SMALL
+from eventpound.numerics.compiled import in_python, step_kernel
 from eventpound.numerics.records import NamedNumbers
 from eventpound.scene.elastic_laws import ElasticLaws
 from eventpound.solvers.events.recorder import columns_of, row_width
 from eventpound.solvers.events.scales import SceneScales
-
-
-def step_kernel(function: F) -> F:
-    """Compile a part of every step, which makes no arrays, into whoever calls it.
-
-    A call copies the groups of arrays it is given, which costs more than the part.
-    """
-    return compile_with(function, counted=False, inlined=True)
-
-
-def step_loop(function: F) -> F:
-    """Compile a loop over steps with its parts in it."""
-    return compile_with(function, counted=False, recipe=SMALL)
 
 
 class Structure(NamedTuple):

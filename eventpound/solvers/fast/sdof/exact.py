@@ -48,8 +48,9 @@ from eventpound.motion.forcing import (
 )
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled.recipe import SMALL
 from eventpound.numerics.polynomial import value_and_slope
-from eventpound.solvers.fast.compiled import compiled, compiled_deferred_loop, compiled_noinline
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.extremes import stays_within, turning_times
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.record import is_due, pass_time
@@ -339,7 +340,7 @@ def exact_step(
     return ExactStep(holds, change, next_v, next_a)
 
 
-@compiled_deferred_loop
+@compiled_deferred.but(recipe=SMALL)
 def sample_steps(
     budget: int, segment: int, piece_end: float, piece: CurrentPiece, run: SdofRun
 ) -> int:

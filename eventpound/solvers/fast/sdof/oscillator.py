@@ -33,11 +33,10 @@ from eventpound.motion.forcing import (
     sample_time,
 )
 from eventpound.numerics.by_address import by_address, whole
+from eventpound.numerics.compiled.recipe import SMALL
 from eventpound.solvers.fast.compiled import (
     compiled,
     compiled_deferred,
-    compiled_deferred_loop,
-    compiled_loop,
     compiled_noinline,
 )
 from eventpound.solvers.fast.links import turns_back
@@ -156,7 +155,7 @@ def oscillate_alone(budget: int, run: FastRun) -> int:
 _SAMPLES, _GAUSSIAN, _ZERO = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.ZERO)
 
 
-@compiled_loop
+@compiled_deferred.but(recipe=SMALL)
 def oscillate(budget: int, plan: FastPlan, state: FastState, sdof: Sdof, record: FastRecord) -> int:
     """Carry a single body to the end of its run, or as far as steps and room reach.
 
@@ -226,7 +225,7 @@ def _settle(run: SdofRun) -> None:
     take_settled(t, g if body.rests_on != 0.0 else body.a, run)
 
 
-@compiled_deferred_loop
+@compiled_deferred.but(recipe=SMALL)
 def _rest(last_step: int, run: SdofRun) -> int:
     """Steps of a body at rest, until something is to be settled."""
     ground, body, now, progress = run.plan.ground, run.body, run.now, run.progress
