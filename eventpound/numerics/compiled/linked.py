@@ -21,8 +21,10 @@ does without this module.
 
 from __future__ import annotations
 
+import gc
 import threading
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache, cached_property, update_wrapper
 from typing import Any
 
@@ -37,7 +39,6 @@ from numba.core.environment import lookup_environment
 from numba.core.registry import CPUDispatcher
 
 from eventpound.basics.interruption import is_interruption
-from eventpound.numerics.compiled.front_end import quick_front_end
 from eventpound.numerics.compiled.recipe import Recipe
 from eventpound.numerics.compiling import function_read, getting_ready
 
@@ -309,6 +310,21 @@ class _Thread(threading.local):
 in_this_thread = _Thread()
 
 
+@contextmanager
+def _collector_held_off() -> Iterator[None]:
+    """Compile without Python's collector, which goes through millions of objects for nothing.
+
+    For one who holds Numba's compiler lock.
+    """
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collecting:
+            gc.enable()
+
+
 class Entry(CPUDispatcher):
     """A function as Python calls it.
 
@@ -380,7 +396,7 @@ class Entry(CPUDispatcher):
     def compile(self, signature: Any) -> Any:
         """Make the function ready for arguments of these types."""
         self._make()
-        with getting_ready(self.py_func), global_compiler_lock, quick_front_end():
+        with getting_ready(self.py_func), global_compiler_lock, _collector_held_off():
             try:
                 return super().compile(signature)
             finally:
@@ -402,7 +418,7 @@ class LinkedCallback(CFunc):
 
     def compile(self) -> None:
         """Make the function ready; its address is known then."""
-        with global_compiler_lock, quick_front_end():
+        with global_compiler_lock, _collector_held_off():
             try:
                 super().compile()
             finally:
