@@ -228,7 +228,7 @@ def test_the_workbook_has_the_numbers_of_the_table_in_its_units(suite: Path) -> 
             force = table.loc[f"springs.column {name}.abs_max_force", key]
             assert columns[f"peak force (kN): {key}"][i] == pytest.approx(force / 1e3, rel=1e-15)
             ductility = table.loc[f"springs.column {name}.ductility", key]
-            assert columns[f"ductility: {key}"][i] == ductility
+            assert columns[f"ductility: {key}"][i] == pytest.approx(ductility, rel=1e-15)
     assert [row[0] for row in sheets["Records"][1:]] == ["1 a.txt", "2 b.txt", "3 c.txt"]
 
 
