@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.quantities import storeys
 from eventpound.quantities import values as v
 from eventpound.quantities.base import Quantity, TakenFrom, column, of_contact, six_of, sum_of
 from eventpound.scene.separation import is_between_bodies, is_between_structures
@@ -83,26 +84,26 @@ LISTED: tuple[Quantity, ...] = (
              v.residual_elongation, only=v.moves_with_bodies),
     Quantity(_SPRING + "drift_ratio", "drift ratio", D.NUMBER,
              "Largest elongation of either sign over the height of the storey, where it is given.",
-             v.peak_drift_ratio, only=v.has_height),
+             storeys.peak_drift_ratio, only=storeys.has_height),
     Quantity(_SPRING + "stability_coefficient", "stability coefficient", D.NUMBER,
              "P-Delta: theta = P D/(V h) of a storey with a weight P and a height h, D its largest "
              "drift and V what its backbone resists there; P/(k h) of a linear one.",
-             v.stability_coefficient, only=v.has_weight),
+             storeys.stability_coefficient, only=storeys.has_weight),
     Quantity(_SPRING + "slack_left", "slack left", D.LENGTH,
              "What is left of the slack of a spring that only pulls, of the gap of one that only "
              "pushes.", v.slack_left, only=v.goes_slack),
     Quantity("max_drift", "largest drift", D.LENGTH,
              "Largest elongation of either sign of all storeys, the springs with a height.",
-             v.largest_drift, only=v.has_storeys),
+             storeys.largest_drift, only=storeys.has_storeys),
     Quantity("max_drift_ratio", "largest drift ratio", D.NUMBER,
              "Largest drift ratio of all storeys, the springs with a height.",
-             v.largest_drift_ratio, only=v.has_storeys),
+             storeys.largest_drift_ratio, only=storeys.has_storeys),
     Quantity("structures.<structure>.roof_drift", "roof drift", D.LENGTH,
              "Largest displacement, relative to the ground, of the floors that carry no storey.",
-             v.roof_drift, only=v.has_floors),
+             storeys.roof_drift, only=storeys.has_floors),
     Quantity("structures.<structure>.storey_drift_ratio", "largest storey drift", D.NUMBER,
-             "Largest drift ratio of the storeys of a structure.", v.storey_drift_ratio,
-             only=v.has_floors),
+             "Largest drift ratio of the storeys of a structure.", storeys.storey_drift_ratio,
+             only=storeys.has_floors),
     *six_of("seats.<seat>.*_opening", "opening", D.LENGTH,
             ": how far the right end of a seat has moved away from the left one"),
     *six_of("base_shear.*", "base shear", D.FORCE,

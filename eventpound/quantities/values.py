@@ -11,13 +11,12 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import SIX, Value, path_of_owner
 from eventpound.quantities.runs import Runs
-from eventpound.scene.at_rest import theta_at_rest
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.joints import joints_of
 from eventpound.scene.parameters import number_places, told_of_variants
 from eventpound.scene.scene import Scene
 from eventpound.scene.separation import correlation, cqc
-from eventpound.scene.spring import GROUND, BoucWen, Hysteretic, Linear
+from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes, Recording
 
@@ -42,55 +41,9 @@ def told_by_law(name: str) -> Callable[[Scene, int], bool]:
 
 
 def is_elastic(scene: Scene, i: int) -> bool:
-    """Whether spring i has no memory."""
-    return not isinstance(scene.springs[i].law, Hysteretic)
-
-
-def has_height(scene: Scene, i: int) -> bool:
-    """Whether spring i is a storey, with a height."""
-    return scene.springs[i].height is not None
-
-
-def storeys_of_structure(scene: Scene, i: int) -> list[int]:
-    """Springs with a height of structure i."""
-    group = set(structures_of(scene)[i])
-    springs = enumerate(scene.springs)
-    return [k for k, s in springs if s.height is not None and group.intersection(s.between)]
-
-
-def has_floors(scene: Scene, i: int) -> bool:
-    """Whether structure i has storeys."""
-    return bool(storeys_of_structure(scene, i))
-
-
-def storey_drift_ratio(many: Runs, i: int) -> Floats:
-    """Largest drift ratio of the storeys of structure i."""
-    storeys = storeys_of_structure(many.scene, i)
-    return np.asarray(np.max([peak_drift_ratio(many, k) for k in storeys], axis=0))
-
-
-def roof_drift(many: Runs, i: int) -> Floats:
-    """Largest displacement of the floors of structure i that carry no storey (m)."""
-    scene, level = many.scene, _levels(many.scene)
-    storeys = [scene.springs[k].between for k in storeys_of_structure(scene, i)]
-    # The end that is farther from the ground stands on the other, in whichever order they are.
-    pairs = [sorted(ends, key=lambda end: level.get(end, len(level))) for ends in storeys]
-    carrying = {low for low, _ in pairs}
-    floors = {high for _, high in pairs}
-    roofs = (floors - carrying) or floors
-    names = [body.name for body in scene.bodies]
-    return np.asarray(np.max([_peak(many.displacement, names.index(r)) for r in roofs], axis=0))
-
-
-def _levels(scene: Scene) -> dict[str, int]:
-    """How many springs stand between the ground and each end of one, at least."""
-    found = dict.fromkeys((GROUND, *(support.name for support in scene.supports)), 0)
-    fresh = list(found)
-    while fresh:
-        beside = [s.between for s in scene.springs if set(fresh) & set(s.between)]
-        fresh = list({end for between in beside for end in between if end not in found})
-        found |= dict.fromkeys(fresh, max(found.values()) + 1)
-    return found
+    """Whether spring i has no memory, and a force of its own, as no coupling of a frame."""
+    spring = scene.springs[i]
+    return not isinstance(spring.law, Hysteretic) and spring.frame is None
 
 
 def goes_slack(scene: Scene, i: int) -> bool:
@@ -104,7 +57,7 @@ def slack_left(many: Runs, i: int) -> Floats:
     """What is left of the slack of a spring that pulls only, of the gap of one that pushes (m)."""
     left = np.empty(many.t.shape)
     for n in range(left.size):
-        own = reduced(_law_of(many, i, n))
+        own = reduced(law_of(many, i, n))
         x = many.elongation
         pulled, pushed = own.offset - x.maximum[n, i], x.minimum[n, i] - own.offset
         left[n] = pulled if own.compression == 0.0 else pushed
@@ -118,64 +71,16 @@ def demand_over_capacity(many: Runs, _: int) -> Floats:
     return np.asarray(np.max(parts, axis=0)) if parts else many.t * np.nan
 
 
-def has_storeys(scene: Scene, _: int) -> bool:
-    """Whether a scene has storeys."""
-    return any(spring.height is not None for spring in scene.springs)
-
-
 def ductility(many: Runs, i: int) -> Floats:
     """Largest elongation of a Bouc-Wen spring over its yield displacement."""
     spring = many.scene.springs[i]
     law = spring.law
     assert isinstance(law, BoucWen)
     limit = many.parameters.get(f"spring.{spring.name}.yield_displacement", law.yield_displacement)
-    return _peak(many.elongation, i) / limit
+    return peak_size(many.elongation, i) / limit
 
 
-def peak_drift_ratio(many: Runs, i: int) -> Floats:
-    """Largest elongation of a spring over its height, NaN without one."""
-    return _peak(many.elongation, i) / (many.scene.springs[i].height or np.nan)
-
-
-def has_weight(scene: Scene, i: int) -> bool:
-    """Whether P-Delta softens spring i, which resists by itself."""
-    return theta_at_rest(scene.springs[i]) is not None
-
-
-def stability_coefficient(many: Runs, i: int) -> Floats:
-    """P D/(V h) of a storey: V its resistance at the largest drift D when first loaded to there."""
-    spring = many.scene.springs[i]
-    law, key = spring.law, f"spring.{spring.name}."
-    assert isinstance(law, Linear | BoucWen)
-
-    def number(name: str, owner: object = law) -> Any:
-        return many.parameters.get(key + name, getattr(owner, name))
-
-    secant, x = number("stiffness"), _peak(many.elongation, i)
-    if isinstance(law, BoucWen):
-        # Up to yield the backbone goes along K0.
-        reach = np.maximum(x, law.bound * number("yield_displacement"))
-        secant = secant + law.bound * number("strength") / reach
-    return np.asarray(number("weight", spring) / (secant * (spring.height or np.nan)) + 0.0 * x)
-
-
-def largest_drift(many: Runs, _: int) -> Floats:
-    """Largest elongation of all storeys (m)."""
-    return _largest_of_storeys(many, lambda many, i: _peak(many.elongation, i))
-
-
-def largest_drift_ratio(many: Runs, _: int) -> Floats:
-    """Largest drift ratio of all storeys."""
-    return _largest_of_storeys(many, peak_drift_ratio)
-
-
-def _largest_of_storeys(many: Runs, value: Value) -> Floats:
-    scene = many.scene
-    storeys = [i for i in range(len(scene.springs)) if has_height(scene, i)]
-    return np.asarray(np.max([value(many, i) for i in storeys], axis=0))
-
-
-def _peak(extremes: Extremes, i: int) -> Floats:
+def peak_size(extremes: Extremes, i: int) -> Floats:
     """The larger of two extremes in size."""
     return SIX["abs_max"][1](extremes, i)
 
@@ -194,7 +99,7 @@ def by_law(name: str) -> Value:
             # Of supports a run that was stopped knows no more than its rows.
             x = float(motion_of_spring(many.scene, run, i)[0, -1])
             memory = zip(many.scene.memory, run.history.z[-1].tolist(), strict=True)
-            found[n] = getattr(_law_of(many, i, n), name)(
+            found[n] = getattr(law_of(many, i, n), name)(
                 x, *(z for (of, _), z in memory if of == spring.name)
             )
         return found
@@ -202,7 +107,7 @@ def by_law(name: str) -> Value:
     return values
 
 
-def _law_of(many: Runs, i: int, n: int) -> Any:
+def law_of(many: Runs, i: int, n: int) -> Any:
     """The law of spring i in run n."""
     spring = many.scene.springs[i]
     law: Any = spring.law
@@ -226,7 +131,7 @@ def passive_force(many: Runs, i: int) -> Floats:
 
 def _soils(many: Runs, i: int) -> Iterator[tuple[Any, float]]:
     """The law of spring i and its least elongation (m), of each run."""
-    return ((_law_of(many, i, n), x) for n, x in enumerate(many.elongation.minimum[:, i].tolist()))
+    return ((law_of(many, i, n), x) for n, x in enumerate(many.elongation.minimum[:, i].tolist()))
 
 
 def slip_path(many: Runs, i: int) -> Floats:
@@ -257,13 +162,13 @@ def _motion_of(end: str, scene: Scene, run: Recording) -> Floats:
 
 def friction_work(many: Runs, i: int) -> Floats:
     """Work of the friction of a slider (J)."""
-    return slip_path(many, i) * [_law_of(many, i, n).strength for n in range(len(many.recordings))]
+    return slip_path(many, i) * [law_of(many, i, n).strength for n in range(len(many.recordings))]
 
 
 def peak_term(many: Runs, i: int) -> Floats:
     """Largest displacement of a body over the length scale of the motion."""
     length = np.nan if many.scales is None else many.scales.length
-    return _peak(many.displacement, i) / length
+    return peak_size(many.displacement, i) / length
 
 
 def amplification(many: Runs, i: int) -> Floats:
@@ -271,7 +176,7 @@ def amplification(many: Runs, i: int) -> Floats:
     body = many.scene.bodies[i].name
     # Of the two terms, where there are any, as tables have had it to the last digit.
     name = f"peaks.{body}.abs_max" if many.scales is None else f"pi_um.{body}"
-    own = _peak(many.displacement, i) if many.scales is None else peak_term(many, i)
+    own = peak_size(many.displacement, i) if many.scales is None else peak_term(many, i)
     free = None if many.free is None else many.free(name)
     if free is None:
         return many.t * np.nan

@@ -8,7 +8,7 @@ from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.comparison_tables import cells_of, quantity_table, remarks_of
 from eventpound.report import html
 from eventpound.report.work_precision import timed, work_precision_figure
-from eventpound.results.cells import Cells, text_of
+from eventpound.results.cells import Cells, cell_text
 from eventpound.results.manifest import machine, sha256, versions
 
 _MOST_QUANTITIES = 12
@@ -71,7 +71,7 @@ def _quantities(comparison: Comparison) -> Iterator[html.Part]:
     for (solver, size), rows in table.groupby(["solver", "size"], sort=False, dropna=False):
         worst = rows.sort_values("error", ascending=False).head(_MOST_QUANTITIES)
         lines = tuple(
-            tuple(map(text_of, row)) for row in worst[list(heads)].itertuples(index=False)
+            tuple(map(cell_text, row)) for row in worst[list(heads)].itertuples(index=False)
         )
         cells = Cells(heads, lines, (True, False, False, False))
         yield html.folded(f"{solver} {size}", html.table_of(cells))

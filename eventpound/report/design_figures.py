@@ -21,7 +21,7 @@ from eventpound.scene.contact import Contact
 from eventpound.scene.scene import Scene
 from eventpound.study.demands import NEEDED
 from eventpound.study.design import FRACTILES
-from eventpound.study.records import FAILED
+from eventpound.study.records import FAILED, SA
 from eventpound.units import Dimension
 
 _WIDE, _HIGH = 7.4, 2.3
@@ -98,7 +98,7 @@ def _draw_sizes(axes: Axes, runs: pd.DataFrame, size: tuple[str, float], trade: 
     """Draw Sa of each record, and what it was to be."""
     called, wanted = size
     unit, of = trade.unit(Dimension.ACCELERATION.unit)
-    values = runs["Sa_T1"].to_numpy(float) / of
+    values = runs[SA].to_numpy(float) / of
     axes.plot(np.arange(1, len(runs) + 1), values, "o", markersize=3.0, color="#444444")
     if wanted == wanted:
         axes.axhline(wanted / of, color=style.PALETTE[1], linewidth=0.8, label="wanted")

@@ -35,18 +35,17 @@ from eventpound.results import gather
 from eventpound.results.cells import Cells
 from eventpound.results.input_tables import input_tables, rest_words
 from eventpound.results.inputs import inputs_of
-from eventpound.results.manifest import case_in_manifest, sha256, versions
+from eventpound.results.manifest import case_in_manifest, sha256, solved_by
 from eventpound.results.trade import Trade, three_digits, trade_of
 from eventpound.results.workbook import Row
-from eventpound.scene.at_rest import at_rest, told_at_rest
-from eventpound.scene.periods import longest_period
+from eventpound.scene.at_rest import told_at_rest
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, Slider
 from eventpound.simulation import response_of
 from eventpound.study.demands import NEEDED, demands_of
 from eventpound.study.design import FRACTILES
 from eventpound.study.large_scales import large_scales_of
-from eventpound.study.records import FAILED
+from eventpound.study.records import FAILED, SA, sa_of_suite
 from eventpound.units import TOLD, Dimension
 
 _PANELS = (
@@ -178,7 +177,7 @@ def sheets_of_workbook(told: Told) -> dict[str, list[Row]]:
             *([a, b, c, *map(_value, v)] for a, b, c, *v in cells.rows),
         ]
     if told.runs is not None:
-        records = record_cells(told.scene, told.runs, told.trade, len(told.runs))
+        records = record_cells(told.case, told.runs, told.trade, len(told.runs))
         rows = [row for part in records for row in part.rows]
         found["Records"] = [records[0].headings, *([n, *map(_value, v)] for n, *v in rows)]
     return found
@@ -276,7 +275,7 @@ def _second(told: Told) -> Iterator[Block]:
         lines = f"Dotted lines: {low:g} %, dashed: {high:g} % of them, of several the largest."
         yield Words((f"Numbers of records as below. {lines}",))
         yield Head("Records")
-        yield Columns(tuple((table,) for table in record_cells(scene, told.runs, told.trade)))
+        yield Columns(tuple((table,) for table in record_cells(told.case, told.runs, told.trade)))
     yield Head("Limits and warnings")
     yield Words(tuple(f"• {text}" for text in limits(told)))
     yield Head("Origin")
@@ -285,12 +284,10 @@ def _second(told: Told) -> Iterator[Block]:
 
 def _sizes(told: Told) -> tuple[str, float] | None:
     """What Sa of the records is called, and what it was to be; None where it is not known."""
-    period = longest_period(at_rest(told.scene, told.case.run.start_time))
     suite, runs = told.case.suite, told.runs
-    if period is None or suite is None or runs is None:
+    if suite is None or runs is None or SA not in runs or runs[SA].isna().all():
         return None
-    if "Sa_T1" not in runs or runs["Sa_T1"].isna().all():
-        return None
+    period, _ = sa_of_suite(told.case)
     return f"Sa({period:.3g} s)", suite.options.size.wanted(period)
 
 
@@ -390,8 +387,7 @@ def _warnings(given: Sequence[str]) -> Iterator[str]:
 def _origin(told: Told) -> Iterator[str]:
     """What computed it, and the hashes that say of what."""
     solver, record = told.case.solver, told.case.record
-    by = ", ".join(f"{name} {version}" for name, version in versions().items() if version)
-    yield f"Solver {solver.name}, relative tolerance {solver.rtol:g}. {by}."
+    yield solved_by(solver.name, solver.rtol)
     hashes: dict[str, Any] = {"case": case_in_manifest(told.case)["case_sha256"]}
     if told.runs is not None:
         hashes["all records"] = sha256("".join(map(str, told.runs["sha256"])).encode())

@@ -15,7 +15,7 @@ from eventpound.report.design_tables import NUMBERS, capacity_words
 from eventpound.report.sheets import Block, Head, Picture, Sheet, Words
 from eventpound.report.symbols import axis_label, display_unit, value_label
 from eventpound.results.cells import Cells, headed
-from eventpound.results.manifest import versions
+from eventpound.results.manifest import solved_by
 from eventpound.results.trade import Trade
 from eventpound.results.workbook import Row
 from eventpound.study.design import FRACTILES, MOST_CLOSE
@@ -130,9 +130,7 @@ def _second(study: Plan, design: pd.DataFrame, warnings: Sequence[str]) -> Itera
     yield Head("Limits and warnings")
     yield Words(tuple(f"• {text}" for text in limits(told, warnings)))
     yield Head("Origin")
-    by = ", ".join(f"{name} {version}" for name, version in versions().items() if version)
-    solver = f"Solver {study.solver}, relative tolerance {study.rtol:g}. {by}."
-    yield Words((solver, f"SHA-256: study {study.digest[:16]}."))
+    yield Words((solved_by(study.solver, study.rtol), f"SHA-256: study {study.digest[:16]}."))
 
 
 def _together(study: Plan, x: str) -> set[str]:

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from eventpound.results.cells import Cells, headed
+from eventpound.results.cells import Cells, cell_text, headed
 from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact, weights_of
 from eventpound.scene.joints import joints_of
 from eventpound.scene.scene import Scene
-from eventpound.study.demands import NEEDED
+from eventpound.study.demands import NEEDED, least_governs
 from eventpound.study.design import FRACTILES
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def _kind_table(
 def _columns(rows: Sequence[_Row]) -> list[str]:
     """Columns that some rows of a demand have."""
     keys = (*NUMBERS, "under", "at", *_HELD)
-    return [key for key in keys if any(_word(row.get(key, "")) for row in rows)]
+    return [key for key in keys if any(cell_text(row.get(key, "")) for row in rows)]
 
 
 def _text(row: _Row, key: str, names: Mapping[str, str], trade: Trade) -> str:
@@ -138,7 +138,7 @@ def _text(row: _Row, key: str, names: Mapping[str, str], trade: Trade) -> str:
         if value != value:
             return "" if key == "capacity" else trade.number(float(value), unit, name)
         return trade.number(float(value), unit, "drift_ratio" if percent else name)
-    return f"{value:.2f}" if isinstance(value, float) and value == value else _word(value)
+    return f"{value:.2f}" if isinstance(value, float) and value == value else cell_text(value)
 
 
 def _cell(row: _Row, key: str, size: float, names: Mapping[str, str]) -> Cell:
@@ -147,13 +147,13 @@ def _cell(row: _Row, key: str, size: float, names: Mapping[str, str]) -> Cell:
         return _under(row, names)
     value = row.get(key, np.nan)
     if key in ("at", "passes"):
-        return _word(value)
+        return cell_text(value)
     return float(value) / size
 
 
 def _under(row: _Row, names: Mapping[str, str]) -> str:
     """The record that governs, with its factor."""
-    record = _word(row.get("under", ""))
+    record = cell_text(row.get("under", ""))
     scale = row.get("scale", np.nan)
     factor = f" ×{scale:.3g}" if record and scale == scale and scale != 1.0 else ""
     return names.get(record, record) + factor
@@ -220,11 +220,6 @@ def _lines(
         lines.append((first, *(_text(row, key, names, trade) for key in keys)))
     words = (True, *(key in ("under", "at", "passes") for key in keys))
     return Cells(("", *keys), tuple(lines), words)
-
-
-def _word(value: object) -> str:
-    """A text of a table; empty where it has none."""
-    return "" if value != value else str(value)
 
 
 def page_cells(
@@ -331,7 +326,7 @@ def _ratio(row: _Row) -> float:
 def _size(row: _Row) -> float:
     """The largest value of a row; of what is to be left the least counts most."""
     size = float(np.nan_to_num(row.get(NUMBERS[-1], row.get(NUMBERS[0])), nan=-np.inf))
-    return -size if str(row["quantity"]).endswith(".slack_left") else size
+    return -size if least_governs(str(row["quantity"])) else size
 
 
 def _is_told(name: str, row: _Row, joint: _Row) -> bool:

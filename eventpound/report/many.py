@@ -9,7 +9,7 @@ import pandas as pd
 
 from eventpound.report.html import Part, folded, table_of
 from eventpound.report.symbols import dimension_of
-from eventpound.results.cells import Cells, headed, text_of
+from eventpound.results.cells import Cells, cell_text, headed
 
 _PARTS = (16.0, 50.0, 84.0)
 
@@ -49,7 +49,7 @@ def fractiles(
         if values.empty:
             continue
         parts = [values.min(), *np.percentile(values, _PARTS), values.max()]
-        texts = [text_of(float(part)) for part in parts]
+        texts = [cell_text(float(part)) for part in parts]
         called = headed(name, dimension_of(name).unit)
         rows.append((called, *texts, place(int(values.idxmax()))))
     if not rows:

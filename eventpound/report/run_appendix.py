@@ -17,7 +17,7 @@ from eventpound.report import html
 from eventpound.report.run_figures import figures
 from eventpound.report.spectrum_figure import spectrum_figure
 from eventpound.results import StoredResults
-from eventpound.results.cells import Cells, headed, text_of
+from eventpound.results.cells import Cells, cell_text, headed
 from eventpound.results.jsontext import read_json
 from eventpound.study.response_spectrum import response_spectrum
 
@@ -108,7 +108,7 @@ def _events(results: StoredResults) -> Iterator[html.Part]:
         return
     names, listed = tuple(events), len(events["t"])
     shown = zip(*(cells[:_MOST_EVENTS] for cells in events.values()), strict=True)
-    rows = tuple(tuple(map(text_of, row)) for row in shown)
+    rows = tuple(tuple(map(cell_text, row)) for row in shown)
     words = tuple(name in ("kind", "contact") for name in names)
     table = Cells(names, rows, words, max(0, listed - _MOST_EVENTS))
     yield html.folded(f"{listed} events", html.table_of(table))
@@ -126,7 +126,7 @@ def _quantities(summary: Mapping[str, Any]) -> Iterator[html.Part]:
         single["energy"] = energy | {f"supports.{name}": work for name, work in works.items()}
     for kind, values in single.items():
         if values:
-            lines = tuple((name, text_of(value)) for name, value in values.items())
+            lines = tuple((name, cell_text(value)) for name, value in values.items())
             yield html.table_of(Cells((kind, "value"), lines, (True, False)))
     yield html.text_part("SI units. `eventpound check --quantities` says what each is.")
 
@@ -140,7 +140,7 @@ def _by_owner(kind: str, rows: Mapping[str, Mapping[str, Any]]) -> Cells:
         if q.path.startswith(f"{kind}.<")
     }
     names = [headed(key, units.get(key, "")) for key in keys]
-    values = [[text_of(row.get(key)) for key in keys] for row in rows.values()]
+    values = [[cell_text(row.get(key)) for key in keys] for row in rows.values()]
     heads, firsts = names, list(rows)
     if len(rows) <= _MOST_OWNERS:
         heads, firsts = firsts, heads

@@ -11,7 +11,7 @@ from eventpound.report import html
 from eventpound.report.many import fractiles, struck
 from eventpound.report.study_files import figures_of
 from eventpound.report.symbols import dimension_of
-from eventpound.results.cells import Cells, headed, text_of
+from eventpound.results.cells import Cells, cell_text, headed
 from eventpound.study.reading import StudyCase
 from eventpound.study.stated import stated
 from eventpound.study.table import MESSAGE, SUCCESS
@@ -44,7 +44,7 @@ def study_sections(
     numbers = [n for n in done.select_dtypes("number").columns if n in set(study.quantities)]
 
     def place(row: int) -> str:
-        return ", ".join(f"{name} = {text_of(done[name][row])}" for name in study.columns)
+        return ", ".join(f"{name} = {cell_text(done[name][row])}" for name in study.columns)
 
     same, *parts = (text.replace("$", "").replace("\\,", " ") for text in stated(study, str))
     summary = {"runs": f"{len(done)} of {len(table)}", "in all runs": same}
@@ -66,11 +66,11 @@ def _axes(axes: Sequence[str], table: pd.DataFrame) -> html.Part:
     rows = []
     for name in axes:
         values = table[name].drop_duplicates()
-        listed = ", ".join(text_of(value) for value in values[:_LISTED])
+        listed = ", ".join(cell_text(value) for value in values[:_LISTED])
         if len(values) > _LISTED:
             listed += " …"
             if values.dtype.kind == "f":
-                listed = f"{text_of(values.min())} to {text_of(values.max())}"
+                listed = f"{cell_text(values.min())} to {cell_text(values.max())}"
         rows.append((headed(name, dimension_of(name).unit), str(len(values)), listed))
     return html.table_of(Cells(("axis", "values", ""), tuple(rows), (True, False, True)))
 
@@ -79,7 +79,7 @@ def _failed(axes: Sequence[str], failed: pd.DataFrame) -> Iterator[html.Part]:
     """The runs that were not carried to their end, and why."""
     shown = failed.head(_MOST_FAILED)
     rows = tuple(
-        (*(text_of(row[name]) for name in axes), str(row[MESSAGE])) for _, row in shown.iterrows()
+        (*(cell_text(row[name]) for name in axes), str(row[MESSAGE])) for _, row in shown.iterrows()
     )
     if rows:
         words = (*(False for _ in axes), True)

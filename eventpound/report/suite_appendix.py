@@ -11,19 +11,18 @@ import pandas as pd
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.motion.oscillators import PERIODS
-from eventpound.motion.scaling import DAMPING, psa_of
+from eventpound.motion.scaling import psa_of
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.report import html
 from eventpound.report.many import fractiles, struck
-from eventpound.report.record_tables import record_names
+from eventpound.report.record_tables import all_records, record_names
 from eventpound.report.spectrum_figure import suite_spectra_figure
 from eventpound.report.suite_plot import suite_figure
-from eventpound.results.cells import Cells
-from eventpound.scene.at_rest import at_rest
-from eventpound.scene.periods import longest_period
+from eventpound.results.trade import trade_of
 from eventpound.study.large_scales import large_scales_of
+from eventpound.study.records import SA, sa_of_suite
 from eventpound.units import STANDARD_GRAVITY
 
 _MOST_BODIES, _MOST_SPECTRA = 6, 100
@@ -59,14 +58,15 @@ def suite_sections(
         for name in done.select_dtypes("number").columns
         if name.partition(".")[0] in listed and not name.rpartition(".")[2].startswith("t_")
     ]
-    names = record_names(table)
+    names, trade = record_names(table), trade_of(case.scene, case.run.stated)
+    records = all_records(case, table, trade)
     return [
         ("Summary", [_summary(case, table, done)]),
         ("Model", html.model_of(case) if case.scene.bodies else ()),
         ("Ground motions", _motions(case, done)),
         ("Response", _response(case, done)),
         ("Quantities", [fractiles(done, numbers, "under", lambda row: names[done["record"][row]])]),
-        ("Records", [_records(case, table)]),
+        ("Records", [html.folded(f"{len(table)} records", html.table_of(records))]),
         ("Origin", [html.origin_of(manifest)]),
     ]
 
@@ -98,21 +98,20 @@ def _motions(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:
     """Spectra of the records that still are where they were."""
     spectra: list[Floats] = []
     records, at = list(done["record"]), None
-    if "Sa_T1" in done and done["Sa_T1"].notna().all() and case.suite is not None:
-        period = longest_period(at_rest(case.scene, case.run.start_time))
-        assert period is not None
-        at = period, done["Sa_T1"].to_numpy(float), case.suite.options.size.wanted(period)
+    period, damping = sa_of_suite(case)
+    if SA in done and done[SA].notna().all() and case.suite is not None:
+        at = period, done[SA].to_numpy(float), case.suite.options.size.wanted(period)
     members = [] if case.suite is None else case.suite.members(case.directory)
     for member in [m for m in members if m.name in records][:_MOST_SPECTRA]:
         try:
             motion = member.options.motion(member.read())
         except InputError:
             continue
-        spectra.append(psa_of(motion.values, motion.time_step, _SPECTRUM, DAMPING))
+        spectra.append(psa_of(motion.values, motion.time_step, _SPECTRUM, damping))
     if spectra:
         target = None if case.suite is None else case.suite.options.size.target
-        drawn = suite_spectra_figure(_SPECTRUM, np.array(spectra), DAMPING, target, at)
-        said = f"Spectra of {len(spectra)} records as scaled, {100.0 * DAMPING:g} % damping."
+        drawn = suite_spectra_figure(_SPECTRUM, np.array(spectra), damping, target, at)
+        said = f"Spectra of {len(spectra)} records as scaled, {100.0 * damping:g} % damping."
         yield html.figure_of(drawn, said)
 
 
@@ -120,24 +119,3 @@ def _response(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:
     if len(done) > 1 and case.scene.bodies:
         figure = suite_figure(case, done, _GROUPS, most=_MOST_BODIES)
         yield html.figure_of(figure, "Peak displacements over the length scale of the motions.")
-
-
-def _records(case: Case, table: pd.DataFrame) -> html.Part:
-    """A line a record: its size, its peaks, or why it has none."""
-    columns = {
-        "PGA (g)": ("PGA", STANDARD_GRAVITY),
-        "T_m (s)": ("T_m", 1.0),
-        "L_e (cm)": ("L_e", 0.01),
-    }
-    for body in case.scene.bodies[:_MOST_BODIES]:
-        columns[f"|u| of {body.name} (cm)"] = (f"peaks.{body.name}.abs_max", 0.01)
-    columns["impacts"] = ("impacts", 1.0)
-    columns = {head: (name, size) for head, (name, size) in columns.items() if name in table}
-    rows, names = [], record_names(table)
-    for _, row in table.iterrows():
-        values = [row[name] / size for name, size in columns.values()]
-        cells = ["" if np.isnan(value) else f"{value:.5g}" for value in values]
-        rows.append((names[row["record"]], str(row["file"]), *cells, str(row["failed"])))
-    words = (True, True, *(False for _ in columns), True)
-    shown = html.table_of(Cells(("record", "file", *columns, "failed"), tuple(rows), words))
-    return html.folded(f"{len(rows)} records", shown)

@@ -3,8 +3,7 @@
 const run = JSON.parse(document.getElementById("run").textContent);
 const t = run.t, whole = [t[0], t[t.length - 1]];
 let range = [...whole], chosen = null;
-const colors = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#444444"];
-const color = i => colors[i % colors.length];
+const color = i => run.colors[i % run.colors.length];
 const dots = window.devicePixelRatio || 1, left = 70, below = 22, above = 8;
 
 function first(x) {
@@ -114,9 +113,8 @@ function drawPanel(panel) {
 
 function drawLoop(loop) {
   const [pen, wide, high] = surface(loop.canvas), [from, to] = rows();
-  const pad = (low, y) => [low, y];
   const x = ends([loop.x], from, to), y = ends([loop.y], from, to);
-  const [X, Y] = frame(pen, wide, high, pad(...x), pad(...y), `${loop.name}: force (${run.force})`);
+  const [X, Y] = frame(pen, wide, high, x, y, `${loop.name}: force (${run.force})`);
   pen.strokeStyle = color(0); pen.beginPath();
   for (let i = from; i < to; i++) pen.lineTo(X(loop.x[i]), Y(loop.y[i]));
   pen.stroke();

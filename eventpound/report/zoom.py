@@ -16,6 +16,7 @@ from eventpound.contact.event import STRIKES
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.report.html import document
 from eventpound.report.loops import nonlinear_springs
+from eventpound.report.style import PALETTE
 from eventpound.report.view import View
 from eventpound.results.jsontext import canonical
 from eventpound.results.trade import Trade
@@ -64,6 +65,7 @@ def zoom_page(view: View, title: str, trade: Trade) -> bytes:
         "loops": list(_loops(view, kept, trade)),
         "events": shown,
         "shocks": view.shocks,
+        "colors": PALETTE,
         "force": trade.unit(Dimension.FORCE.unit)[0],
         "length": trade.unit(Dimension.LENGTH.unit)[0],
     }

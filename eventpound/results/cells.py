@@ -33,7 +33,7 @@ def headed(name: str, unit: str) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def text_of(value: object) -> str:
+def cell_text(value: object) -> str:
     """A cell of a table; empty without a value."""
     if value is None or value != value:
         return ""

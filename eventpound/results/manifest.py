@@ -79,6 +79,12 @@ def versions(packages: Sequence[str] = _PACKAGES) -> dict[str, str | None]:
     return {"python": platform.python_version()} | {p: _version(p) for p in packages}
 
 
+def solved_by(solver: str, rtol: float) -> str:
+    """What computed numbers, and the versions of what they come from: a sentence or two."""
+    by = ", ".join(f"{name} {version}" for name, version in versions().items() if version)
+    return f"Solver {solver}, relative tolerance {rtol:g}. {by}."
+
+
 def machine() -> dict[str, str]:
     """What it ran on, without a name."""
     return {

@@ -93,6 +93,10 @@ class Linear:
     equation: ClassVar[str] = "F = stiffness x"
     stiffness: Annotated[Number, Dimension.STIFFNESS, Accepted("a stiffness (N/m)")]
 
+    def secant(self, elongation: float) -> float:
+        """Resistance over an elongation (N/m)."""
+        return self.stiffness
+
 
 @converting
 class BilinearElastic:
@@ -250,6 +254,12 @@ class BoucWen(Hysteretic):
     def yield_force(self) -> float:
         """F_y (N), where the bilinear backbone has its knee."""
         return self.strength + self.stiffness * self.yield_displacement
+
+    def secant(self, elongation: float) -> float:
+        """Resistance over an elongation (N/m) that it is first loaded to; up to yield K0."""
+        return self.stiffness + self.bound * self.strength / max(
+            elongation, self.bound * self.yield_displacement
+        )
 
     @property
     def yields(self) -> bool:

@@ -6,11 +6,14 @@ And which stand on isolators: on springs that yield before all that stands on th
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from typing import TypeVar
 
 from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Spring
+
+_Node = TypeVar("_Node", bound=Hashable)
 
 
 def mass_on(scene: Scene, spring: Spring) -> float | None:
@@ -69,24 +72,39 @@ def joined_groups(bodies: Sequence[str], joints: Iterable[tuple[str, str]]) -> l
     joints : iterable of tuple of str
         Ends of each.
     """
-    neighbours: dict[str, list[str]] = {name: [] for name in bodies}
+    beside: dict[str, list[str]] = {name: [] for name in bodies}
     for first, second in joints:
-        if first in neighbours and second in neighbours:
-            neighbours[first].append(second)
-            neighbours[second].append(first)
-    position = {name: i for i, name in enumerate(neighbours)}
+        if first in beside and second in beside:
+            beside[first].append(second)
+            beside[second].append(first)
+    position = {name: i for i, name in enumerate(beside)}
     found: list[list[str]] = []
     placed: set[str] = set()
-    for start in neighbours:
-        if start in placed:
-            continue
-        group, waiting = {start}, [start]
-        while waiting:
-            new = set(neighbours[waiting.pop()]) - group
-            group |= new
-            waiting += new
-        placed |= group
-        found.append(sorted(group, key=position.__getitem__))
+    for start in beside:
+        if start not in placed:
+            group = distances([start], beside)
+            placed |= group.keys()
+            found.append(sorted(group, key=position.__getitem__))
+    return found
+
+
+def neighbours(springs: Iterable[Spring]) -> dict[str, list[str]]:
+    """What springs join to each end of one, each once and in their order."""
+    found: dict[str, dict[str, None]] = {}
+    for spring in springs:
+        for here, there in (spring.between, spring.between[::-1]):
+            found.setdefault(here, {})[there] = None
+    return {name: list(others) for name, others in found.items()}
+
+
+def distances(start: Iterable[_Node], beside: Mapping[_Node, Iterable[_Node]]) -> dict[_Node, int]:
+    """How many links away the nearest start is, of all nodes that links lead to."""
+    found: dict[_Node, int] = {}
+    edge, distance = set(start), 0
+    while edge:
+        found |= dict.fromkeys(edge, distance)
+        edge = {there for here in edge for there in beside.get(here, ())} - found.keys()
+        distance += 1
     return found
 
 

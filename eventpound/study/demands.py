@@ -22,8 +22,6 @@ _RESIDUALS = _SPRING + "residual_elongation", "residual.<body>"
 _FASTER = _CONTACT + "impacts_faster"
 STOREY_DRIFT = ".storey_drift_ratio"
 """Ends the name of the largest drift of a structure."""
-LEAST = (_SPRING + "slack_left",)
-"""What is the worse the less it is: its fractiles are of what so many records keep."""
 _FORCED = "abs_max_force"
 
 
@@ -156,6 +154,11 @@ class Demand:
 
     kind: ElementKind
     named: Named
+
+
+def least_governs(name: str) -> bool:
+    """Whether a quantity is the worse the less it is: its fractiles are what so many keep."""
+    return name.endswith(".slack_left")
 
 
 def demands_of(scene: Scene, stated: Stated) -> list[Demand]:

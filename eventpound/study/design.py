@@ -24,11 +24,11 @@ from eventpound.case.run_options import DEFAULTS, Stated
 from eventpound.errors import ComputationError, InputError
 from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.owners import owners_of
-from eventpound.quantities.values import storeys_of_structure
+from eventpound.quantities.storeys import storeys_of_structure
 from eventpound.response import Response
 from eventpound.scene.scene import Scene
 from eventpound.simulation import response_of
-from eventpound.study.demands import LEAST, STOREY_DRIFT, Demand, demands_of, words_of
+from eventpound.study.demands import STOREY_DRIFT, Demand, demands_of, least_governs, words_of
 from eventpound.study.engines.local import engine_of
 from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import RECORD, Plan
@@ -253,7 +253,7 @@ def _rows(
             struck = done[_IMPACTS.replace("<contact>", str(row["of"]))]
             row["pounding"] = int((struck > 0).sum())
         if len(sizes):
-            least = named.quantity.path in LEAST
+            least = least_governs(named.name)
             (*parts, held) = _fractiles(sizes, (*FRACTILES, stated.fractile), least)
             row |= {f"{p:g} %": value for p, value in zip(FRACTILES, parts, strict=True)}
             governs = sizes.idxmin() if least else sizes.idxmax()

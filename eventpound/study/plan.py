@@ -214,13 +214,13 @@ class OfSuite:
 
     Parameters
     ----------
-    period : float or None
-        At which Sa of each record is given (s), PGV beside it; None for neither.
+    sa : tuple of float, optional
+        Period (s) and damping at which Sa of each record is given, PGV beside it; else neither.
     errors : bool
         Whether errors of the peaks are estimated.
     """
 
-    period: float | None = None
+    sa: tuple[float, float] | None = None
     errors: bool = False
 
 

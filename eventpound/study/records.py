@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from eventpound.accuracy.judge import rtol_of_judge
+from eventpound.case.case import Case
 from eventpound.case.suite import KEPT, Member
 from eventpound.errors import EventpoundError
 from eventpound.motion.intensity import peak_velocity
@@ -18,6 +19,8 @@ from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
 from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.at_rest import at_rest
+from eventpound.scene.periods import longest_period
 from eventpound.scene.plausibility import motion_doubts
 from eventpound.solvers.base import Extremes
 from eventpound.study.plan import OfSuite
@@ -27,10 +30,12 @@ from eventpound.study.sweep import Sweep, WantedRuns
 FILE, FAILED = "file", "failed"
 UNLIKELY = "hardly meant: "
 """Begins notes on what is possible but unlike earthquakes."""
+SA = "Sa_T1"
+"""Column of Sa of each record, of the period and damping of `sa_of_suite`."""
 _IDENTITY = (
     *("event", "date", "station", "component", "format", "sha256", "samples", "time_step", "notes"),
 )
-_SCALES, _MEASURES = ("scale", "PGA", "T_m", "omega_g", "L_e"), ("PGV", "Sa_T1")
+_SCALES, _MEASURES = ("scale", "PGA", "T_m", "omega_g", "L_e"), ("PGV", SA)
 _READ = "seconds.read"
 
 
@@ -38,14 +43,26 @@ def record_columns(members: Sequence[Member], suite: OfSuite) -> tuple[str, ...]
     """Columns of a suite that tell of its records."""
     supports = [name for name, _ in members[0].supports]
     own = [f"{key}.{name}" for name in supports for key in (FILE, "sha256", "PGA")]
-    measures = () if suite.period is None else _MEASURES
+    measures = () if suite.sa is None else _MEASURES
     return ("record", FILE, FAILED, *_IDENTITY, *own, *_SCALES, *measures, _READ)
 
 
-def about(member: Member, period: float | None) -> dict[str, object]:
+def sa_of_suite(case: Case) -> tuple[float, float]:
+    """Period (s) and damping at which Sa of its records is told.
+
+    Where a case scales by Sa that which it asks for, else T1 of the scene as a run begins, NaN
+    where nothing resists, and 5 %.
+    """
+    size = None if case.suite is None else case.suite.options.size
+    if size is not None and size.psa_period is not None:
+        return size.psa_period, DAMPING if size.psa_damping is None else size.psa_damping
+    return longest_period(at_rest(case.scene, case.run.start_time)) or math.nan, DAMPING
+
+
+def about(member: Member, sa: tuple[float, float] | None) -> dict[str, object]:
     """What a record is, as its file says, and its scales as it is used (SI).
 
-    With PGV and Sa at a period (s) where one is given.
+    With PGV and Sa at a period (s) and damping where they are given.
     """
     row: dict[str, object] = {"record": member.name, FILE: member.file, FAILED: ""}
     began = time.perf_counter()
@@ -71,18 +88,18 @@ def about(member: Member, period: float | None) -> dict[str, object]:
     known = (math.nan, math.nan) if scales is None else (scales.omega_g, scales.length)
     sizes = (motion.largest_factor, motion.peak, motion.mean_period)
     row |= zip(_SCALES, (*sizes, *known), strict=True)
-    if period is not None:
-        row |= zip(_MEASURES, _measures(motion, period), strict=True)
+    if sa is not None:
+        row |= zip(_MEASURES, _measures(motion, *sa), strict=True)
     row[_READ] = time.perf_counter() - began
     return row
 
 
 @lru_cache(KEPT)
-def _measures(motion: Record, period: float) -> tuple[float, float]:
+def _measures(motion: Record, period: float, damping: float) -> tuple[float, float]:
     """PGV (m/s), and Sa (m/s^2), NaN where there is no period."""
     if math.isnan(period):
         return peak_velocity(motion), math.nan
-    sa = psa_of(motion.values, motion.time_step, np.array([period]), DAMPING)[0]
+    sa = psa_of(motion.values, motion.time_step, np.array([period]), damping)[0]
     return peak_velocity(motion), float(sa)
 
 

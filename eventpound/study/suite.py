@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -29,13 +28,11 @@ from eventpound.quantities.lookup import all_of, quantities_asked
 from eventpound.response import Response
 from eventpound.results.manifest import case_in_manifest, machine, versions
 from eventpound.results.tables import table_csv
-from eventpound.scene.at_rest import at_rest
-from eventpound.scene.periods import longest_period
 from eventpound.simulation import check_solver
 from eventpound.study.engines.local import Batch
 from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import OfSuite, Plan, base_of, described
-from eventpound.study.records import FAILED, record_columns
+from eventpound.study.records import FAILED, record_columns, sa_of_suite
 from eventpound.study.running import run_study
 from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
 from eventpound.study.table import SUITE_FORMAT, SUITE_TABLE, read_table
@@ -88,7 +85,8 @@ def simulate_suite(
         has rows only if this is given.
     intensities : bool
         Whether to give PGV (m/s) and Sa(T1) (m/s^2) of each record as scaled, too: columns
-        ``PGV`` and ``Sa_T1``, at 5 % damping and the longest period of the scene.
+        ``PGV`` and ``Sa_T1``, at the ``psa_period`` and ``psa_damping`` of the case, else at the
+        longest period of the scene and 5 %.
     folder : path, optional
         Where the table is kept, as ``eventpound run`` keeps it. A suite that was stopped goes on
         there where it was, and one that is done is read, but for `keep`.
@@ -174,9 +172,8 @@ def suite_plan(
             )
         tabled = all_of(scene, [q for q in LISTED if q.tabled and q.source in _TABLED])
         quantities = [*(named.name for named in tabled), *quantities_asked([(scene, case.run)])]
-    resting = at_rest(scene, case.run.start_time) if intensities else scene
-    period = (longest_period(resting) or math.nan) if intensities else None
-    suite, base = OfSuite(period, errors), described(base_of(case, (), members, options))
+    sa = sa_of_suite(case) if intensities else None
+    suite, base = OfSuite(sa, errors), described(base_of(case, (), members, options))
     names = tuple(dict.fromkeys(quantities))
     columns = record_columns(members, suite)
     return Plan(case.title, (base,), columns, names, options.name, options.rtol, suite), case

@@ -89,7 +89,7 @@ def compute(study: Plan, chunk: Chunk, keep: Keep | None = None) -> bytes:
     base, low, high = study.bases[chunk.base], chunk.low, chunk.high
     told: list[dict[str, object]] = []
     if study.suite is not None:
-        told = [about(member, study.suite.period) for member in base.records[low:high]]
+        told = [about(member, study.suite.sa) for member in base.records[low:high]]
         if not base.case.scene.bodies:
             return rows_csv([row.get(name, "") for name in column_names(study)] for row in told)
     own = None if keep is None else lambda i, response: keep(base.records[i], response)
