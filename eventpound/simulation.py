@@ -11,13 +11,17 @@ from typing import Any
 import numpy as np
 
 from eventpound.basics.given import positive
-from eventpound.basics.progress import Reached
+from eventpound.basics.told import Reached
 from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import RunOptions, Stated, with_given
 from eventpound.case.solver_options import LARGEST_RTOL as LARGEST_RTOL
 from eventpound.case.solver_options import SMALLEST_RTOL as SMALLEST_RTOL
-from eventpound.case.solver_options import SolverOptions, rtol_problems, settings_in_si
-from eventpound.case.solver_words import solver_instead
+from eventpound.case.solver_options import (
+    SolverOptions,
+    rtol_problems,
+    settings_in_si,
+    solver_instead,
+)
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats

@@ -23,7 +23,7 @@ OTHERS = {
     "numerics/polynomial.py",
     "report/fragility_figure.py",
     "report/suite_spectrum.py",
-    "results/pulses.py",
+    "results/records.py",
     "solvers/events/short_series.py",
     "study/fragility.py",
     "study/suite_statistics.py",

@@ -13,10 +13,9 @@ import pytest
 
 from eventpound import score
 from eventpound.cli import main
-from eventpound.problems.alone import score_file
 from eventpound.problems.collection import read_collection
 from eventpound.problems.entrants import materialized
-from eventpound.problems.files import problem_json
+from eventpound.problems.files import problem_json, score_file
 from eventpound.results.jsontext import canonical
 from eventpound.score.__main__ import main as judge_alone
 from eventpound.score.answer import turns

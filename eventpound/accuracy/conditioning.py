@@ -23,10 +23,10 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact import BARRIER
+from eventpound.scene.linkage import starts_of_supports
 from eventpound.scene.parameters import Place, number_places, value_at, with_values
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Law
-from eventpound.scene.support_drift import starts_of_supports
 
 LARGE, SMALL = 1e-10, 1e-13
 """Relative changes of the inputs."""

@@ -18,7 +18,7 @@ import numpy as np
 from eventpound.accuracy.judge import INDEPENDENT, judge_of, task_of_judge
 from eventpound.accuracy.quantities import own_scale, quantities_at, scales_of_task, values_by_name
 from eventpound.accuracy.sequences import KINDS, first_parting, instead_of, weights_for
-from eventpound.basics.progress import Reached
+from eventpound.basics.told import Reached
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response

@@ -9,8 +9,7 @@ from dataclasses import replace
 from eventpound import simulation
 from eventpound.accuracy.estimate import estimate_of
 from eventpound.basics.given import Count, checked
-from eventpound.basics.progress import Reached
-from eventpound.basics.warned import warn_caller
+from eventpound.basics.told import Reached, warn_caller
 from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import EQUILIBRIUM, INITIAL
 from eventpound.errors import AccuracyWarning, InputError

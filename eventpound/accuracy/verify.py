@@ -8,9 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.accuracy.agreement import RoutesCompared, compare_routes, from_truth, in_order
 from eventpound.accuracy.certificate import SENSITIVE, Certificate, PartedRoute, RouteReport
-from eventpound.accuracy.certified_quantities import certified_quantities
+from eventpound.accuracy.certified_quantities import (
+    RoutesCompared,
+    certified_quantities,
+    compare_routes,
+    from_truth,
+    in_order,
+)
 from eventpound.accuracy.conditioning import Conditioning, conditioning
 from eventpound.accuracy.digits import DigitsOverTime, digits_over_time, positions
 from eventpound.accuracy.near_misses import grazes, near_misses

@@ -1,16 +1,18 @@
-"""A case: a scene, how it is to be run, and what was understood of its file."""
+"""A case that was read, whole, and that of one record of its suite."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from eventpound.case.figure import Figure
 from eventpound.case.record_scaling import LARGEST_SCALE
 from eventpound.case.run_options import DEFAULTS, RunOptions
 from eventpound.case.solver_options import SolverOptions
-from eventpound.case.suite import Suite
+from eventpound.case.suite import Member, Suite
+from eventpound.case.understood import sources_of, understood_case
 from eventpound.motion.readers.base import RecordData
 from eventpound.scene.pi_structure import PiStructure
 from eventpound.scene.scene import Scene
@@ -108,3 +110,57 @@ def case_of(given: Case | Scene, rtol: float = 1e-9) -> Case:
     if isinstance(given, Case):
         return given
     return Case("", given, RunOptions(), SolverOptions(rtol=rtol), Path(), "", None, (), {})
+
+
+def member_of(case: Case, name: str) -> Member:
+    """A record of the suite of a case, by its name."""
+    assert case.suite is not None
+    return next(m for m in case.suite.members(case.directory) if m.name == name)
+
+
+def member_case(case: Case, member: Member, data: RecordData) -> Case:
+    """What a suite's case says for one of its records.
+
+    Parameters
+    ----------
+    case : Case
+        Of the suite.
+    member : Member
+        Which record.
+    data : RecordData
+        What was read of it.
+
+    Returns
+    -------
+    Case
+        A case of one record.
+
+    Raises
+    ------
+    InputError
+        Where the record cannot be used, or sets no duration.
+    """
+    scene = replace(member.on(case.scene), motion=member.options.motion(data))
+    run = case.run.completed(scene)
+    read = member.of_file(data)
+    sources = sources_of(case.understood)
+    understood = understood_case(case.title, read, scene, run, case.solver, sources)
+    records = {name: own.of_file(own.read()) for name, own in member.supports}
+    driven: dict[str, Any] = {
+        key: case.understood[key] for key in ("support", "force") if key in case.understood
+    }
+    if records:
+        driven["support"] = [
+            {**table, "excitation": records[table["name"]]} if table["name"] in records else table
+            for table in driven["support"]
+        ]
+    return replace(
+        case,
+        title=f"{case.title}: {member.name}",
+        scene=scene,
+        run=run,
+        record=data,
+        suite=None,
+        figures=(),
+        understood=understood | driven,
+    )

@@ -38,10 +38,10 @@ from eventpound.motion.record import Record
 from eventpound.scene.at_rest import at_rest
 from eventpound.scene.check import Problem, scene_problems, scene_warnings
 from eventpound.scene.continuation import continued
+from eventpound.scene.linkage import starts_of_supports, support_warnings
 from eventpound.scene.plausibility import doubts
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Linear
-from eventpound.scene.support_drift import starts_of_supports, support_warnings
 from eventpound.scene.usual import SMALLEST_RATIO, unusual
 from eventpound.units import Dimension, quantity
 

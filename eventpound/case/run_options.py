@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
-from eventpound.basics.warned import OptionWarning, warn_caller
+from eventpound.basics.told import OptionWarning, warn_caller
 from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.keys import (
     Bound,

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from eventpound.case.building import weight_share
 from eventpound.case.frequency import agree, optional_omega, optional_period
 from eventpound.case.table import Table
+from eventpound.case.written_out import weight_share
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import GROUND, Spring
 from eventpound.units import STANDARD_GRAVITY, Dimension

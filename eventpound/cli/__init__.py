@@ -30,7 +30,7 @@ from importlib import import_module
 from typing import Any
 
 from eventpound.basics.interruption import Terminable, is_interruption
-from eventpound.basics.warned import show_warning
+from eventpound.basics.told import show_warning
 from eventpound.cli.arguments import EXAMPLES, Command, Commands, Options
 from eventpound.cli.output import Output
 from eventpound.cli.progress import CompilationLine

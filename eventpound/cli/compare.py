@@ -82,8 +82,7 @@ def _chosen(
     words: str | None, against: bool, scene: Scene
 ) -> list[tuple[str, Mapping[str, object]]]:
     """Solvers that were asked for, else those that run the scene once and many times."""
-    from eventpound.case.solver_options import default_solver
-    from eventpound.case.solver_words import solver_words
+    from eventpound.case.solver_options import default_solver, solver_words
 
     if words is None:
         ours = dict.fromkeys(default_solver([scene], many=many) for many in (False, True))

@@ -56,8 +56,7 @@ def _pack_or_certify(options: Options) -> int:
 
 def _certify(collection: Collection, names: list[str], patience: float) -> int:
     """Write answers; 1 where a certificate is refused."""
-    from eventpound.problems.answer import answer_of
-    from eventpound.problems.collection import ANSWER
+    from eventpound.problems.collection import ANSWER, answer_of
     from eventpound.problems.files import to_json_lines
     from eventpound.results import write_together
 

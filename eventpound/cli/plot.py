@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
-from eventpound.cli.plot_folder import plot_folder
+from eventpound.cli.folder import plot_folder
 from eventpound.cli.talk import complain
 from eventpound.errors import InputError
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from eventpound.cli.arguments import Command, Options
 
 if TYPE_CHECKING:
-    from eventpound.motion.characteristics import Characteristics
+    from eventpound.motion.intensity import Characteristics
     from eventpound.motion.pulse_fit import PulseFit
 
 PULSE_WORDS = (
@@ -53,7 +53,7 @@ def write_pulses(
     from eventpound.report.pulse_fit import pulse_fit_figure
     from eventpound.report.style import png
     from eventpound.results import write_together
-    from eventpound.results.pulses import PULSE_TABLE, pulses_csv
+    from eventpound.results.records import PULSE_TABLE, pulses_csv
 
     kinds = tuple(PULSES) if options.pulse == "all" else (options.pulse,)
     fits = [fit_pulse(record.record, kinds, options.pulse_to) for record in records]

@@ -12,7 +12,7 @@ from eventpound.units import STANDARD_GRAVITY
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eventpound.motion.characteristics import Characteristics
+    from eventpound.motion.intensity import Characteristics
     from eventpound.motion.record import Record
 
 

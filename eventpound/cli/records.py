@@ -41,9 +41,9 @@ from eventpound.errors import InputError
 
 if TYPE_CHECKING:
     from eventpound.motion.base import Scales
-    from eventpound.motion.characteristics import Characteristics
+    from eventpound.motion.intensity import Characteristics
     from eventpound.motion.processing import Processing
-    from eventpound.motion.record_folder import RecordFile
+    from eventpound.motion.record_list import RecordFile
 
 
 def add_records(commands: Commands) -> None:
@@ -137,7 +137,7 @@ def _read_file(
     options: Options, processing: Processing
 ) -> tuple[list[Characteristics], dict[str, str]]:
     """The record of one file."""
-    from eventpound.motion.characteristics import Characteristics
+    from eventpound.motion.intensity import Characteristics
     from eventpound.motion.readers import read_record
 
     data = read_record(options.path, **_said(options))
@@ -150,8 +150,8 @@ def _read_folder(
     options: Options, processing: Processing
 ) -> tuple[list[Characteristics], dict[str, str]]:
     """The records of a folder, and why others were not read."""
-    from eventpound.motion.characteristics import Characteristics
-    from eventpound.motion.record_folder import read_each
+    from eventpound.motion.intensity import Characteristics
+    from eventpound.motion.record_list import read_each
 
     files = _files(options)
     records: list[Characteristics] = []
@@ -176,7 +176,7 @@ def _files(options: Options) -> list[RecordFile]:
     """Files of the folder or of the list, with what is said of all of them."""
     from dataclasses import replace
 
-    from eventpound.motion.record_folder import RecordFile, files_in, listed_files
+    from eventpound.motion.record_list import RecordFile, files_in, listed_files
 
     if options.list is None:
         files = [RecordFile(path) for path in files_in(options.path)]

@@ -114,7 +114,7 @@ def _export(options: Options) -> int:
 
 def _with_solver(case: Case, options: Options) -> Case:
     """The case with the solver and the tolerance of the command line."""
-    from eventpound.case.solver_words import solver_instead
+    from eventpound.case.solver_options import solver_instead
 
     own = case.solver
     if options.solver is not None:

@@ -120,7 +120,7 @@ def _run(collection: Collection, chosen: tuple[ProblemFolder, ...], options: Opt
 
 def _entrants(options: Options) -> list[Entrant]:
     """Programs asked for, called by their words."""
-    from eventpound.case.solver_words import solver_word
+    from eventpound.case.solver_options import solver_word
     from eventpound.problems.entrants import Entrant
 
     solvers = []

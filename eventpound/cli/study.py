@@ -31,7 +31,7 @@ from eventpound.cli.progress import Counter
 from eventpound.cli.talk import going_on
 
 if TYPE_CHECKING:
-    from eventpound.study.engines.base import Engine
+    from eventpound.study.engines.local import Engine
 
 
 def add_study(commands: Commands) -> None:

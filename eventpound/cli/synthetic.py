@@ -30,7 +30,7 @@ def add_synthetic(commands: Commands) -> None:
 
 def _synthetic(options: Options) -> int:
     from eventpound.motion.synthetic import synthetic_motion
-    from eventpound.motion.synthetic.table import QUANTITIES, parameter_table, spread
+    from eventpound.motion.synthetic.files import QUANTITIES, parameter_table, spread
     from eventpound.results import check_writable, write_together
 
     check_writable(options.directory)

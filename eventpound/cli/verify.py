@@ -45,7 +45,7 @@ def _verify(options: Options) -> int:
     case = loaded_case(options.case)
     out = options.results
     from eventpound import results
-    from eventpound.accuracy.certificate_text import certificate_text, sentence, write_certificate
+    from eventpound.accuracy.certificate import certificate_text, sentence, write_certificate
     from eventpound.accuracy.verify import CertificateInterrupted, verify
 
     results.check_writable(out)
@@ -73,7 +73,7 @@ def _verify(options: Options) -> int:
 
 def _keep(certificate: Certificate, out: Path) -> None:
     """Write what an interrupted command had found, unless an earlier certificate is there."""
-    from eventpound.accuracy.certificate_text import JSON, write_certificate
+    from eventpound.accuracy.certificate import JSON, write_certificate
 
     if (out / JSON).exists():
         _say(f"the certificate that was in {out} stays")

@@ -9,9 +9,12 @@ index, in one order, with one date, uncompressed: the same bytes each time.
 
 from __future__ import annotations
 
+import ast
 import io
 import zipfile
+from collections import defaultdict
 from collections.abc import Mapping
+from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -19,15 +22,51 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
-from eventpound.problems.alone import score_file
-from eventpound.problems.answer import moments_of
-from eventpound.problems.collection import ANSWER, EARLIER, FROZEN, INDEX, Collection, ProblemFolder
+from eventpound.problems.collection import (
+    ANSWER,
+    EARLIER,
+    FROZEN,
+    INDEX,
+    Collection,
+    ProblemFolder,
+    moments_of,
+)
 from eventpound.problems.page import problem_page, set_page
 from eventpound.results.export import arrays_of, sampled_motion
 from eventpound.results.jsontext import canonical
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BoucWen, Hysteretic, Spring
+
+MODULES = (
+    *("levels", "pairing", "difference", "problem", "answer", "found", "card", "drawing", "page"),
+    "__main__",
+)
+"""Of `eventpound.score`, each behind those that it stands on."""
+
+
+def score_file() -> str:
+    """The text of ``score.py``: Python and NumPy are all that it needs."""
+    plain: set[str] = set()
+    named: defaultdict[str, set[str]] = defaultdict(set)
+    bodies, usage = [], ""
+    for name in MODULES:
+        text = (files("eventpound.score") / f"{name}.py").read_text(encoding="utf-8")
+        tree = ast.parse(text)
+        usage = ast.get_docstring(tree, clean=False) or ""
+        imports = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
+        for node in imports:
+            if isinstance(node, ast.Import):
+                plain.add(ast.unparse(node))
+            elif node.module and node.module.partition(".")[0] not in ("eventpound", "__future__"):
+                named[node.module].update(alias.name for alias in node.names)
+        body = "".join(text.splitlines(keepends=True)[imports[-1].end_lineno :]).strip("\n")
+        bodies.append(f"# {'-' * 60} {name.strip('_')}\n\n\n{body}\n")
+    lines = [f"from {module} import {', '.join(sorted(named[module]))}" for module in sorted(named)]
+    imported = "\n".join((*sorted(plain), *lines))
+    head = f'"""{usage}"""\n\nfrom __future__ import annotations\n\n{imported}\n'
+    return "\n\n".join((head, *bodies))
+
 
 DATE = (1980, 1, 1, 0, 0, 0)
 """Of every file in the archive: the first that the format knows."""

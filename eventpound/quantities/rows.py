@@ -13,7 +13,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from eventpound.basics.warned import warn_caller
+from eventpound.basics.told import warn_caller
 from eventpound.errors import AccuracyWarning, InputError
 from eventpound.motion.base import Family, GroundMotion
 from eventpound.numerics.arrays import Floats, Ints

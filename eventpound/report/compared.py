@@ -14,7 +14,7 @@ from eventpound.accuracy.comparison_tables import run_table, table_files
 from eventpound.accuracy.work_precision import STEP
 from eventpound.basics.given import Count, checked, number, positive
 from eventpound.case.case import Case, case_of
-from eventpound.case.solver_words import solver_word
+from eventpound.case.solver_options import solver_word
 from eventpound.report.comparison_page import comparison_page
 from eventpound.report.html import PAGE
 from eventpound.report.work_precision import timed, work_precision_png

@@ -11,8 +11,7 @@ from typing import Any
 
 import pandas as pd
 
-from eventpound.case.case import Case
-from eventpound.case.member import member_case, member_of
+from eventpound.case.case import Case, member_case, member_of
 from eventpound.motion.record import Record
 from eventpound.quantities.lookup import Named
 from eventpound.report.design_figures import demand_figure, governing_figure

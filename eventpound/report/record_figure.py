@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from eventpound.motion.characteristics import Characteristics
+from eventpound.motion.intensity import Characteristics
 from eventpound.motion.scales import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, fourier_amplitudes
 from eventpound.numerics.arrays import Floats
 from eventpound.report.style import PALETTE, length_unit, literal, new_figure, styled, zero_lines

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from eventpound.accuracy.certificate_text import JSON, digits_words
+from eventpound.accuracy.certificate import JSON, digits_words
 from eventpound.accuracy.judge import error_words
 from eventpound.case.case import Case
 from eventpound.errors import InputError

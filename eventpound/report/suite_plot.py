@@ -10,10 +10,9 @@ from types import MappingProxyType
 import pandas as pd
 from matplotlib.figure import Figure
 
-from eventpound.case.case import Case
+from eventpound.case.case import Case, member_case, member_of
 from eventpound.case.figure import Figure as Wanted
 from eventpound.case.figure import FigureKind
-from eventpound.case.member import member_case, member_of
 from eventpound.case.record_file import find_record
 from eventpound.errors import InputError
 from eventpound.motion import read_record

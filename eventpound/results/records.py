@@ -1,4 +1,4 @@
-"""A table of records and its manifest: ``records.csv`` and ``manifest.json``.
+"""Tables of records, and of the pulses fitted to them.
 
 Records that could not be read are rows with nothing but their file and the
 reason, in the column ``problem``.
@@ -11,8 +11,9 @@ from collections.abc import Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 
-from eventpound.motion.characteristics import Characteristics
+from eventpound.motion.intensity import Characteristics
 from eventpound.motion.processing import Processing
+from eventpound.motion.pulse_fit import PulseFit
 from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import machine, sha256, versions
 from eventpound.results.tables import rows_csv
@@ -104,3 +105,36 @@ def records_manifest(
             "files": {TABLE: sha256(table)},
         }
     )
+
+
+PULSE_TABLE = "pulses.csv"
+_SHAPE = ("gamma", "phase", "cycles")
+
+
+def pulses_csv(records: Sequence[tuple[Characteristics, Sequence[PulseFit]]]) -> bytes:
+    """Table of pulses as CSV.
+
+    Parameters
+    ----------
+    records : sequence of (Characteristics, sequence of PulseFit)
+        The records with their pulses, the best first.
+    """
+    rows = [_row(record, fit) for record, fits in records for fit in fits]
+    return rows_csv([rows[0], *(row.values() for row in rows)])
+
+
+def _row(record: Characteristics, fit: PulseFit) -> dict[str, object]:
+    motion = fit.motion
+    return {
+        "file": record.data.file,
+        "component": record.data.component or "",
+        "pulse": fit.kind,
+        "a_p": fit.a_p,
+        "T_p": fit.T_p,
+        "L_e": fit.length,
+        "start": getattr(motion, "start"),  # noqa: B009
+        "reverse": getattr(motion, "reverse"),  # noqa: B009
+        **{key: getattr(motion, key, "") for key in _SHAPE},
+        "fitted_to": fit.on,
+        "explained": fit.explained,
+    }

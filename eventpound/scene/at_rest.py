@@ -25,7 +25,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.elastic_laws import as_arrays, elastic_force, reduced
-from eventpound.scene.linkage import Linkage, linkage_of
+from eventpound.scene.linkage import Linkage, linkage_of, starts_of_supports
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import (
     Backfill,
@@ -37,7 +37,6 @@ from eventpound.scene.spring import (
     Slider,
     Spring,
 )
-from eventpound.scene.support_drift import starts_of_supports
 
 AT_KINK = 1e-9
 """Part of the lengths that make an elongation, within which it is that of a kink."""

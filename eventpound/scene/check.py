@@ -17,6 +17,7 @@ from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.contact import BARRIER, Contact, opening
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
 from eventpound.scene.grounded import grounded
+from eventpound.scene.linkage import starts_of_supports
 from eventpound.scene.periods import joined
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
@@ -31,7 +32,6 @@ from eventpound.scene.spring import (
     Spring,
 )
 from eventpound.scene.stability import unstable
-from eventpound.scene.support_drift import starts_of_supports
 from eventpound.tolerances import EPS, PENETRATED
 
 _KEYS = {word: f"initial.{word}" for word in ("displacement", "velocity")}

@@ -16,9 +16,9 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.check import check_scene
 from eventpound.scene.contact import BARRIER, opening
+from eventpound.scene.linkage import starts_of_supports
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Hysteretic
-from eventpound.scene.support_drift import starts_of_supports
 from eventpound.units import Dimension
 
 FinalState = Mapping[str, Mapping[str, float]]

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.basics.given import Count, checked
-from eventpound.basics.progress import Counted, Reached
+from eventpound.basics.told import Counted, Reached
 from eventpound.case.case import Case
 from eventpound.case.loading import CASE_FILE
 from eventpound.case.run_options import DEFAULTS, Stated

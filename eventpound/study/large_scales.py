@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from eventpound.basics.warned import OptionWarning, warn_caller
+from eventpound.basics.told import OptionWarning, warn_caller
 from eventpound.case.case import Case
 from eventpound.case.record_scaling import large_scales
 from eventpound.errors import InputError

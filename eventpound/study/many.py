@@ -10,7 +10,7 @@ import numpy as np
 
 from eventpound.basics.cores import cores
 from eventpound.basics.given import Count, checked, positive
-from eventpound.basics.progress import Counted
+from eventpound.basics.told import Counted
 from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import Way, refuse_options
 from eventpound.errors import InputError

@@ -11,8 +11,7 @@ from functools import cached_property
 from eventpound.basics.given import positive
 from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import with_given
-from eventpound.case.solver_options import FAST, SolverOptions, default_solver
-from eventpound.case.solver_words import solver_instead
+from eventpound.case.solver_options import FAST, SolverOptions, default_solver, solver_instead
 from eventpound.case.suite import Member
 from eventpound.case.understood import understood_case
 from eventpound.errors import InputError

@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 
-from eventpound.basics.progress import Counted
+from eventpound.basics.told import Counted
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct

@@ -21,8 +21,7 @@ import numpy as np
 
 from eventpound.accuracy.sequences import SOFT
 from eventpound.basics.given import Count, checked, positive
-from eventpound.basics.progress import Counted
-from eventpound.basics.warned import warn_caller
+from eventpound.basics.told import Counted, warn_caller
 from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import Stated
 from eventpound.case.solver_options import LARGEST_RTOL, SolverOptions, default_solver

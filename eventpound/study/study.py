@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from eventpound.basics.given import Count, checked, positive
-from eventpound.basics.progress import Counted
+from eventpound.basics.told import Counted
 from eventpound.case.case import Case, case_of
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.solver_options import FAST

@@ -13,12 +13,10 @@ from typing import TYPE_CHECKING
 from eventpound.accuracy.judge import KEEPING
 from eventpound.basics.cores import cores
 from eventpound.basics.given import Count, checked, positive
-from eventpound.basics.progress import Counted
-from eventpound.case.case import Case
-from eventpound.case.member import member_case
+from eventpound.basics.told import Counted
+from eventpound.case.case import Case, member_case
 from eventpound.case.run_options import Way, refuse_options
-from eventpound.case.solver_options import FAST
-from eventpound.case.solver_words import solver_instead
+from eventpound.case.solver_options import FAST, solver_instead
 from eventpound.case.suite import Member
 from eventpound.errors import InputError
 from eventpound.motion.record import Record

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eventpound.basics.progress import Counted
+from eventpound.basics.told import Counted
 from eventpound.case.case import Case
 from eventpound.case.defaults import default_output_step
 from eventpound.case.solver_options import FAST

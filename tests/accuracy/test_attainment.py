@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.accuracy.attainment import ambiguities, limits_of
+from eventpound.accuracy.certified_quantities import ambiguities, limits_of
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task

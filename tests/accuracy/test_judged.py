@@ -60,7 +60,7 @@ def test_a_run_of_few_steps_warns_that_its_error_is_not_known() -> None:
 
 def test_code_without_a_name_is_warned_too() -> None:
     """As a notebook's or a debugger's, which `exec` runs with globals of its own."""
-    code = "from eventpound.basics.warned import warn_caller; warn_caller('said', UserWarning)"
+    code = "from eventpound.basics.told import warn_caller; warn_caller('said', UserWarning)"
     with pytest.warns(UserWarning, match="said"):
         exec(code, {})
 

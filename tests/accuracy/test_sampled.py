@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.accuracy.sampled import largest_turns
+from eventpound.accuracy.near_misses import largest_turns
 
 
 def test_turning_points_of_a_sine():

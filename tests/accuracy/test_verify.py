@@ -11,8 +11,12 @@ import pytest
 import eventpound
 from eventpound.accuracy import routes
 from eventpound.accuracy.bound import Limit
-from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
-from eventpound.accuracy.certificate_text import certificate_text, significant
+from eventpound.accuracy.certificate import (
+    Certificate,
+    CertifiedQuantity,
+    certificate_text,
+    significant,
+)
 from eventpound.accuracy.certified_quantities import is_as_good
 from eventpound.accuracy.verify import CertificateInterrupted, verify
 from eventpound.cli import main

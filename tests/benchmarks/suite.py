@@ -20,7 +20,7 @@ import pandas as pd
 
 from eventpound import load_case
 from eventpound.case import Case
-from eventpound.case.member import member_case
+from eventpound.case.case import member_case
 from eventpound.case.suite import Member
 from eventpound.errors import EventpoundError
 from eventpound.motion import Record

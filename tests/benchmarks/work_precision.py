@@ -34,8 +34,7 @@ from eventpound.accuracy.comparison_tables import text_table
 from eventpound.accuracy.work_precision import Judged, SolverChoice
 from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions
-from eventpound.case.solver_options import SolverOptions
-from eventpound.case.solver_words import solver_words
+from eventpound.case.solver_options import SolverOptions, solver_words
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.record import Record
 from eventpound.report import work_precision as diagram

@@ -9,8 +9,8 @@ import pytest
 
 from eventpound import load_case, simulate
 from eventpound.case import read_case
+from eventpound.case.case import member_case
 from eventpound.case.figure import FigureKind
-from eventpound.case.member import member_case
 from eventpound.errors import InputError
 from eventpound.motion.synthetic import synthetic_motion
 

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.motion.characteristics import Characteristics
+from eventpound.motion.intensity import Characteristics
 from eventpound.units import STANDARD_GRAVITY
 from tests.motion.readers.real_records import FOLDER, read_row, rows_of_index
 

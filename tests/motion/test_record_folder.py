@@ -9,7 +9,7 @@ import pytest
 
 from eventpound.errors import InputError
 from eventpound.motion.readers import read_components, read_record
-from eventpound.motion.record_folder import RecordFile, files_in, listed_files, read_each
+from eventpound.motion.record_list import RecordFile, files_in, listed_files, read_each
 from tests.motion.readers.writers import WRITERS, motion
 
 A = motion(300, 0.02)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from eventpound.motion.base import moves
-from eventpound.motion.characteristics import Characteristics
 from eventpound.motion.free import NoMotion
+from eventpound.motion.intensity import Characteristics
 from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
 from eventpound.motion.scales import CONVENTIONS, mean_period, transform_length

@@ -19,8 +19,7 @@ import numpy as np
 
 from eventpound import load_case, simulate
 from eventpound.accuracy.conditioning import conditioning
-from eventpound.case.case import Case
-from eventpound.case.member import member_case
+from eventpound.case.case import Case, member_case
 from eventpound.motion.record import Record
 from eventpound.scene import Scene
 from eventpound.solvers import solver_named

@@ -17,8 +17,7 @@ import pytest
 
 from eventpound.cli import main
 from eventpound.errors import InputError
-from eventpound.problems.answer import answer_of
-from eventpound.problems.collection import read_collection
+from eventpound.problems.collection import answer_of, read_collection
 from eventpound.problems.files import LAW, archive, bare_numbers, problem_json
 from eventpound.results.jsontext import canonical
 from eventpound.results.manifest import sha256

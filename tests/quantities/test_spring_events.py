@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from eventpound import Case, load_case, prepare, simulate, simulate_suite, verify, write
-from eventpound.basics.warned import OptionWarning
+from eventpound.basics.told import OptionWarning
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Harmonic, NoMotion

@@ -14,8 +14,7 @@ from matplotlib.image import imread
 
 from eventpound import InputError, design_numbers, load_case, simulate
 from eventpound.case import read_case
-from eventpound.case.case import Case
-from eventpound.case.member import member_case
+from eventpound.case.case import Case, member_case
 from eventpound.cli import main
 from eventpound.report.design_report import Told, design_sheets
 from eventpound.report.model_layout import layout_of

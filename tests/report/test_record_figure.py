@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eventpound.motion import RecordData
-from eventpound.motion.characteristics import Characteristics
+from eventpound.motion.intensity import Characteristics
 from eventpound.report.record_figure import record_figure
 from eventpound.units import STANDARD_GRAVITY
 from tests.motion.readers.writers import motion

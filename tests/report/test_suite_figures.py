@@ -12,8 +12,8 @@ import pytest
 
 from eventpound import load_case, simulate, simulate_suite
 from eventpound.case import Case
+from eventpound.case.case import member_case
 from eventpound.case.figure import Figure, FigureKind, LengthRange
-from eventpound.case.member import member_case
 from eventpound.errors import InputError
 from eventpound.motion import Record, Ricker
 from eventpound.motion.pulse_fit import fit_pulse

@@ -32,7 +32,7 @@ from eventpound.scene import (
     Support,
 )
 from eventpound.scene.check import check_scene
-from eventpound.scene.support_drift import starts_of_supports
+from eventpound.scene.linkage import starts_of_supports
 
 EXPONENTS = (1.0, 1.5, 2.0, 5.0, 20.0, 50.0)
 SHAPES = ((0.5, 0.5), (0.1, 0.9), (0.9, 0.1), (-0.2, 0.8), (1.0, 1.0))

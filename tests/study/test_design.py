@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from eventpound import InputError, Study, design_numbers, load_case, simulate, simulate_many
-from eventpound.case.member import member_case
+from eventpound.case.case import member_case
 from eventpound.cli import main
 from eventpound.motion import Record, Ricker
 from eventpound.quantities.lookup import find

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from eventpound import load_case, simulate
-from eventpound.case.member import member_case
+from eventpound.case.case import member_case
 from eventpound.errors import InputError
 from tests.benchmarks.real_records import INDEX
 

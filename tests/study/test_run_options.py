@@ -22,7 +22,7 @@ from eventpound import (
     simulate_suite,
     verify,
 )
-from eventpound.basics.warned import OptionWarning
+from eventpound.basics.told import OptionWarning
 from eventpound.case.run_options import Way, options
 from eventpound.cli import main
 from eventpound.errors import InputError

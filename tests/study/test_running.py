@@ -14,8 +14,7 @@ import pytest
 
 from eventpound.cli import main
 from eventpound.study.engines.local import Batch, Processes
-from eventpound.study.running import run_study
-from eventpound.study.store import Store
+from eventpound.study.running import Store, run_study
 from eventpound.study.table import compute, header, read_table
 from tests.study.conftest import ELASTOPLASTIC
 

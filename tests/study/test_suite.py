@@ -12,8 +12,8 @@ import pandas as pd
 import pytest
 
 from eventpound import Study, load_case, simulate, simulate_suite
+from eventpound.case.case import member_case
 from eventpound.case.loading import read_case
-from eventpound.case.member import member_case
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Record, Ricker

@@ -10,8 +10,7 @@ from itertools import chain
 import numpy as np
 
 from eventpound.motion.readers.base import Source
-from eventpound.motion.readers.clock import with_seconds
-from eventpound.motion.readers.numbers import clean_numbers, split_token, to_float
+from eventpound.motion.readers.numbers import clean_numbers, split_token, to_float, with_seconds
 from eventpound.motion.readers.time_column import increases
 from eventpound.numerics.arrays import Floats
 

@@ -1,4 +1,4 @@
-"""A synthetic motion as a file that every reader of PEER files takes.
+"""Synthetic motions as files and as a table.
 
 Motion n of a seed depends on the two numbers only, not on how many there are.
 The motion used is the one the file holds: seven decimals of its exponent form.
@@ -6,15 +6,24 @@ The motion used is the one the file holds: seven decimals of its exponent form.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from eventpound.motion.base import Scales
 from eventpound.motion.readers.base import Given, RecordData, Source
 from eventpound.motion.readers.dialects import AT2
-from eventpound.motion.synthetic.filtered_noise import Filter, at_rest_in_the_end, unit_process
-from eventpound.motion.synthetic.modulation import Modulation, modulation_of
+from eventpound.motion.record import Record
+from eventpound.motion.synthetic.filtered_noise import (
+    Filter,
+    Modulation,
+    at_rest_in_the_end,
+    modulation_of,
+    unit_process,
+)
 from eventpound.motion.synthetic.population import Parameters, Site, draw_parameters, draw_site
 from eventpound.numerics.arrays import Floats
 from eventpound.units import STANDARD_GRAVITY
@@ -113,3 +122,44 @@ def _at2(motion: SyntheticMotion) -> str:
     numbers = [f"{a:15.7E}" for a in (motion.acceleration / STANDARD_GRAVITY).tolist()]
     rows = ["".join(numbers[i : i + _COLUMNS]) for i in range(0, len(numbers), _COLUMNS)]
     return "\n".join([*header, *rows]) + "\n"
+
+
+QUANTITIES = ("PGA (g)", "T_m (s)", "L_e (cm)")
+"""What `spread` gives."""
+_HEADER = (
+    "file,kind,seed,number,M,F,R (km),V_S30 (m/s),I_a (m/s),D_5-95 (s),t_mid (s),"
+    "omega_mid (rad/s),omega_prime (rad/s^2),zeta_f,alpha_1,alpha_2,alpha_3 (1/s),"
+    "PGA (m/s^2),T_m (s),L_e (m)"
+)
+
+
+def parameter_table(motions: Sequence[SyntheticMotion]) -> bytes:
+    """CSV with a row a motion: what it was drawn with and what its scales are."""
+    return "\n".join([_HEADER, *map(_row, motions), ""]).encode("ascii")
+
+
+def spread(motions: Sequence[SyntheticMotion]) -> Floats:
+    """Least, median and largest of `QUANTITIES`, shape (3, 3)."""
+    found = [_scales(motion) for motion in motions]
+    rows = [(s.a_g / STANDARD_GRAVITY, s.period, 100.0 * s.length) for s in found]
+    values: Floats = np.quantile(rows, [0.0, 0.5, 1.0], axis=0).T
+    return values
+
+
+def _row(motion: SyntheticMotion) -> str:
+    site, p, q, scales = motion.site, motion.parameters, motion.modulation, _scales(motion)
+    numbers = [
+        *(site.M, site.F, site.R, site.V),
+        *(p.I_a, p.D_5_95, p.t_mid, p.omega_mid, p.omega_prime, p.zeta_f),
+        *(q.alpha_1, q.alpha_2, q.alpha_3),
+        *(scales.a_g, 2.0 * math.pi / scales.omega_g, scales.length),
+    ]
+    return ",".join(
+        [motion.name, "synthetic", str(motion.seed), str(motion.number), *map(repr, numbers)]
+    )
+
+
+def _scales(motion: SyntheticMotion) -> Scales:
+    scales = Record(motion.record.acceleration, motion.record.time_step).scales()
+    assert scales is not None, "it has motion in the band of T_m"
+    return scales

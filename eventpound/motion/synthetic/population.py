@@ -27,7 +27,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eventpound.motion.synthetic.modulation import LARGEST_RATIO
+from eventpound.motion.synthetic.filtered_noise import LARGEST_RATIO
 from eventpound.numerics.arrays import Floats
 from eventpound.units import STANDARD_GRAVITY
 

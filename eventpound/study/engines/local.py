@@ -1,4 +1,4 @@
-"""Threads and processes of this machine.
+"""Threads and processes of this machine, the usual engine.
 
 The fast solver leaves Python's lock while it runs a chunk, so threads share all cores. Any other
 computes one run at a time, and is given processes.
@@ -21,15 +21,31 @@ from concurrent.futures.process import BrokenProcessPool
 from itertools import chain
 from multiprocessing import get_context, parent_process
 from threading import Thread
+from typing import Protocol
 
 from eventpound.basics.cores import cores
 from eventpound.basics.interruption import Deferred
-from eventpound.basics.warned import show_warning
+from eventpound.basics.told import show_warning
 from eventpound.case.solver_options import FAST
 from eventpound.errors import ComputationError
-from eventpound.study.engines.base import Engine
 from eventpound.study.plan import Chunk, Plan
 from eventpound.study.table import Keep, compute
+
+
+class Engine(Protocol):
+    """Computes chunks, wherever.
+
+    Duties: `run` yields every chunk once, in any order, with the bytes that
+    `eventpound.study.table.compute` gives for it; it asks for a further chunk
+    only when it can use it, so that a long study is never all in memory; a
+    worker that dies costs time, not chunks; when the iterator is closed,
+    nothing goes on working.
+    """
+
+    def run(self, study: Plan, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
+        """Compute chunks of a study."""
+        ...
+
 
 _MOST_BREAKS = 8
 _LOOK = 0.1

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from eventpound.errors import InputError
-from eventpound.motion.synthetic.modulation import Modulation, modulation_of
+from eventpound.motion.synthetic.filtered_noise import Modulation, modulation_of
 from eventpound.units import STANDARD_GRAVITY
 
 CASES = [(0.5, 12.0, 8.0), (0.02, 5.0, 12.0), (3.0, 40.0, 9.0)]

@@ -1,10 +1,16 @@
-"""How a warning reaches its reader: of a command in one line, in Python at the call it is about."""
+"""What is told as work goes on: warnings, and how much is done."""
 
 from __future__ import annotations
 
 import sys
 import warnings
+from collections.abc import Callable
 from typing import TextIO
+
+Reached = Callable[[float], None]
+"""Called with the time that a run has reached (s)."""
+Counted = Callable[[int, int], None]
+"""Called with how many are done, and of how many; at first with what was there before."""
 
 
 class OptionWarning(UserWarning):
