@@ -36,7 +36,7 @@ def simulate(
     error_estimate: bool | None = None,
     start: FinalState | str | None = None,
 ) -> Response:
-    """Compute how a scene moves, and estimate by how much that is wrong.
+    """Compute how a scene moves, and estimate the error.
 
     Parameters
     ----------
@@ -48,8 +48,8 @@ def simulate(
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2; 1e-9 for a scene.
     duration : float, optional
-        Length of the run (s), or with a unit, ``"12 s"``; for a scene that of its motion and
-        four periods.
+        Length of the run (s), or with a unit, ``"12 s"``; for a scene until four periods after a
+        pulse, or five of the structure's after a record.
     output_step : float, optional
         Distance of the rows of the history (s).
     energy : bool, optional
@@ -90,7 +90,7 @@ def simulate(
     Warns
     -----
     AccuracyWarning
-        Where the tolerance does not tell a number or an event, or the error is not known.
+        Where a number or an event is uncertain, or the error is not known.
 
     Examples
     --------

@@ -99,7 +99,7 @@ def verify(
     Returns
     -------
     Certificate
-        Refusals, too, are in it: nothing that routes disagree on is certified.
+        Numbers on which routes disagree are in it, too, as refused.
 
     Raises
     ------

@@ -58,7 +58,7 @@ class Case:
     record : RecordData or None
         What was read from the file of a record.
     warnings : tuple of str
-        What is computed as it is asked for, but hardly meant so.
+        What is computed as asked for, though it is hardly meant so.
     understood : dict
         The case in SI with every default filled in: a case again, which can be
         written as JSON or TOML.
@@ -70,8 +70,7 @@ class Case:
     pi : PiTable or None
         The Π-terms of a case that is written in them.
     carried : mapping of str to float
-        Masses (kg) that the springs' periods are those of, by the names of the springs
-        that have one.
+        Mass (kg) that the period of a spring refers to, by the names of springs given by one.
     largest_scale : float
         Factor on a record beyond which is warned.
     """

@@ -74,14 +74,14 @@ class BatchResponse(Runs):
     free : callable, optional
         Gives values of a quantity, by its name, of the same scenes without contact.
     between : callable, optional
-        Gives what only close rows tell, of one run (`eventpound.quantities.between`).
+        Gives quantities of one run that need rows close together (`eventpound.quantities.between`).
     apart : callable, optional
-        Gives the gaps that would have avoided contact (m) of those contacts whose numbers it is
-        given, (n, their number): a run in which only these cannot close.
+        Given the numbers of some contacts, gives the gaps (m) with which they would not have
+        closed, (n, their number), from runs in which only these cannot close.
     stated : Stated
-        Numbers that some quantities are about.
+        Numbers of ``[run]`` that quantities need.
     struck : ContactNumbers, optional
-        Numbers of the contacts that impacts tell, (n, K) each, where they were asked for.
+        Impulses and speeds of the impacts at each contact, (n, K) each, where asked for.
     """
 
     def __repr__(self) -> str:

@@ -59,12 +59,12 @@ def compare(
     against : sequence of str or Path
         Histories of other programs (CSV).
     columns : mapping, optional
-        What their columns are called, or their numbers, by what ours are called.
+        Names or numbers of their columns, by ours: ``{"u.deck": "x1"}``.
     repeats : int
         Runs whose median time is taken.
     restitution : float, optional
-        ε of the rigid law that runs are held against, too, where contacts have laws of their
-        own; without, what each law stands for.
+        ε of the rigid law that runs are also compared with where contacts have laws of their
+        own; by default the ε that each law stands for.
     out : path, optional
         Where the tables, the diagram and the page go, as of the command ``eventpound compare``.
 

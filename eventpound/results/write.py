@@ -29,8 +29,8 @@ def write(
 ) -> None:
     """Write history.csv, events.csv, summary.json and manifest.json, all or none.
 
-    Of a sequence of records shocks.csv, too, and spring_events.csv where `events` asks for it;
-    those of an earlier run go.
+    For a sequence of records shocks.csv, too, and spring_events.csv where `events` asks for it.
+    Those of an earlier run are removed.
 
     A run that ended before its time is written too: ``success`` of the summary
     and ``complete`` of the manifest are then false.

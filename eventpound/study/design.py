@@ -105,7 +105,8 @@ def design_numbers(
     InputError
         Where the case cannot be run.
     ComputationError
-        Where a single run fails, or all records of a suite; one that failed is left out.
+        Where a single run fails, or every record of a suite; a record that fails among others
+        is left out.
     """
     if isinstance(case, Case) and not case.scene.bodies:
         file = case.directory / CASE_FILE

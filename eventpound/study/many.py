@@ -42,8 +42,8 @@ def simulate_many(
     """Compute how variants of one scene move.
 
     Every variant is computed exactly as ``simulate(variant, solver="fast")``
-    would, to the last bit, whatever the number of workers. Contacts with laws of their own are not
-    for that: ``"cvode"`` then, one by one. So are scenes with sliders, by ``"fast"``.
+    would, to the last bit, whatever the number of workers. Scenes with sliders are run one by one,
+    and so are contacts with laws of their own, by ``"cvode"``.
 
     Parameters
     ----------
@@ -58,8 +58,7 @@ def simulate_many(
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2; by default that of the case, 1e-6 for a scene.
     duration : float, str or array_like, shape (n,), optional
-        Length of the runs (s), or of each; for a scene that of each variant's
-        motion and four periods.
+        Length of the runs (s), or of each; by default as of `simulate`, of each motion.
     accelerations : bool, optional
         Whether to give the extremes of absolute accelerations and base shear, too.
     quantities : sequence of str

@@ -59,8 +59,7 @@ def prepare(
     rtol : float, optional
         As of `simulate`.
     duration : float, optional
-        Length of the runs (s); where neither this nor the case says it, that of each motion and
-        four periods.
+        Length of the runs (s); by default as of `simulate`, of each motion.
     output_step : float, optional
         Distance of the rows of the history (s); without it there are rows at both ends and at
         events only.

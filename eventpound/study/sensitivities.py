@@ -81,13 +81,13 @@ def sensitivities(
     Parameters
     ----------
     case : Case or Scene
-        What is run as it is, and with each number by itself up and down by two steps.
+        What is run as it is, and with each number moved by itself, one and two steps up and down.
     of : sequence of str
         Quantities (page "quantities" of the docs), by name or path.
     to : sequence of str or mapping of str to float
         Numbers by their keys, as for `simulate_many`; in a mapping each with its step (SI, or a
-        text with a unit), which one that is zero needs. Without any: all that can be varied by a
-        part of themselves, but the time step of a record. Of a case in Π-terms its terms.
+        text with a unit), which a number that is zero needs. By default all that are not zero,
+        but the time step of a record; of a case in Π-terms its terms.
     rtol : float
         Relative tolerance.
     duration : float or str, optional

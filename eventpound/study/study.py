@@ -53,14 +53,14 @@ class Study:
         Pattern of files, or a list of them, as for a suite (page "suites"): all axes vary under
         each. Relative to the working directory.
     together : sequence of sequences of str
-        Keys of axes that go along together, of the same length.
+        Groups of axes that vary together, row by row, by their keys; of the same length.
     solver : str, optional
-        Name of the solver, with settings as for `simulate`; by default the fast one, for a scene
-        that it does not take cvode.
+        Name of the solver, with settings as for `simulate`; by default ``"fast"``, or ``"cvode"``
+        for what that does not take.
     rtol : float, optional
         Relative tolerance; by default that of the case, 1e-6 for a scene.
     duration : float or str, optional
-        Length of the runs (s); by default that of the case, of each motion for a scene or records.
+        Length of the runs (s); by default that of the case, or as of `simulate` for each motion.
 
     Raises
     ------

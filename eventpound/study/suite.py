@@ -74,8 +74,8 @@ def simulate_suite(
         the largest difference of the peaks, relative to the largest peak; as the case says,
         else not. Not for solvers of fixed steps, which no tolerance changes.
     workers : int, optional
-        Number of threads; as many as there are cores to use for the fast solver,
-        which alone leaves Python's lock, one for any other.
+        Number of threads; by default as many as there are cores for the fast solver, which alone
+        runs without Python's global lock, and one for any other.
     progress : callable, optional
         Called with the numbers of records done and of all.
     keep : callable, optional
