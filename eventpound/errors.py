@@ -80,7 +80,7 @@ class ComputationError(EventpoundError):
 
 
 class AccuracyWarning(UserWarning):
-    """The tolerance of a run does not tell a number or an event of it."""
+    """A number or an event of a run is uncertain, or its error is not known."""
 
 
 class InterruptionError(ComputationError):

@@ -1,8 +1,8 @@
 """Ground motions: pulses, harmonics, records, and none.
 
-The compiled evaluation of a motion's pieces is in `eventpound.motion.forcing`,
-which is imported where it is used because it needs numba.
+Page "ground-motion" of the docs has their formulas.
 """
+# `eventpound.motion.forcing`, which needs Numba, is imported where it is used.
 
 from eventpound.motion.base import Family as Family
 from eventpound.motion.base import GroundMotion as GroundMotion

@@ -14,7 +14,7 @@ from eventpound.numerics.arrays import Floats
 
 @dataclass(frozen=True, slots=True)
 class NoMotion:
-    """a_g = 0 at all times; has no scales."""
+    """No ground motion: bodies move from their initial state. It has no scales a_g and omega_g."""
 
     kind: ClassVar[str] = "none"
     """The word a case names it by."""

@@ -32,7 +32,10 @@ MOST_CYCLES = 1_000_000
 
 @converting_base()
 class Sine(SinusoidMotion):
-    """One period of a sine; leaves the ground displaced by a_p T_p^2 / (2 pi)."""
+    """One period of a sine; leaves the ground displaced by a_p T_p^2 / (2 pi).
+
+    Its numbers are those of `Parametric`.
+    """
 
     kind: ClassVar[str] = "sine"
     """The word a case names it by."""
@@ -46,6 +49,8 @@ class Sine(SinusoidMotion):
 @converting_base()
 class Cosine(SinusoidMotion):
     """One period of a cosine; jumps to a_p at its start and from a_p at its end.
+
+    Its numbers are those of `Parametric`.
 
     Examples
     --------
@@ -73,8 +78,10 @@ class TypeC(SinusoidMotion):
 
     Parameters
     ----------
+    amplitude, period, reverse, start
+        As for `Parametric`.
     cycles : int
-        n, from 1 to `MOST_CYCLES`.
+        n, from 1 to 1 000 000.
 
     Raises
     ------

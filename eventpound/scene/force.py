@@ -16,7 +16,7 @@ class Force:
     Parameters
     ----------
     body : str
-        On which it acts; there may be several on one.
+        Name of the body; several forces may act on one.
     history : GroundMotion
         The force as a motion of `eventpound.motion` whose numbers are in N in the place of
         m/s², or a number (N) for a constant one; or a string with a unit, ``"-12 kN"``, or an

@@ -73,7 +73,7 @@ def modal_damping(
     Raises
     ------
     InputError
-        Where a ratio is negative, there are more than modes, or springs do not join the group.
+        Where a ratio is negative, ratios are more than modes, or springs do not join the group.
 
     Examples
     --------

@@ -145,7 +145,7 @@ def rayleigh(
     Raises
     ------
     InputError
-        Where not just one of modes and periods is given, or they are not such.
+        Where not exactly one of modes and periods is given, or it is not two of them.
 
     Examples
     --------
@@ -214,7 +214,7 @@ def stiffness_proportional(
     Raises
     ------
     InputError
-        Where not just one of mode and period is given, there are no such springs, one does not
+        Where not exactly one of mode and period is given, a spring is not there or does not
         resist at rest, or they hold too little of the mode's strain energy for it to be theirs.
 
     Examples

@@ -337,9 +337,9 @@ class DegradingBoucWen(BoucWen):
 
     ``z' = [x' - nu (gamma |x'| z |z|^(n-1) + beta x' |z|^n)] / (eta u_y)``, with
     ``nu = 1 + delta_nu epsilon`` and ``eta = 1 + delta_eta epsilon`` (Baber and Wen 1981; Foliente
-    1995, without pinching). The hysteretic energy epsilon, ``epsilon' = z x' / u_y``, is in parts
-    of ``Q u_y``. Of it ``epsilon e^(-a) - (1 - e^(-a)) / delta_eta`` with ``a = delta_eta z^2 / 2``
-    is lost: that does not change while the law is elastic, ``eta u_y z' = x'``.
+    1995, without pinching). epsilon is the hysteretic energy over ``Q u_y``, so
+    ``epsilon' = z x' / u_y``. Its part ``epsilon e^(-a) - (1 - e^(-a)) / delta_eta`` with
+    ``a = delta_eta z^2 / 2`` is lost; elastic motion, ``eta u_y z' = x'``, does not change it.
 
     Parameters
     ----------
@@ -348,7 +348,7 @@ class DegradingBoucWen(BoucWen):
     strength_degradation, stiffness_degradation : float
         delta_nu and delta_eta, not negative.
     initial_loss : float
-        What was lost before the start, in parts of ``Q u_y``.
+        Energy lost before the start, over ``Q u_y``.
     """
 
     word: ClassVar[LawName] = LawName.DEGRADING_BOUC_WEN

@@ -12,7 +12,7 @@ from eventpound.units import Dimension
 
 @converting
 class Support:
-    """Where the scene stands on ground that moves otherwise than the reference.
+    """A place on ground that moves otherwise than the reference, which `Scene.motion` moves.
 
     Its name may stand wherever ``"ground"`` or ``"barrier"`` may. Displacements of bodies
     stay relative to the reference ground, and ``s = d - d_ref`` is that of the support.
