@@ -19,6 +19,7 @@ from eventpound.report.markers import draw_circles, draw_shocks
 from eventpound.report.towers import storeys_of
 from eventpound.report.view import Beside, View, view_of
 from eventpound.results import StoredResults
+from eventpound.results.trade import Unit
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.spring import GROUND
 
@@ -145,9 +146,7 @@ def _draw_drifts(axes: Axes, view: View) -> None:
         style.legend_beside(axes, axes.get_lines()[1:])
 
 
-def _draw_barrier(
-    axes: Axes, contact: Contact, view: View, unit: style.Unit, color: style.Color
-) -> None:
+def _draw_barrier(axes: Axes, contact: Contact, view: View, unit: Unit, color: style.Color) -> None:
     """Draw the displacement at which a body touches the barrier or the support."""
     for end, side in ((contact.right, 1.0), (contact.left, -1.0)):
         if end == BARRIER:

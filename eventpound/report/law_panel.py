@@ -11,9 +11,11 @@ from matplotlib.axes import Axes
 from eventpound.mechanics.link_law import link_law
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.loops import z_by_x
-from eventpound.report.style import PALETTE, force_unit, length_unit, literal, say, zero_lines
+from eventpound.report.style import PALETTE, literal, say, zero_lines
+from eventpound.results.trade import unit_by_size
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.spring import BoucWen, Hysteretic, Law, Linear, Spring
+from eventpound.units import Dimension
 
 _MOST = 4
 """Laws in one figure."""
@@ -82,12 +84,12 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
         x = whole.offset + np.array([-1.0, 0.0, 1.0]) * (2.0 * abs(whole.offset) or 1.0)
         force, _ = elastic_force(whole, x)
         pair = whole.compression, whole.extension
-        said = f"k = {_stiffness(pair[0])}"
+        said = f"k = {_STIFFNESS(pair[0])}"
         if not isinstance(law, Linear):
-            said = f"compression {_stiffness(pair[0])}\nextension {_stiffness(pair[1])}"
+            said = f"compression {_STIFFNESS(pair[0])}\nextension {_STIFFNESS(pair[1])}"
         if whole.offset:
             axes.plot(whole.offset, 0.0, ".", color="#888888", markersize=4.0)
-            said += f"\noffset {_length(abs(whole.offset))}{' (closing)' * (whole.offset < 0.0)}"
+            said += f"\noffset {_LENGTH(abs(whole.offset))}{' (closing)' * (whole.offset < 0.0)}"
     color = PALETTE[0] if isinstance(law, Hysteretic) else PALETTE[1]
     axes.plot(x, force, color="#333333" if isinstance(law, Linear) else color, linewidth=1.2)
     axes.set_title(literal(name), fontsize=8.0)
@@ -114,8 +116,8 @@ def _of_loop(axes: Axes, law: BoucWen) -> str:
         say(axes, text, place, away, fontsize=8.0)
     axes.margins(y=0.14)
     return (
-        f"$K_0$ = {_stiffness(first)}, $K_s$ = {_stiffness(law.stiffness)}\n"
-        f"$Q$ = {_force(law.strength)}, $u_y$ = {_length(law.yield_displacement)}"
+        f"$K_0$ = {_STIFFNESS(first)}, $K_s$ = {_STIFFNESS(law.stiffness)}\n"
+        f"$Q$ = {_FORCE(law.strength)}, $u_y$ = {_LENGTH(law.yield_displacement)}"
     )
 
 
@@ -134,34 +136,22 @@ def _loop(law: BoucWen) -> tuple[Floats, Floats]:
     return x, law.stiffness * x + law.strength * z
 
 
-def _stiffness(k: float) -> str:
-    """In the unit of drawings."""
-    for size, unit in ((1e6, "MN/m"), (1e3, "kN/m")):
-        if k >= size:
-            return f"{k / size:.4g} {unit}"
-    return f"{k:.4g} N/m"
+def _in(dimension: Dimension) -> Callable[[float], str]:
+    """Numbers of a dimension in the unit of their size."""
+    return lambda value: unit_by_size(dimension, value).of(value)
 
 
-def _force(force: float) -> str:
-    unit = force_unit(force)
-    return f"{force / unit.size:.4g} {unit.name}"
-
-
-def _length(length: float) -> str:
-    unit = length_unit(length)
-    return f"{length / unit.size:.4g} {unit.name}"
-
-
+_STIFFNESS, _FORCE, _LENGTH = map(_in, (Dimension.STIFFNESS, Dimension.FORCE, Dimension.LENGTH))
 _SAID: dict[str, tuple[str, Callable[[float], str]]] = {
-    "K0": ("$K_0$", _stiffness),
-    "K_s": ("$K_s$", _stiffness),
-    "Q": ("$Q$", _force),
+    "K0": ("$K_0$", _STIFFNESS),
+    "K_s": ("$K_s$", _STIFFNESS),
+    "Q": ("$Q$", _FORCE),
     "friction": (r"$\mu$", "{:.4g}".format),
-    "N": ("$N$", _force),
+    "N": ("$N$", _FORCE),
     "T_slip": ("$T$", "{:.4g} s".format),
-    "F_ult": ("$F_{ult}$", _force),
+    "F_ult": ("$F_{ult}$", _FORCE),
     "R_f": ("$R_f$", "{:.4g}".format),
-    "gap": ("gap", _length),
-    "y_ult": ("$y_{ult}$", _length),
+    "gap": ("gap", _LENGTH),
+    "y_ult": ("$y_{ult}$", _LENGTH),
 }
 """Numbers of laws: their signs, and how they are said."""

@@ -14,8 +14,9 @@ from eventpound.numerics.arrays import Floats
 from eventpound.report import style
 from eventpound.report.towers import Tower, towers_of
 from eventpound.report.view import Beside, View
+from eventpound.results.trade import Unit
 
-_PERCENT = style.Unit("%", 0.01)
+_PERCENT = Unit("%", 0.01)
 
 
 @style.styled()
@@ -54,7 +55,7 @@ def profile_figure(view: View, beside: Beside | None = None) -> Figure:
     return figure
 
 
-def _units(view: View, towers: Sequence[Tower]) -> tuple[style.Unit, style.Unit]:
+def _units(view: View, towers: Sequence[Tower]) -> tuple[Unit, Unit]:
     """Of displacements and of drifts, which are ratios where all heights are known."""
     u, drifts = zip(*(_extremes(view, tower) for tower in towers), strict=True)
     in_percent = all(tower.heights for tower in towers)
@@ -77,7 +78,7 @@ def _draw_tower(
     panels: tuple[Axes, Axes],
     view: View,
     tower: Tower,
-    units: tuple[style.Unit, style.Unit],
+    units: tuple[Unit, Unit],
     look: dict[str, Any],
 ) -> None:
     """Both profiles of one structure."""

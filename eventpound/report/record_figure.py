@@ -9,8 +9,9 @@ from matplotlib.figure import Figure
 from eventpound.motion.intensity import Characteristics
 from eventpound.motion.scales import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, fourier_amplitudes
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import PALETTE, length_unit, literal, new_figure, styled, zero_lines
-from eventpound.units import STANDARD_GRAVITY
+from eventpound.report.style import PALETTE, literal, new_figure, styled, zero_lines
+from eventpound.results.trade import unit_by_size
+from eventpound.units import STANDARD_GRAVITY, Dimension
 
 _LINE = "#444444"
 _BAND = "#EEF3F8"
@@ -48,7 +49,7 @@ def _title(record: Characteristics) -> str:
 def _draw_histories(axes: list[Axes], record: Characteristics) -> None:
     """Draw a, v and d with their peaks."""
     motion, measures = record.record, record.intensity
-    t, unit = motion.times, length_unit(measures.pgd)
+    t, unit = motion.times, unit_by_size(Dimension.LENGTH, measures.pgd)
     g, d = STANDARD_GRAVITY, motion.displacement(t)
     series = (
         ("acceleration", motion.values / g, measures.pga / g, "PGA", "g"),

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from eventpound.motion.scaling import Target
 from eventpound.numerics.arrays import Floats
 from eventpound.report import style
-from eventpound.units import STANDARD_GRAVITY
+from eventpound.results.trade import unit_by_size
+from eventpound.units import STANDARD_GRAVITY, Dimension
 
 _DASHES = ("-", "--", ":", "-.")
 """Of the damping ratios of a figure, in turn."""
@@ -37,7 +38,7 @@ def spectrum_figure(
     """
     figure = style.new_figure(7.5, 5.2, style.literal(title))
     upper, lower = figure.subplots(2, 1, sharex=True)
-    unit = style.length_unit(float(spectrum["SD"].max()))
+    unit = unit_by_size(Dimension.LENGTH, spectrum["SD"].max())
     upper.plot(spectrum["period"], spectrum["PSA_g"], color=style.PALETTE[0], label="of the motion")
     lower.plot(spectrum["period"], spectrum["SD"] / unit.size, color=style.PALETTE[0])
     if target is not None:
@@ -63,7 +64,7 @@ def floor_figure(table: pd.DataFrame, free: pd.DataFrame | None = None, title: s
     """
     figure = style.new_figure(7.5, 5.2, style.literal(title))
     upper, lower = figure.subplots(2, 1, sharex=True)
-    unit = style.length_unit(float(table["SD"].max()))
+    unit = unit_by_size(Dimension.LENGTH, table["SD"].max())
     bodies, ratios = table["body"].unique(), list(table["damping"].unique())
     shades = dict(zip(bodies, style.colors(len(bodies)), strict=True))
     looks = [(table, "", {"linewidth": 1.2})]

@@ -22,7 +22,6 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.report.map_panel import colours_of, draw_map
 from eventpound.report.notes import LETTER, LINE, letters, wrapped, write_below
 from eventpound.report.style import (
-    Unit,
     colors,
     largest_size,
     plain_logarithms,
@@ -31,6 +30,7 @@ from eventpound.report.style import (
 )
 from eventpound.report.symbols import axis_label, display_unit, plain_value, symbol, value_label
 from eventpound.report.view import stretches
+from eventpound.results.trade import Unit
 from eventpound.study.figure import FigurePlan
 from eventpound.study.plan import Plan
 from eventpound.study.reading import StudyCase

@@ -75,34 +75,6 @@ class Paper:
     dpi: float = _DOTS_PER_INCH
 
 
-@dataclass(frozen=True, slots=True)
-class Unit:
-    """Unit of an axis.
-
-    Parameters
-    ----------
-    name : str
-        As printed.
-    size : float
-        In SI units.
-    """
-
-    name: str
-    size: float
-
-
-def length_unit(largest: float) -> Unit:
-    """Metres, centimetres or millimetres, by the largest length (m) to show."""
-    if largest >= 1.0:
-        return Unit("m", 1.0)
-    return Unit("cm", 1e-2) if largest >= 5e-3 else Unit("mm", 1e-3)
-
-
-def force_unit(largest: float, unit: str = "N") -> Unit:
-    """Kilonewtons, or newtons for forces (N) below one of them; likewise N/m, J and others."""
-    return Unit("k" + unit, 1e3) if largest >= 1e3 else Unit(unit, 1.0)
-
-
 def largest_size(*values: Floats) -> float:
     """Largest finite absolute value of some arrays of any shape; zero without one."""
     sizes = [np.abs(array[np.isfinite(array)]).max(initial=0.0) for array in values]

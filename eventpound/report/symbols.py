@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from eventpound.case.run_options import options
 from eventpound.quantities.base import parts_of
 from eventpound.quantities.listed import LISTED
-from eventpound.report.style import Unit, force_unit, length_unit, literal
+from eventpound.report.style import literal
 from eventpound.results.files import plain_name
-from eventpound.results.trade import HEAVY
+from eventpound.results.trade import Unit, unit_by_size
 from eventpound.scene.parameters import dimension_of_number
 from eventpound.units import STANDARD_GRAVITY, Dimension
 
@@ -124,15 +124,9 @@ def display_unit(key: str, largest: float) -> Unit:
         The largest of them (SI).
     """
     dimension = dimension_of(key)
-    if dimension is Dimension.LENGTH:
-        return length_unit(abs(largest))
-    if dimension.unit.startswith(("N", "J")):
-        return force_unit(abs(largest), dimension.unit)
-    if dimension is Dimension.MASS and abs(largest) >= HEAVY:
-        return Unit("t", 1e3)
     if dimension is Dimension.ACCELERATION and key.removeprefix(_FREE).startswith(_IN_G):
         return Unit("g", STANDARD_GRAVITY)
-    return Unit(dimension.unit.replace("^2", "²"), 1.0)
+    return unit_by_size(dimension, largest)
 
 
 def axis_label(key: str, of: Unit | None = None, at: str = "") -> str:
@@ -176,8 +170,7 @@ def value_label(key: str, value: object) -> str:
     called = None if _term(key) is not None else _called(key)
     if called is None:
         return f"{symbol(key)} = {value:g}"
-    unit = display_unit(key, float(value))
-    return f"{called[0]} = {value / unit.size:.4g} {unit.name}".rstrip()
+    return f"{called[0]} = {display_unit(key, float(value)).of(value)}"
 
 
 def plain_value(key: str, value: object) -> str:

@@ -13,15 +13,15 @@ from eventpound.contact.event import ENDS_OF_REST, STRIKES
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.quantities.loops import loop_of
-from eventpound.report.style import Unit, force_unit, length_unit
 from eventpound.results import StoredResults
+from eventpound.results.trade import Unit, unit_by_size
 from eventpound.scene.contact import BARRIER, Contact, End
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, LawName
 from eventpound.scene.structures import joined_groups
-from eventpound.units import STANDARD_GRAVITY
+from eventpound.units import STANDARD_GRAVITY, Dimension
 
 # A gap below this part of the largest one is closed: rounding of stored gaps.
 _CLOSED = 1e-9
@@ -108,12 +108,14 @@ class View:
 
     def length_unit(self, largest: float) -> Unit:
         """Of an axis of lengths up to this one (m)."""
-        return Unit("$L_e$", self.scale("L_e")) if self.pi else length_unit(largest)
+        return (
+            Unit("$L_e$", self.scale("L_e")) if self.pi else unit_by_size(Dimension.LENGTH, largest)
+        )
 
     def force_unit(self, largest: float) -> Unit:
         """Of an axis of forces up to this one (N); m is the mass of the first body."""
         if not self.pi:
-            return force_unit(largest)
+            return unit_by_size(Dimension.FORCE, largest)
         mass = self.results.summary["scene"]["bodies"][0]["mass"]
         return Unit(r"$m\,a_g$", mass * self.scale("a_g"))
 

@@ -108,13 +108,12 @@ def _own_columns(
 
 def _units(trade: Trade) -> dict[str, Unit]:
     """Units by their kinds; where none is chosen, lengths of what is light are in m."""
-    force, size = trade.unit(Dimension.FORCE.unit)
     units = {
         "mass": trade.unit(Dimension.MASS.unit),
-        "force": (force, size),
-        "stiffness": (f"{force}/m", size),
-        "damping": (f"{force} s/m", size),
-        "length": ("m", 1.0),
+        "force": trade.unit(Dimension.FORCE.unit),
+        "stiffness": trade.unit(Dimension.STIFFNESS.unit),
+        "damping": trade.unit(Dimension.DAMPING.unit),
+        "length": Unit("m", 1.0),
     }
     if trade.heavy or trade.chosen:
         units["length"] = trade.unit(Dimension.LENGTH.unit)
@@ -131,11 +130,11 @@ def _cells(
 ) -> Cells:
     """A table without the columns that no row has."""
     there = [column for column in columns if any(row.get(column[0]) is not None for row in rows)]
-    sizes = {**units, "%": ("%", 0.01)}
-    names = [sizes.get(unit, (unit, 1.0))[0] for _, _, unit in there]
-    heads = [headed(head, name) for (_, head, _), name in zip(there, names, strict=True)]
+    known = {**units, "%": Unit("%", 0.01)}
+    shown = [known.get(unit, Unit(unit, 1.0)) for _, _, unit in there]
+    heads = [headed(head, unit.name) for (_, head, _), unit in zip(there, shown, strict=True)]
     cells = tuple(
-        tuple(_cell(row.get(key), sizes.get(unit, ("", 1.0))[1]) for key, _, unit in there)
+        tuple(_cell(row.get(key), of.size) for (key, *_), of in zip(there, shown, strict=True))
         for row in rows[:most]
     )
     words = tuple(

@@ -1,10 +1,15 @@
-"""Numbers as engineers write them: kN, mm, g, per cent, with three digits."""
+"""Units in which numbers are shown, and how many digits: the one place that chooses them.
+
+Tables and pages are in the units of the trade, kN, mm, g and per cent, or in those that a case
+chooses, with three digits. Figures are in those of the largest number that they show.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from eventpound.case.run_options import Stated
 from eventpound.quantities.lookup import is_whole
@@ -18,8 +23,35 @@ _NOTHING = 1e-6
 """What rounding leaves of nothing, in a unit of the trade that nobody chose."""
 _BUILT = (".separation_needed", ".avoiding_gap", ".avoiding_gap_alone")
 """Ends of names of gaps that are to be built: told too wide, if anything."""
-Unit = tuple[str, float]
-"""Its name and its size (SI)."""
+
+
+class Unit(NamedTuple):
+    """Its name as printed and its size (SI)."""
+
+    name: str
+    size: float
+
+    def of(self, value: float) -> str:
+        """A value (SI) in it, with its name."""
+        return f"{value / self.size:.4g} {self.name}".rstrip()
+
+
+_BY_SIZE = {
+    Dimension.LENGTH: ((1.0, Unit("m", 1.0)), (5e-3, Unit("cm", 1e-2)), (0.0, Unit("mm", 1e-3))),
+    Dimension.STIFFNESS: ((1e6, Unit("MN/m", 1e6)),),
+    Dimension.MASS: ((HEAVY, Unit("t", 1e3)),),
+}
+"""Units by the least of what they are read for (SI)."""
+
+
+def unit_by_size(dimension: Dimension, largest: float) -> Unit:
+    """Unit in which numbers are read most easily, by the largest of them (SI)."""
+    for least, unit in _BY_SIZE.get(dimension, ()):
+        if abs(largest) >= least:
+            return unit
+    if dimension.unit.startswith(("N", "J")) and abs(largest) >= 1e3:
+        return Unit("k" + dimension.unit, 1e3)
+    return Unit(dimension.unit.replace("^2", "²"), 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +72,7 @@ class Trade:
     def unit(self, unit: str, name: str = "") -> Unit:
         """What stands for a unit of SI, for a quantity of a name: a drift ratio is in per cent."""
         if name.endswith("drift_ratio"):
-            return "%", 0.01
+            return Unit("%", 0.01)
         usual = ("kN" if self.heavy else "N", "mm", "g")
         force, length, acceleration = (
             next((word for word in self.chosen if word in USUAL[dimension]), word)
@@ -51,6 +83,8 @@ class Trade:
         told = {
             Dimension.FORCE: (force, size),
             Dimension.IMPULSE: (f"{force} s", size),
+            Dimension.STIFFNESS: (f"{force}/m", size),
+            Dimension.DAMPING: (f"{force} s/m", size),
             Dimension.ENERGY: energy,
             Dimension.LENGTH: (length, USUAL[Dimension.LENGTH][length]),
             Dimension.ACCELERATION: (
@@ -59,11 +93,11 @@ class Trade:
             ),
             Dimension.MASS: ("t", 1e3) if self.heavy else ("kg", 1.0),
         }
-        return {of.unit: each for of, each in told.items()}.get(unit, (unit, 1.0))
+        return Unit(*{of.unit: each for of, each in told.items()}.get(unit, (unit, 1.0)))
 
     def number(self, value: float, unit: str, name: str = "") -> str:
         """A value (SI) in the unit of the trade, without its name."""
-        size = self.unit(unit, name)[1]
+        size = self.unit(unit, name).size
         if _is_count(name, value / size):
             return f"{value / size:.{_DIGITS}g}"
         up = name.endswith(_BUILT)
@@ -71,11 +105,11 @@ class Trade:
 
     def nothing(self, unit: str, name: str = "") -> float:
         """What rounding leaves of nothing, in the unit that is told; the same whatever that is."""
-        return _NOTHING * Trade(self.heavy).unit(unit, name)[1] / self.unit(unit, name)[1]
+        return _NOTHING * Trade(self.heavy).unit(unit, name).size / self.unit(unit, name).size
 
     def words(self, value: float, unit: str, name: str = "") -> str:
         """A value (SI) with its unit of the trade."""
-        return f"{self.number(value, unit, name)} {self.unit(unit, name)[0]}".rstrip()
+        return f"{self.number(value, unit, name)} {self.unit(unit, name).name}".rstrip()
 
 
 def _is_count(name: str, value: float) -> bool:

@@ -13,8 +13,8 @@ from eventpound.motion import (
     TypeC,
 )
 from eventpound.motion.base import GroundMotion
-from eventpound.report.style import Unit
 from eventpound.report.symbols import axis_label, display_unit, symbol, value_label
+from eventpound.results.trade import Unit
 from eventpound.scene import (
     GROUND,
     BilinearElastic,
@@ -114,7 +114,7 @@ def test_units_that_are_easy_to_read() -> None:
     assert display_unit("Q/m", 4.0) == Unit("m/s²", 1.0)
     assert display_unit("contacts.floor5.smallest_gap", -0.02) == Unit("cm", 0.01)
     assert display_unit("base_shear.max", 2e6) == Unit("kN", 1e3)
-    assert display_unit("spring.stop.parts.1.stiffness", 4e7) == Unit("kN/m", 1e3)
+    assert display_unit("spring.stop.parts.1.stiffness", 4e7) == Unit("MN/m", 1e6)
     assert display_unit("contacts.floor5.sum_impulse", 5e2) == Unit("N s", 1.0)
     assert display_unit("body.A5.mass", 5e5) == Unit("t", 1e3)
     assert axis_label("Sa_T1", display_unit("Sa_T1", 4.0)) == "$S_a(T_1)$ (g)"
