@@ -148,8 +148,8 @@ def scene_warnings(scene: Scene) -> tuple[str, ...]:
     )
 
 
-WITHIN_BOUND = ("exponent", "beta", "gamma", "initial_z")
-"""Numbers of a Bouc-Wen spring that decide together whether it may begin at its z."""
+TOGETHER = ("exponent", "beta", "gamma", "initial_z", "gap", "initial_gap")
+"""Numbers of a spring that are accepted only beside its others: z in its bound, wider gaps."""
 
 
 def _name_problems(elements: Iterable[_Element]) -> Iterator[Problem]:
@@ -255,7 +255,7 @@ def _law_problems(element: _Element, law: Law) -> Iterator[Problem]:
             yield from element.numbers(part, f"parts {number}: ")
         return
     found = [*element.numbers(law)]
-    if isinstance(law, BoucWen) and not any(problem.key in WITHIN_BOUND for problem in found):
+    if isinstance(law, BoucWen) and not any(problem.key in TOGETHER for problem in found):
         # A bound reached to rounding is a spring that has yielded.
         bound = law.bound
         accepted = f"a number of at most (beta + gamma)^(-1/exponent) = {bound:.6g} in size"

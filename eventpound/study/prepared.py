@@ -16,7 +16,6 @@ from eventpound.response import Response
 from eventpound.scene.check import motion_problems
 from eventpound.scene.parameters import motion_with, number_places
 from eventpound.scene.scene import Scene
-from eventpound.scene.worst_variants import KnownRanges
 from eventpound.simulation import (
     ReadyScene,
     check_case,
@@ -26,6 +25,7 @@ from eventpound.simulation import (
 )
 from eventpound.solvers.base import Solver, Task
 from eventpound.study.axes import given_axes
+from eventpound.study.checked_numbers import CheckedRanges
 from eventpound.study.plan import Base, base_of
 from eventpound.study.variants import (
     complete,
@@ -107,7 +107,7 @@ class Prepared:
     def __init__(self, base: Base, ready: ReadyScene, run: RunOptions) -> None:
         self._base, self._ready, self._run = base, ready, run
         self._places = number_places(self.scene)
-        self._ranges = KnownRanges(self.scene, run.start_time)
+        self._ranges = CheckedRanges(self.scene, run.start_time)
         lengths = () if base.own_duration else kinds_that_set_lengths(self.scene)
         kinds = {*lengths, *kinds_that_set_periods(self.scene)}
         # Numbers by these keys change nothing but themselves.

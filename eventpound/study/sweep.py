@@ -37,9 +37,9 @@ from eventpound.response import Response
 from eventpound.scene.check import check_scene, motion_problems
 from eventpound.scene.parameters import Place, motion_with, number_places, with_values
 from eventpound.scene.spring import LawName
-from eventpound.scene.worst_variants import worst_variants
 from eventpound.simulation import ReadyScene, options_of, output_times, task_with
 from eventpound.solvers import solver_named
+from eventpound.study.checked_numbers import variants_to_check
 from eventpound.study.variants import Rows, complete
 
 if TYPE_CHECKING:
@@ -243,7 +243,7 @@ def variants_of(rows: Rows, wanted: WantedRuns) -> tuple[Rows, Variants]:
     still = {place: column for place, column in values.items() if place.kind != "excitation"}
     shaking = {place: column for place, column in values.items() if place.kind == "excitation"}
     motions, motion_of = _motions_of(rows, shaking)
-    for i in worst_variants(scene, still, rows.count).tolist():
+    for i in variants_to_check(scene, still, rows.count).tolist():
         try:
             variant = with_values(scene, {place: float(v[i]) for place, v in still.items()})
             check_scene(replace(variant, motion=motions[motion_of[i]]), start)

@@ -30,7 +30,7 @@ from eventpound.scene.check import scene_problems
 from eventpound.scene.modes import modes_of
 from eventpound.scene.parameters import number_places
 from eventpound.scene.periods import joined
-from eventpound.scene.worst_variants import worst_variants
+from eventpound.study.checked_numbers import variants_to_check
 
 EPS = np.finfo(float).eps
 Frame = tuple[tuple[Body, ...], tuple[Spring, ...]]
@@ -223,7 +223,7 @@ def test_variants_of_negative_dashpots_are_checked_together() -> None:
     places = [p for key, p in number_places(scene).items() if key.startswith("dashpot")]
     # Only the third variant has two that drive together.
     columns = np.array([[2e6, -1e6, -1e6, 2e6], [-1e6, 2e6, -0.5e6, -1e6]])
-    rows = worst_variants(scene, dict(zip(places, columns, strict=True)), 4)
+    rows = variants_to_check(scene, dict(zip(places, columns, strict=True)), 4)
     assert 2 in rows.tolist()
 
 

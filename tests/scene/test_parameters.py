@@ -10,6 +10,7 @@ import pytest
 from eventpound.errors import InputError
 from eventpound.motion import Record, Sine
 from eventpound.scene import (
+    Backfill,
     BilinearElastic,
     Body,
     BoucWen,
@@ -23,12 +24,13 @@ from eventpound.scene import (
 )
 from eventpound.scene.check import scene_problems
 from eventpound.scene.parameters import number_places, value_at, with_values
-from eventpound.scene.worst_variants import worst_variants
+from eventpound.study.checked_numbers import CheckedRanges, variants_to_check
 
 SCENE = Scene(
     bodies=(Body("a", 1.0), Body("b.1", 2.0)),
     springs=(
         Spring("s", ("ground", "a"), BoucWen(1.0, 2.0, 0.1, initial_z=0.2)),
+        Spring("soil", ("ground", "b.1"), Backfill(1.0, 2.0, 0.7, 0.02)),
         Spring("stop", ("a", "b.1"), Series((Linear(3.0), BilinearElastic(0.0, 4.0, 0.1)))),
     ),
     dashpots=(Dashpot(("ground", "a"), 0.1), Dashpot(("ground", "a"), 0.2)),
@@ -53,6 +55,11 @@ def test_every_number_has_a_key():
         "spring.s.beta": 0.5,
         "spring.s.gamma": 0.5,
         "spring.s.initial_z": 0.2,
+        "spring.soil.initial_stiffness": 1.0,
+        "spring.soil.ultimate_force": 2.0,
+        "spring.soil.failure_ratio": 0.7,
+        "spring.soil.gap": 0.02,
+        "spring.soil.initial_gap": 0.0,
         "spring.stop.parts.1.stiffness": 3.0,
         "spring.stop.parts.2.compression": 0.0,
         "spring.stop.parts.2.extension": 4.0,
@@ -100,7 +107,7 @@ def problems_of(scene: Scene, columns: dict[str, np.ndarray], row: int) -> list:
 def told_of(scene: Scene, columns: dict[str, np.ndarray]) -> list[int]:
     """Variants that are looked at; where any is wrong one of them must be."""
     places, count = number_places(scene), len(next(iter(columns.values())))
-    rows = worst_variants(scene, {places[k]: v for k, v in columns.items()}, count).tolist()
+    rows = variants_to_check(scene, {places[k]: v for k, v in columns.items()}, count).tolist()
     wrong = [row for row in range(count) if problems_of(scene, columns, row)]
     assert bool(wrong) == any(row in wrong for row in rows)
     return rows
@@ -124,11 +131,25 @@ def test_conditions_of_several_numbers_are_seen():
         "body.a.displacement": np.array([0.0, 0.02, -0.05, -0.2]),
         "body.b.1.displacement": np.array([-0.005, 0.0, -0.1, 0.0]),
     }
-    for columns in (shape, moved):
+    gaps = {
+        # A gap of 0 is taken for that of the spring, so what lies between may be wrong alone.
+        "spring.soil.initial_gap": np.array([0.3, 0.0, 0.1, 0.3]),
+        "spring.soil.gap": np.array([0.2, 0.0, 0.2, 0.4]),
+    }
+    for columns in (shape, moved, gaps):
         for row in range(4):
             # Of two variants, neither of which has the extreme of any column by itself.
             told_of(SCENE, {key: v[[row, 1, 1, row]] for key, v in columns.items()})
+    told_of(SCENE, {"spring.soil.initial_gap": np.array([0.0, 0.001, 0.3])})
     assert told_of(SCENE, {key: v[[0, 0, 2, 0, 0]] for key, v in moved.items()}) == [0, 2]
+
+
+def test_numbers_one_by_one_are_checked_where_they_meet_others():
+    ranges = CheckedRanges(SCENE, 0.0)
+    for key, value in (("gap", 0.3), ("gap", 0.1), ("initial_gap", 0.3)):
+        ranges.check({PLACES[f"spring.soil.{key}"]: value})
+    with pytest.raises(InputError, match="initial_gap"):
+        ranges.check({PLACES["spring.soil.initial_gap"]: 0.001})
 
 
 def test_of_many_variants_few_are_looked_at():
