@@ -38,7 +38,8 @@ def variants_to_check(scene: Scene, values: Mapping[Place, Floats], count: int) 
     if scene.supports:
         # Where these are as a run begins, only the whole variant says.
         return np.arange(count)
-    rows = [np.array((np.argmin(each), np.argmax(each))) for each in values.values()]
+    rows = [np.zeros(0, np.int64)]
+    rows += [np.array((np.argmin(each), np.argmax(each))) for each in values.values()]
     meeting: dict[str | int, list[Floats]] = {}
     for place, column in values.items():
         if (what := _meets(scene, place, float(column.min()))) is not None:

@@ -160,6 +160,7 @@ def test_of_many_variants_few_are_looked_at():
         "body.a.mass": rng.uniform(1.0, 2.0, 300),
     }
     assert len(told_of(SCENE, columns)) == 6
+    assert variants_to_check(SCENE, {}, 3).tolist() == []
 
 
 def test_on_supports_every_variant_is_looked_at():
