@@ -90,6 +90,16 @@ class Case:
     carried: Mapping[str, float] = field(default_factory=dict)
     largest_scale: float = LARGEST_SCALE
 
+    @property
+    def members(self) -> tuple[Member, ...]:
+        """Records of its suite; none of a case of one run."""
+        return () if self.suite is None else tuple(self.suite.members(self.directory))
+
+    @property
+    def scaling(self) -> str:
+        """What is done to the size of every record of its suite, in words; empty for nothing."""
+        return "" if self.suite is None else self.suite.options.scaling
+
     def apart(self, scene: Scene) -> Case:
         """The same of another scene, of which nothing is asked beyond what it gives."""
         return replace(self, scene=scene, run=replace(self.run, stated=DEFAULTS))
@@ -113,8 +123,7 @@ def case_of(given: Case | Scene, rtol: float = 1e-9) -> Case:
 
 def member_of(case: Case, name: str) -> Member:
     """A record of the suite of a case, by its name."""
-    assert case.suite is not None
-    return next(m for m in case.suite.members(case.directory) if m.name == name)
+    return next(member for member in case.members if member.name == name)
 
 
 def member_case(case: Case, member: Member, data: RecordData) -> Case:

@@ -105,8 +105,8 @@ def _summary(case: Case, table: pd.DataFrame) -> Iterator[str]:
     yield f"records   {len(done)} of {len(table)}"
     if done.empty:
         return
-    if case.suite is not None and case.suite.options.scaling:
-        yield f"scaling   {case.suite.options.scaling}"
+    if case.scaling:
+        yield f"scaling   {case.scaling}"
     for key, unit in (("PGA", "m/s^2"), ("T_m", "s"), ("L_e", "m")):
         if key in done:
             low, middle, high = done[key].quantile([0.0, 0.5, 1.0])

@@ -76,8 +76,8 @@ def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> html.Part:
     lines = {"records": f"{len(done)} of {len(table)}"}
     if failed := len(table) - len(done):
         lines["failed"] = f"{failed}; why is in the table of records"
-    if case.suite is not None and case.suite.options.scaling:
-        lines["scaling"] = case.suite.options.scaling
+    if case.scaling:
+        lines["scaling"] = case.scaling
     if large := large_scales_of(case):
         lines["warning"] = large
     if done.empty:
@@ -101,8 +101,7 @@ def _motions(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:
     period, damping = sa_of_suite(case)
     if SA in done and done[SA].notna().all() and case.suite is not None:
         at = period, done[SA].to_numpy(float), case.suite.options.size.wanted(period)
-    members = [] if case.suite is None else case.suite.members(case.directory)
-    for member in [m for m in members if m.name in records][:_MOST_SPECTRA]:
+    for member in [m for m in case.members if m.name in records][:_MOST_SPECTRA]:
         try:
             motion = member.options.motion(member.read())
         except InputError:

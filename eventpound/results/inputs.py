@@ -16,7 +16,6 @@ import numpy as np
 
 from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions
-from eventpound.case.suite import Suite
 from eventpound.case.understood import contact_law_keys, sources_of
 from eventpound.errors import InputError
 from eventpound.mechanics.contact_elements import drag
@@ -123,7 +122,8 @@ def _driven(case: Case) -> dict[str, list[Row]]:
                 # Where it goes, each record says.
                 row["kind"] = "record"
                 own = suites.get(support.name)
-                row |= {"delay": support.delay} if own is None else {"suite": _size(own, case)}
+                many = None if own is None else len(own.members(case.directory))
+                row |= {"delay": support.delay} if many is None else {"suite": many}
                 continue
             if support.delay is not None:
                 row["delay"] = support.delay
@@ -251,8 +251,8 @@ def _structure(scene: Scene, group: list[str]) -> Row:
 def _motion(case: Case) -> Row:
     """The ground motion, or what a suite does with its records."""
     if case.suite is not None:
-        scaling = case.suite.options.scaling
-        return {"suite": _size(case.suite, case)} | ({"scaling": scaling} if scaling else {})
+        scaling = {"scaling": case.scaling} if case.scaling else {}
+        return {"suite": len(case.members), **scaling}
     motion = case.scene.motion
     row: Row = {"kind": motion.kind}
     scales = motion.scales()
@@ -268,11 +268,6 @@ def _motion(case: Case) -> Row:
         said = {key: getattr(case.record, key) for key in ("event", "date", "station", "component")}
         row |= {"file": case.record.file, **{key: text for key, text in said.items() if text}}
     return row
-
-
-def _size(suite: Suite, case: Case) -> int:
-    """Number of its records."""
-    return len(suite.members(case.directory))
 
 
 def _finite(value: float) -> float | None:

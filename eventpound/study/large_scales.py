@@ -25,8 +25,7 @@ def large_scales_of(given: Case | Sequence[Base]) -> str:
         Of a suite, or the scenes of a study.
     """
     if isinstance(given, Case):
-        members = () if given.suite is None else given.suite.members(given.directory)
-        given = (Base(given, {}, (), False, tuple(members)),)
+        given = (Base(given, {}, (), False, given.members),)
     limit = max(base.case.largest_scale for base in given)
     return large_scales([pair for base in given for pair in _factors(base)], limit)
 

@@ -214,9 +214,8 @@ def _bases(
         own = isinstance(run, dict) and "duration" in run
         case = read_case(worded, file, source_hash)
         _refuse_shocks(worded, numbers)
-        records = () if case.suite is None else tuple(case.suite.members(case.directory))
         labels = {PART: part.name} | labels if named else labels
-        yield Base(replace(case, suite=None), labels, numbers, own, records)
+        yield Base(replace(case, suite=None), labels, numbers, own, case.members)
 
 
 def _refuse_shocks(document: _Document, numbers: Sequence[NumberAxis]) -> None:

@@ -214,9 +214,8 @@ def _shown(done: int, size: int) -> None:
 def _members(given: Case | Scene, records: str | None) -> tuple[Member, ...]:
     """The records of a pattern, or those of the case."""
     case = case_of(given)
-    suite, directory = case.suite, case.directory
-    if records is not None:
-        options = RecordOptions() if suite is None else suite.options
-        others = () if suite is None else suite.supports
-        suite = Suite(str(Path(records).absolute()), (), options, others)
-    return () if suite is None else tuple(suite.members(directory))
+    if records is None:
+        return case.members
+    own = case.suite or Suite(None, (), RecordOptions())
+    chosen = replace(own, pattern=str(Path(records).absolute()), synthetic=(), rest=None)
+    return tuple(chosen.members(case.directory))

@@ -152,7 +152,7 @@ def suite_plan(
     number = positive("rtol", rtol, Dimension.NUMBER)
     if case.suite is None:
         raise InputError("the case has no suite of records; simulate runs it")
-    members = case.suite.members(case.directory)
+    members = case.members
     options = replace(case.solver, rtol=number or case.solver.rtol)
     if solver is not None:
         options = solver_instead(options, solver, "solver")
