@@ -1,9 +1,9 @@
 r"""Fit and draw curves of fragility: the probability that a demand exceeds a limit.
 
-Of a finished table of a study or of a suite: lognormal curves over an intensity, by maximum
-likelihood. Of a study that scales each record through intensities, the capacity of each record is
-found, and a record that never exceeds the limit is censored at its largest intensity. Of a suite,
-or with --counts, runs are counted. What is done: the page "spectra" of the documentation.
+Lognormal curves over an intensity are fitted to the finished table of a study or a suite, by
+maximum likelihood. In a study that scales each record through intensities the capacity of each
+record is found; a record that never exceeds the limit is censored at its largest intensity. In a
+suite, or with --counts, runs are counted. More: the page "spectra" of the documentation.
 
 Files: fragility.csv and fragility.png.
 

@@ -1,8 +1,8 @@
 """Draw the figures of results: of a run, a suite, a study, or a folder of cases.
 
 A run is drawn from its results; so are a suite and a study, whose case says what is drawn.
-Of a folder that holds the directories of cases all studies and suites with a [figure] are
-computed and drawn, and an index page, index.html, is written.
+For a folder of cases all studies and suites with a [figure] are computed and drawn, with an
+index page, index.html.
 
 Examples
 --------

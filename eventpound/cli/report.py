@@ -1,19 +1,19 @@
-"""Report what is decided by a case: separations, seats, forces, ductility, on two pages.
+"""Report what a case decides: separations, seats, forces, ductility, on two pages.
 
-Of a run, a suite, a study, or each case of a folder. For each joint the gap with which nothing
-touches anywhere ("separation needed"), then contacts, springs, storeys and bodies. Of a suite the
-50 and 84 % fractiles over the records, the largest, and its record. What each row is: the page
+CASE is a run, a suite or a study. First comes, for each joint, the gap with which nothing touches
+anywhere ("separation needed"), then contacts, springs, storeys and bodies. A suite gets 50 and
+84 % fractiles over its records, the largest value, and its record. What each row is: the page
 "design" of the documentation.
 
 Files, in CASE/results/report: report.pdf, two pages of A4; report.html, these
 pages and an appendix with all figures, tables and quantities; report.xlsx, all numbers in the
 units of the report; report.csv, a row a demand (of a study: for each combination of its axes), SI;
 motion.html, histories, gaps and loops that zoom, with events to click;
-beside it all that the runs gave. Further runs are made for it: one without contact, and one for
+and the results of the runs. Further runs are made: one without contact, and one for
 each contact. A suite or a study that was stopped goes on. Records alone and a study in Π-terms have
 the appendix only.
 
-Of a folder of cases: a report each, in FOLDER/reports, and a page with links to them.
+A folder of cases gets a report each, in FOLDER/reports, and a page with links to them.
 
 Examples
 --------

@@ -53,7 +53,7 @@ def add_run(commands: Commands) -> None:
     run.option("--solver NAME[:KEY=VALUE...]", solver)
     run.option("--rtol X", "relative tolerance, instead of the case's own", arguments.tolerance)
     run.out("where the results go (CASE/results)")
-    estimate = "estimate the error by another solver, whatever it costs; of every record of a suite"
+    estimate = "estimate the error by a second run, whatever it costs; of every record of a suite"
     run.option("--error-estimate", estimate)
     ends = "end the computation after so {}, keep what there is, marked incomplete"
     run.option("--time-limit SECONDS", ends.format("long"), arguments.seconds)

@@ -1,7 +1,7 @@
 """How quantities follow the numbers of a case, one at a time.
 
 Each number is varied by 1e-5 of itself; derivatives have an error, and a note where there is none
-because an impact comes or goes. Of a case with a [study]: of its scene as it is.
+because an impact comes or goes. Of a case with a [study] the axes are left out.
 
 Files: sensitivities.csv, sensitivities.png (per cent for one per cent).
 

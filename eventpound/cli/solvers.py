@@ -2,7 +2,7 @@
 
 --compile makes the kernels of the solvers beforehand: for an image, the nodes of a cluster, or
 an installation that others use. A first run compiles what it needs by itself, so nobody has to
-do this; what a run seldom needs Python itself runs at first. Kernels are kept beside the
+do this. Kernels are kept beside the
 sources, or, where that folder cannot be written, in the user's cache folder; NUMBA_CACHE_DIR
 names another. They hold for one kind of processor.
 

@@ -1,9 +1,8 @@
 """Write and draw the response spectrum of a pulse from a study in Π-terms.
 
-A study in Π-terms holds for every amplitude and period of its pulse. Of its finished table
-spectrum.csv has the rows in dimensions: T_s (s) or Q/m (m/s²), gap and yield displacement (m), and
-u_max (m); the figures of the case are drawn in them, too. Other columns stay those of the pulse of
-the study.
+A study in Π-terms holds for every amplitude and period of its pulse. spectrum.csv has the rows of
+its finished table in dimensions: T_s (s) or Q/m (m/s²), gap and yield displacement (m), and u_max
+(m); the figures of the case are drawn in them, too. Other columns stay those of the study's pulse.
 
 Examples
 --------

@@ -6,7 +6,7 @@ tolerances, change the inputs in their last digits, and bound the error of every
 time, every event and every final value.
 
 It writes certificate.json, certificate.txt (the table that is printed) and digits.png, and
-says of every number how many digits are certain, what limits them and how changes of the
+says how many digits of every number are certain, what limits them and how changes of the
 inputs come through. Exit code 1 where the certificate is refused: the routes part, or a peak
 or final value has no bound. `eventpound compare` takes the certificate as its reference.
 What is meant by an error and how the bound is made: the page "accuracy" of the documentation.
