@@ -115,6 +115,7 @@ def _fill_cells(
         # The value in the middle from an expansion about the cell's start.
         _expand(n, kappa, y, c, power)
         _expand(n, kappa, _horner(c, 0, TERMS, half), c, power)
+        # The slope 1 - y^n is n (1 - y) near one: below this Φ is one to rounding.
         before, y = y, _horner(c, 0, TERMS, half)
         if y >= last or y <= before or 1.0 - kappa * y**n <= OF_BACKBONE * n:
             return i + 1
@@ -211,10 +212,12 @@ def backbone(table: Floats, at: int, xi: float) -> float:
         scale, width = table[at + _SCALE_UP], table[at + _WIDTH_UP]
         return _cell_value(table, at, xi - near, scale, width, 0, cells)
     rho = table[at + _RHO]
+    # β = γ, as the founding paper has it: unloading is elastic.
     if rho == 0.0:
         return xi
     near = table[at + _NEAR_DOWN]
     if -xi <= near:
+        # Φ = ξ G(w) solves Φ' = 1 - w Gⁿ for either sign, with w = ρ |ξ|^n below zero.
         w = rho * integer_power(-xi, table[at + _EXPONENT])
         return xi * _near_value(table, at, w)
     skip, cells = int(table[at + _CELLS_UP]), table[at + _CELLS_DOWN]
@@ -227,6 +230,7 @@ def _near_value(table: Floats, at: int, w: float) -> float:
     """G(w), with as many terms as it needs."""
     if abs(w) < BESIDE_ONE:
         return 1.0
+    # An even number, for `_horner`.
     count = 6 if abs(w) < FEW_TERMS else NEAR_TERMS
     return _horner(table, at + _HEADER, count, w)
 
@@ -235,6 +239,7 @@ def _near_value(table: Floats, at: int, w: float) -> float:
 def _cell_value(
     table: Floats, at: int, x: float, scale: float, width: float, skip: int, cells: float
 ) -> float:
+    # At the end of the last cell rounding would ask for one more.
     i = min(int(x * scale), int(cells) - 1)
     first = at + _HEADER + NEAR_TERMS + (skip + i) * TERMS
     return _horner(table, first, TERMS, x - (i + 0.5) * width)
@@ -257,6 +262,7 @@ def backbone_inverse(table: Floats, at: int, y: float) -> float:
     if kappa == 0.0 or y == 0.0:
         return y
     size = abs(y)
+    # Where Φ is flat y tells no ξ, and Newton's step would be a quotient of roundings.
     if kappa * integer_power(size, n) >= 1.0 - STEEP:
         return table[at + _END_UP] if y > 0.0 else -np.inf
     low, high = 0.0, table[at + _END_UP]
@@ -268,6 +274,7 @@ def backbone_inverse(table: Floats, at: int, y: float) -> float:
             else (high + table[at + _CELLS_DOWN] / table[at + _SCALE_DOWN])
         )
     sign = 1.0 if y > 0.0 else -1.0
+    # Φ is ξ to first order.
     xi = min(size, high)
     for _ in range(100):
         value = abs(backbone(table, at, sign * xi))
@@ -278,6 +285,7 @@ def backbone_inverse(table: Floats, at: int, y: float) -> float:
         slope = 1.0 - kappa * integer_power(value, n)
         step = (size - value) / slope if slope > 0.0 else np.inf
         following = xi + step
+        # Near the bound a step over a small slope leads far out of the bracket.
         if not low <= following <= high:
             following = 0.5 * (low + high)
         if abs(following - xi) <= ITERATED * xi:

@@ -148,6 +148,7 @@ def _joined(
     first_node, second_node = left[members], right[members]
     first_node[first_node < 0] = bodies
     second_node[second_node < 0] = bodies
+    # Supports count as the barrier only here: where bodies are placed, these go with theirs.
     tail, head = _anchored(first_node, mass), _anchored(second_node, mass)
     points, rests = weights.shape[0], members.size
     carrying, locked = np.zeros(rests, np.bool_), np.zeros(rests, np.bool_)
@@ -168,6 +169,7 @@ def _joined(
         compliance = grouped_at.compliance[:count, :count].copy()
         carried = grouped_at.carried[:count].copy()
     else:
+        # Only a redundant contact closes a cycle.
         if not carrying.all():
             locked = on_directed_cycles(tail, head, bodies + 1)
         unique = _unique(carrying, first_node, second_node, of_body, count)
@@ -222,6 +224,7 @@ def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> Non
             # What is so much heavier, or a support, stays where it is, whichever side it is on.
             u[left] = u[right] + gap
             return
+        # Beside a body so light that its share is rounding the other one stays where it is.
         if 1.0 - share < 1.0:
             u[left] += share * opening
         u[right] = u[left] - gap
@@ -246,6 +249,7 @@ def _forest(first_node: Ints, second_node: Ints, pressed: Bools, nodes: int) -> 
         for i in range(pressed.size):
             if pressed[i] == turn:
                 a, b = root(parent, first_node[i]), root(parent, second_node[i])
+                # Where both are in one set already this changes nothing.
                 parent[a] = b
                 carrying[i] = a != b
     return carrying
@@ -273,6 +277,7 @@ def _spread(
     for source in range(-1, bodies):
         if of_body[source] != -2:
             continue
+        # For the source -1 this is the last place, that of the barriers.
         of_body[source] = count
         queue[0] = source % (bodies + 1)
         length, k = 1, 0
@@ -280,6 +285,7 @@ def _spread(
             node = queue[k]
             k += 1
             for i in place[start[node] : start[node + 1]]:
+                # Both ends of a contact stand side by side: the other differs in the last bit.
                 other, j = ends[i ^ 1], contacts[i // 2]
                 if of_body[other] != -2:
                     continue
@@ -287,6 +293,7 @@ def _spread(
                 sign = 1 if i % 2 == 0 else -1
                 offset[other] = offset[node] - sign * gap[j]
                 of_body[other] = count
+                # From the end on, so that a body stands before the one from which it was reached.
                 rows -= 1
                 elimination[rows, 0], elimination[rows, 1] = other, j
                 elimination[rows, 2], elimination[rows, 3] = (-1 if node == bodies else node), sign

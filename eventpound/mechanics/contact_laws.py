@@ -99,6 +99,7 @@ def element_pull(
     pull = drag * x_rate - force
     if kind == _CUT and (way > 0.0 if way != 0.0 else pull >= 0.0):
         return 0.0, 0.0, 0.0
+    # ∂/∂x = -∂/∂d, and C grows with d.
     return pull, slope - growth * x_rate, drag
 
 

@@ -58,6 +58,7 @@ def parts(joints: Joints) -> Ints:
         return _coupled_parts(joints)
     parent = np.arange(nodes)
     for j in range(left.size):
+        # A barrier hands nothing on, so it joins no two contacts.
         if left[j] >= 0 and right[j] >= 0:
             parent[root(parent, left[j])] = root(parent, right[j])
     label = np.empty(left.size, np.int64)
@@ -70,6 +71,7 @@ def parts(joints: Joints) -> Ints:
 def _coupled_parts(joints: Joints) -> Ints:
     """`parts` where coordinates answer to forces at others."""
     left, right = joints.left, joints.right
+    # Over contacts and not coordinates, as a force moves all that follow the one that it acts on.
     parent = np.arange(left.size)
     for i in range(left.size):
         for j in range(i):
@@ -99,6 +101,7 @@ def coupling(joints: Joints, i: int, j: int) -> float:
     left, right, total = joints.left, joints.right, 0.0
     inverse_mass = joints.inverse_mass
     if joints.compliance.size > 0:
+        # g = δ + u_right - u_left: positive where a body is on the same side of both.
         if right[i] >= 0:
             total += answer(joints.compliance, right[i], left[j], right[j])
         if left[i] >= 0:
@@ -142,6 +145,7 @@ def _row_order(left: Ints, right: Ints, members: Ints, nodes: int) -> Ints:
             if ending[right[j]] >= 0:
                 return empty
             ending[right[j]] = j
+    # In a ring none is the first, and the order stays empty.
     first = -1
     for j in members:
         if left[j] < 0 or ending[left[j]] < 0:
@@ -198,6 +202,7 @@ def solve_contacts(joints: Joints, q: Floats, noise: float) -> tuple[Floats, Flo
             w[start] = max(0.0, q[start])
             continue
         row = np.empty(0, np.int64)
+        # A row with points is none: its bodies answer to forces beyond their neighbours.
         if count > LONG_ROW and paired:
             row = _row_order(left, right, members[:count], inverse_mass.size)
         if row.size > 0:

@@ -76,6 +76,7 @@ def accelerations(d: Descriptor, loads: Floats, contact: Floats, ground: float, 
 def contact_forces(d: Descriptor, loads: Floats, ground: float, contact: Floats) -> None:
     """λ of ``Wᵀ u'' = 0``."""
     closing, a = np.empty(contact.size), np.empty(d.mass.size)
+    # With no contact force at first: λ is what takes the rest of Wᵀ u'' to zero.
     accelerations(d, loads, contact[:0], ground, a)
     for j in range(contact.size):
         closing[j] = -dot(d.W[j], a)
@@ -125,6 +126,7 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
     N = d.mass.size
     rates[:] = 0.0
     for b in range(N):
+        # The mass of a support is infinite; what it puts in has a row of its own.
         rates[0] -= 0.0 if is_support(b, d.mass) else d.mass[b] * y[N + b] * ground
     for link in range(d.stiffness.size):
         rates[1] += d.law.damping[link] * x_rate[link] * x_rate[link]
@@ -151,6 +153,7 @@ def loaded_powers(
             total = pulled[b]
             for j in range(d.opening.size):
                 total += d.W[j, b] * y[first + j]
+            # The support holds against links and contacts, so it does the negative of their work.
             rates[WORK_OF_SUPPORTS + b] = -total * y[N + b]
         else:
             rates[0] += y[N + b] * load_value(row, forcing, forcing.start + tau)
@@ -213,8 +216,10 @@ def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Descript
     accelerations(d, loads, relative[2 * N + H : 2 * N + H + R], ground, a)
     for b in range(N):
         out[b] = rate[b] - y[N + b]
+        # In the frame the velocity is v + s', and its rate has s'' beside the acceleration.
         out[N + b] = rate[N + b] - a[b] - d.framed[b] * lift
     for j in range(R):
+        # After the loop over all bodies: these take the place of u' = v and of the momentum of one.
         out[d.dependent[j]] = d.opening[j] + dot(d.W[j], relative[:N])
         out[N + d.dependent[j]] = dot(d.W[j], relative[N : 2 * N])
         out[2 * N + H + j] = dot(d.W[j], a)
@@ -227,6 +232,7 @@ def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Descript
             body_loads(d, forces, loads)
             loaded_powers(tau, relative, problem, loads, last)
         for i in range(last.size):
+            # Small, for none of these rows may become the pivot of another unknown.
             last[i] = d.ledger_weight * (rate[d.ledger + i] - last[i])
 
 
@@ -247,6 +253,7 @@ def constraint_errors(d: Descriptor, y: Floats) -> tuple[float, float]:
     """Largest gap (m) and gap rate (m/s) of a resting contact, by their sizes."""
     N = d.mass.size
     gap, gap_rate = 0.0, 0.0
+    # Also of those that no λ keeps closed, since others do.
     for i in range(d.resting.size):
         j = d.resting[i]
         gap = max(gap, abs(d.all_openings[j] + dot(d.all_gaps[j], y[:N])))
@@ -263,6 +270,7 @@ def onto_constraints(d: Descriptor, y: Floats) -> None:
     """
     N, R = d.mass.size, d.opening.size
     gaps, rates = np.empty(R), np.empty(R)
+    # All of them before a body is moved, which opens the gaps beside.
     for j in range(R):
         gaps[j] = d.opening[j] + dot(d.W[j], y[:N])
         rates[j] = dot(d.W[j], y[N : 2 * N])
@@ -280,6 +288,7 @@ def _acceleration_slopes(d: Descriptor, slopes: Floats) -> None:
     for link in range(d.stiffness.size):
         for b in range(N):
             pull = -d.B[link, b] / d.mass[b]
+            # It is zero for a support, too, whose mass is infinite.
             if pull == 0.0:
                 continue
             for c in range(N):
@@ -300,6 +309,7 @@ def _ledger_slopes(d: Descriptor, y: Floats, x_rate: Floats, ground: float, J: F
     Newton's iteration needs one step more and no other.
     """
     N, first = d.mass.size, d.ledger
+    # The signs are those of `residual`: the rate less what it should be.
     for b in range(N):
         J[first, N + b] = 0.0 if is_support(b, d.mass) else d.mass[b] * ground
     for link in range(d.stiffness.size):
@@ -318,6 +328,7 @@ def _constraint_slopes(d: Descriptor, slopes: Floats, J: Floats) -> None:
     N, first = d.mass.size, 2 * d.mass.size + d.hysteretic
     for j in range(d.opening.size):
         body = d.dependent[j]
+        # No rate is in the equation of a dependent body, so c_j goes with the rest of its row.
         J[body, :] = 0.0
         J[N + body, :] = 0.0
         for b in range(N):
@@ -339,6 +350,7 @@ def _z_slopes(d: Descriptor, y: Floats, x_rate: Floats, cj: float, J: Floats) ->
         memory, rate = d.law.memory, x_rate[link]
         other = 2 * N + d.z_of_link[number_beside(link, memory)]
         by_rate, by_z = z_slopes(link, memory, rate, y[2 * N + h], y[other])
+        # Before the entry of z itself: where nothing stands beside it this is the same place.
         J[2 * N + h, other] = -slope_beside(link, memory, rate, y[2 * N + h], y[other])
         J[2 * N + h, 2 * N + h] = cj - by_z
         for b in range(N):
@@ -377,6 +389,7 @@ def jacobian(tau: float, y: Floats, cj: float, J: Floats, problem: DescriptorPro
     if d.ledger >= 0:
         ground = ground_acceleration(forcing, t)
         _ledger_slopes(d, relative, x_rate, ground, J)
+        # Weighed as the rows of `residual` are, their own rates included.
         for i in range(d.ledger, d.size):
             J[i, i] = cj
             for k in range(d.size):

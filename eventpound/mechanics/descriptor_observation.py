@@ -43,6 +43,7 @@ def _observe_contacts(d: Descriptor, contact: Floats, contact_rate: Floats, out:
         out.gap[0, j] = d.all_openings[j] + dot(d.all_gaps[j], out.u)
         out.gap[1, j] = dot(d.all_gaps[j], out.v)
         out.gap[2, j] = dot(d.all_gaps[j], out.a)
+    # What is left of these is the drift, which is told by itself.
     for i in range(d.resting.size):
         out.gap[:, d.resting[i]] = 0.0
     out.contact_force[:] = 0.0
@@ -60,6 +61,8 @@ def _observe_points(weights: Floats, out: Observed) -> None:
     for row in range(2):
         acceleration = out.acceleration[row]
         if weights.shape[0] > 0:
+            # A point may hang on the ground, too, whose weight is left out: so the mean is of what
+            # is relative to it.
             acceleration -= out.ground[row]
             place_points(weights, acceleration)
             acceleration += out.ground[row]
@@ -102,8 +105,10 @@ def observe_descriptor(
     _link_rates(d, a, rate[2 * N : 2 * N + H], out)
     body_loads(d, out.force[1], load_rates)
     out.shear[1] = -np.sum(load_rates)
+    # Of a support the rate of the given acceleration, in the place of that of a force.
     for b in range(pushed.shape[1]):
         load_rates[b] = pushed[1, b] + (0.0 if is_support(b, d.mass) else load_rates[b])
+    # W is constant, so rates of contact forces follow from rates of loads by the same equations.
     contact_forces(d, load_rates, out.ground[1], contact_rate)
     accelerations(d, load_rates, contact_rate, out.ground[1], a_rate)
     for b in range(N):

@@ -119,6 +119,7 @@ def z_rate(
     elif memory[a, KIND] == ITS_ENERGY:
         slope = beside
     else:
+        # Which sign a z of zero has makes no difference: |z|^n is zero there.
         same_sign = (direction > 0.0) == (z > 0.0)
         kappa = memory[a, BETA] + memory[a, GAMMA] * (2.0 * same_sign - 1.0)
         power = abs(z) ** memory[a, EXPONENT]
@@ -161,6 +162,7 @@ def slope_beside(a: int, memory: Floats, x_rate: float, z: float, beside: float)
         return 0.0
     eta = 1.0 + memory[a, DELTA_ETA] * beside
     here = z_rate(a, memory, x_rate, x_rate, z, beside)
+    # By the quotient rule: of η z' the variable beside changes only the part that ν multiplies.
     fresh = z_rate(a, memory, x_rate, x_rate, z, 0.0)
     weaker = (fresh - x_rate / memory[a, YIELD]) * memory[a, DELTA_NU]
     return float((weaker - here * memory[a, DELTA_ETA]) / eta)
@@ -221,6 +223,7 @@ def memory_on_branches(memory: Floats, branch: Ints) -> Floats:
     for a in range(branch.size):
         if slides(a, memory) and branch[a] < 0:
             found, any_changed = found if any_changed else memory.copy(), True
+            # z of a slider is one, so Q has the sign of its slip.
             found[a, STRENGTH] = -memory[a, STRENGTH]
         elif memory[a, KIND] == BACKFILL and branch[a] != CLOSED:
             if not any_changed:
@@ -228,6 +231,7 @@ def memory_on_branches(memory: Floats, branch: Ints) -> Floats:
             if branch[a] == YIELDING:
                 found[a, KIND] = YIELDING_SOIL
             else:
+                # Apart there is no force, but z goes on with x: it tells where both meet.
                 found[a, STRENGTH] = 0.0
     return found
 
@@ -254,9 +258,11 @@ def branch_ends(
     """
     if slides(a, memory):
         return (0.0, np.inf) if branch > 0 else (-np.inf, 0.0)
+    # Where z is zero. On both elastic branches z' = x'/u_y, so it stays the same along them.
     apart = x - memory[a, YIELD] * z
     if branch == YIELDING:
         return -np.inf, 0.0
+    # An end that rounding has put beyond x is x itself: a link is on its branch.
     if branch == APART:
         return min(apart, x), np.inf
     return min(apart - _knee(a, memory, offset, x, z), x), max(apart, x)
@@ -271,13 +277,16 @@ def next_branch(
         # What follows a slip the accelerations decide.
         return branch
     if not has_branches(a, memory):
+        # The two sides of an elastic kink are 1 and -1.
         return -branch
     knee, pressed = _knee(a, memory, offset, x, z), -z * memory[a, YIELD]
+    # What was never pushed in has no elastic part on which it could close.
     if branch == APART:
         return CLOSED if knee > noise else YIELDING
     # Of both lengths z tells whether there is a force: that of the backbone may err beside it.
     if branch == YIELDING:
         return CLOSED if pressed > noise else APART
+    # It has come to one of two ends, z = 0 and the knee, and stands nearer to that one.
     return APART if pressed <= max(0.5 * knee, noise) else YIELDING
 
 
@@ -326,11 +335,13 @@ def z_coefficient(
     """
     sign_z = sign_after(z, k + 1, NO_Z)
     if sign_z == 0.0:
+        # z that starts from zero grows the way x' goes, so z x' > 0.
         sign_z = sigma
     kappa = memory[a, BETA] + memory[a, GAMMA] * sigma * sign_z
     if memory[a, KIND] == ITS_ENERGY:
         return _convolution(k, x_rate, beside) / memory[a, YIELD]
     if memory[a, KIND] == YIELDING_SOIL:
+        # (1 + z)² = 1 - P with P = -z (2 + z): the form of eq. 3 with κ = 1.
         kappa, power[k] = 1.0, -2.0 * z[k]
         for j in range(k + 1):
             power[k] -= z[j] * z[k - j]
@@ -343,9 +354,11 @@ def z_coefficient(
     if memory[a, KIND] != DEGRADING:
         return float((x_rate[k] - kappa * product) / memory[a, YIELD])
     for j in range(k + 1):
+        # ν κ P = (1 + δ_ν ε) κ P, a product of two series more.
         product += memory[a, DELTA_NU] * beside[j] * _convolution(k - j, x_rate, power)
     rate = (x_rate[k] - kappa * product) / memory[a, YIELD]
     for j in range(1, k + 1):
+        # η z' is known, so z'_k is what the terms of η z' with ε_1, ε_2 ... leave, over η_0.
         rate -= memory[a, DELTA_ETA] * beside[j] * (k - j + 1) * z[k - j + 1]
     return float(rate / (1.0 + memory[a, DELTA_ETA] * beside[0]))
 

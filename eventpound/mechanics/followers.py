@@ -100,6 +100,7 @@ def examine_rests(rests: Rests, weights: Floats) -> None:
             if rests.pressed[i] != turn:
                 continue
             left = rows[i].copy()
+            # Twice is enough: the first turn leaves the rounding of what it took away.
             for _ in range(2):
                 for k in range(count):
                     share = dot(basis[k], left)
@@ -115,11 +116,13 @@ def examine_rests(rests: Rests, weights: Floats) -> None:
         lower[a] = parts[order[a], :count]
     for b in range(first):
         solve_transposed(lower, basis[:count, b].copy(), order, rests.force_map[:, b])
+    # What acts on a point acts on its bodies.
     for d in range(weights.shape[0]):
         for b in range(first):
             rests.force_map[:, first + d] += weights[d, b] * rests.force_map[:, b]
     rests.unique[:] = True
     parts_of = np.zeros(R)
+    # A redundant contact can take over from those that it is a sum of.
     for i in range(R):
         if not rests.carrying[i]:
             rests.unique[i] = False
@@ -158,6 +161,7 @@ def held_closed(rows: Floats) -> Bools:
     for j in range(R):
         others = np.flatnonzero(np.arange(R) != j)
         for a in range(R - 1):
+            # Least squares of row j plus Σ x_i row_i over x >= 0.
             q[a] = dot(rows[others[a]], rows[j])
             for b in range(R - 1):
                 G[a, b] = dot(rows[others[a]], rows[others[b]])
@@ -222,6 +226,7 @@ def follow(groups: int, mass: Floats, weights: Floats, out: Grouped) -> int:
         elif place[c] >= 0:
             for d in range(groups):
                 if row_of[d] < 0:
+                    # Solved for the group c its equation reads q_c = -Σ ties_d q_d - ties_C.
                     N[place[c], place[d]] = -ties[row_of[c], d]
     _put_compliance(N[:, :free].copy(), weighed, out)
     for b in range(mass.size):
@@ -278,6 +283,7 @@ def _eliminate(ties: Floats, mass: Floats) -> Ints:
                         change = factor * ties[e, c]
                         size = abs(ties[f, c]) + abs(change)
                         ties[f, c] -= change
+                        # What has cancelled is nothing: its rounding must not become a pivot.
                         if c < groups and abs(ties[f, c]) <= TIE_ROUNDING * size:
                             ties[f, c] = 0.0
                     ties[f, best] = 0.0
@@ -306,6 +312,7 @@ def _number(ties: Floats, row_of: Ints) -> Ints:
 def _put_compliance(N: Floats, mass: Floats, out: Grouped) -> None:
     """A and r of n groups with such masses (kg), N of shape (n, those left)."""
     moving, free = N.shape
+    # Nᵀ M N is symmetric: its lower triangle is all that is wanted.
     K = np.zeros((free, free))
     for c in range(moving):
         for a in range(free):

@@ -52,6 +52,7 @@ def frame_motion(frame: Floats, t: float) -> tuple[float, float, float]:
     """The position s (m), s' (m/s) and s'' (m/s²) of the frame at one time."""
     times = frame[0]
     dt = times[1] - times[0]
+    # Beyond the samples the first and the last cubic go on.
     i = min(max(int((t - times[0]) / dt), 0), times.size - 2)
     h = t - times[i]
     slope = (frame[1, i + 1] - frame[1, i]) / dt

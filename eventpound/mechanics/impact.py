@@ -54,9 +54,12 @@ def impact_law(
     involved = closed & (gap_rate <= 0.0)
     members = np.flatnonzero(involved)
     before = gap_rate[members]
+    # w = γ⁺ + ε γ⁻ = G Λ + (1 + ε) γ⁻, which Moreau's form asks to be complementary to Λ.
     q = (1.0 + restitution[members]) * before
     noise = QUIET * np.max(-before)
     x, w, solved = solve_contacts(of_members(joints, members), q, noise)
+    # Changes of velocities stand by themselves. Rates of gaps are variables of their own and take
+    # these alone: so one far below the rounding of velocities keeps its digits.
     change, left, right = np.zeros(v.size), joints.left, joints.right
     for i in range(members.size):
         j = members[i]
@@ -140,6 +143,7 @@ def newton(before: float, restitution: float, inverse: float) -> tuple[float, fl
         γ⁺ (m/s), Λ (N s) and the kinetic energy lost (J).
     """
     impulse = -(1.0 + restitution) * before / inverse
+    # -Λ (γ⁻ + γ⁺)/2, not below zero as γ⁻ is.
     return -restitution * before, impulse, 0.5 * impulse * (restitution - 1.0) * before
 
 

@@ -160,6 +160,7 @@ def bodies_motion(y: Floats, bodies: Bodies, u: Floats, v: Floats) -> None:
         if c >= 0:
             u[b] += y[bodies.iq[c]]
             v[b] = y[bodies.iv[c]]
+    # Points come last and from the bodies, whatever cluster they are in.
     place_points(bodies.weights, u)
     place_points(bodies.weights, v)
 
@@ -173,6 +174,7 @@ def _expand(y: Floats, rate: Floats, bodies: Bodies, out: Observed) -> None:
         out.a[b] = rate[bodies.iv[c]] if c >= 0 else 0.0
     for h in range(bodies.z_of.size):
         place = bodies.z_of[h]
+        # A link whose ends move as one has no place in the state: its z stays as it was.
         out.z[0, h] = y[place] if place >= 0 else bodies.frozen_z[h]
         out.z[1, h] = rate[place] if place >= 0 else 0.0
 
@@ -206,6 +208,7 @@ def gap_rounding(at_zero: Floats, u: Floats, length: float) -> float:
         largest = max(largest, abs(gap))
     for each in u:
         moved = max(moved, abs(each))
+    # A gap is summed from an opening and two displacements.
     return EPS * max(4.0 * (largest + 2.0 * moved), 64.0 * length)
 
 
@@ -235,6 +238,7 @@ def _link_forces(bodies: Bodies, out: Observed) -> None:
         if link < plain:
             z, z_rate = (out.z[0, h], out.z[1, h]) if h >= 0 else (0.0, 0.0)
             force = link_force(link, bodies.memory, k, preload, c, x, x_rate, z)
+            # F is linear in x, x' and z, so their rates give its rate; f is constant.
             force_rate = link_force(link, bodies.memory, k, 0.0, c, x_rate, x_second, z_rate)
         elif h < -1:
             force, by_x, by_rate = element_pull(h, k, preload, c, x, x_rate, 0.0)
@@ -261,11 +265,15 @@ def _accelerations(bodies: Bodies, out: Observed) -> None:
     for b in range(bodies.mass.size):
         c = bodies.of_body[b]
         if c >= 0:
+            # The mass of a cluster with a support is inf, and makes nothing of any force.
             total[0, c] += pull[0, b] / bodies.cluster_mass[c]
             total[1, c] += pull[1, b] / bodies.cluster_mass[c]
+    # Backwards, so that of several supports in a cluster the first one counts.
     for b in range(bodies.mass.size - 1, -1, -1):
         if is_support(b, bodies.mass) and bodies.of_body[b] >= 0:
             total[0, bodies.of_body[b]], total[1, bodies.of_body[b]] = pull[0, b], pull[1, b]
+    # Backwards again: the number of a cluster is at most that of its first body, so its place is
+    # read by all its bodies before one of them is put there.
     for b in range(bodies.mass.size - 1, -1, -1):
         c = bodies.of_body[b]
         for row in range(2):
@@ -313,6 +321,7 @@ def _contact_forces(bodies: Bodies, out: Observed) -> None:
                     total += bodies.force_map[i, b] * residual[row, b]
                 out.contact_force[row, bodies.resting[i]] = total
             continue
+        # Leaves first: what a body lacks its only contact left gives, and the body behind bears it.
         for i in range(bodies.elimination.shape[0]):
             b, j, parent, sign = bodies.elimination[i]
             out.contact_force[row, j] = sign * residual[row, b]
@@ -329,6 +338,7 @@ def observe_friction(
     for i in range(sliders.size):
         link, stick = sliders[i], out.contact_force[:, first + i]
         slip, h = memory[link, STRENGTH], z_of_link[link]
+        # f = σ F - λ in parts of F, with σ F the force of the slip.
         out.z[0, h], out.z[1, h] = (slip - stick[0]) / abs(slip), -stick[1] / abs(slip)
         for row in range(2):
             out.force[row, link] -= stick[row]
@@ -401,6 +411,7 @@ def _observe_on_ground(
     """`observe` where `out.ground` is known."""
     _expand(y, rate, bodies, out)
     _link_forces(bodies, out)
+    # After the links: of a support this puts its acceleration in the place of what pulls at it.
     if forcing.family == LOADED:
         add_load_series(forcing, forcing.start + tau, 2, np.empty(2), out.pull)
     _accelerations(bodies, out)
@@ -408,9 +419,11 @@ def _observe_on_ground(
     if bodies.sliders.size > 0:
         observe_friction(bodies.sliders, bodies.z_of_link, bodies.memory, bodies.link_ends, out)
     observe_gaps(bodies, out)
+    # Bodies in one cluster differ by constants: what is left of their gap is the rounding of these.
     for i in range(bodies.resting.size):
         out.gap[:, bodies.resting[i]] = 0.0
     first_law = bodies.stiffness.size - bodies.laws.size
+    # A contact presses where a link pulls.
     for p in range(bodies.laws.size):
         for row in range(2):
             out.contact_force[row, bodies.laws[p]] = -out.force[row, first_law + p]

@@ -156,6 +156,7 @@ def _fields(
             if b >= 0:
                 link_clusters[i, end] = clusters.of_body[b]
                 shift[i] += sign * clusters.offset[b]
+        # Within a cluster, or at a barrier, a link keeps its elongation, and so its z.
         moves[i] = link_clusters[i, 0] != link_clusters[i, 1]
     active, plain = np.flatnonzero(moves), 0
     ends, z_of_active = np.empty((active.size, 2), np.int64), np.empty(active.size, np.int64)
@@ -164,6 +165,7 @@ def _fields(
         i = active[a]
         ends[a, 0], ends[a, 1] = link_clusters[i, 0], link_clusters[i, 1]
         z_of_active[a], damping[a] = z_of_link[i], law.damping[i]
+        # x of the bodies is x of their clusters and a constant, whose force belongs to f.
         shifted[a] = preload[i] + stiffness[i] * shift[i]
         code = contact_code(i, law.memory)
         if code >= 0:
@@ -211,6 +213,7 @@ def _layout(
     iz, z_of = np.full(ends.shape[0], -1, np.int64), np.full(hysteretic, -1, np.int64)
     owner = np.empty(ends.shape[0], np.int64)
     for a in range(owner.size):
+        # The ground is -1, so an active link always has an owner.
         owner[a] = max(ends[a, 0], ends[a, 1])
     first, links = grouped(owner, clusters)
     place = 0
@@ -257,16 +260,19 @@ def state_vector(
         y.
     """
     y = np.zeros(system.size)
+    # A cluster of points alone has no mass to weigh their places by: the first point tells it.
     for b in range(mass.size - 1, -1, -1):
         c = clusters.of_body[b]
         if c >= 0 and system.mass[c] == 0.0:
             y[system.iq[c]], y[system.iv[c]] = u[b] - clusters.offset[b], v[b]
+    # The mean weighted by mass keeps the momentum, and the place of the centre of mass.
     for b in range(mass.size):
         c = clusters.of_body[b]
         if c >= 0 and mass[b] > 0.0 and not is_support(b, mass):
             share = mass[b] / system.mass[c]
             y[system.iq[c]] += share * (u[b] - clusters.offset[b])
             y[system.iv[c]] += share * v[b]
+    # Nothing moves a support: where one is, its cluster is; the first one where there are several.
     for b in range(mass.size - 1, -1, -1):
         c = clusters.of_body[b]
         if c >= 0 and is_support(b, mass):
@@ -356,6 +362,7 @@ def rate_on_ground(
             continue
         if place >= 0:
             hysteretic += pull_per_z(a, system.memory) * z * x_rate
+            # Held over a step, the direction keeps the kink of a reversal out of it.
             way = direction if direction != 0.0 else x_rate
             rate[place] = z_rate(a, system.memory, x_rate, way, z, y[system.beside[a]])
         if first >= 0:
@@ -366,11 +373,13 @@ def rate_on_ground(
     if forcing.family == LOADED:
         put_in = _add_loads(forcing.start + tau, y, rate, system, forcing)
     for c in range(system.mass.size):
+        # A support is left out, whose mass is infinite: its work is an entry of its own.
         put_in -= system.own_mass[c] * y[iv[c]] * ground
     if system.compliance.size > 0:
         _answer_coupled(ground, system, rate)
     else:
         for c in range(system.mass.size):
+            # What stands in the place of the force on a support is its acceleration in space.
             given = is_support(c, system.mass)
             rate[iv[c]] = (rate[iv[c]] if given else rate[iv[c]] / system.mass[c]) - ground
     if system.ledger >= 0:
@@ -400,6 +409,7 @@ def _add_loads(t: float, y: Floats, rate: Floats, system: Reduced, forcing: Forc
     loads, power = np.zeros((2, 1, system.mass.size)), 0.0
     pushed, driven = loads[0, 0], loads[1, 0]
     add_load_coefficients(t, system, forcing, 1, loads[0], loads[1])
+    # First, as `rate` still holds what the links alone do to a cluster.
     for a in range(system.link.size if system.ledger >= 0 else 0):
         k, c = support_of(system.link[a], forcing.coefficients), system.ends[a, 0]
         if k >= 0:

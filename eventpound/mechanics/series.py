@@ -38,8 +38,10 @@ def _element_coefficient(
     """
     kind = FIRST_CODE - system.iz[a]
     stiffness, damping = system.stiffness[a], system.damping[a]
+    # d = -(x + f/k), whose constant is in the first coefficient alone.
     overlap[k] = -x[k] - (system.preload[a] / stiffness if k == 0 else 0.0)
     approaching = sign_after(x_rate, k + 1, 0.0) < 0.0
+    # k d - c x' below zero would pull, and is cut.
     if kind == CUT and stiffness * overlap[0] <= damping * x_rate[0]:
         return 0.0
     for i in range(2):
@@ -48,10 +50,12 @@ def _element_coefficient(
             powers[i, k] = overlap[k]
         elif exponent == 0.0:
             powers[i, k] = 1.0 if k == 0 else 0.0
+        # Below zero it stands for no dashpot; an open gap has no depth to raise.
         elif exponent < 0.0 or overlap[0] < 0.0:
             powers[i, k] = 0.0
         else:
             powers[i, k] = power_coefficient(overlap, powers[i], exponent, k)
+    # What presses with E + C d', d' = -x', pulls with the negative of it.
     pull = -stiffness * powers[0, k]
     for j in range(k + 1):
         pull += damping * powers[1, j] * x_rate[k - j]
@@ -68,6 +72,7 @@ def _add_ledger(
             out[0] -= system.own_mass[c] * Y[j, system.iv[c]] * ground[k - j]
     for a in range(system.stiffness.size):
         for j in range(k + 1):
+            # Lower codes are contact elements, whose losses are counted with their contacts.
             if system.iz[a] >= -1:
                 out[1] += system.damping[a] * x_rate[a, j] * x_rate[a, k - j]
             if system.iz[a] >= 0:
@@ -92,6 +97,7 @@ def _add_work(
         if support >= 0:
             place, c = ledger + WORK_OF_SUPPORTS + support, system.ends[a, 0]
             for j in range(k + 1):
+                # The caller divides the first three places of the ledger by k + 1, and not these.
                 Y[k + 1, place] += Y[j, iv[c]] * taken[k - j, c] / (k + 1)
 
 
@@ -112,6 +118,7 @@ class _Terms(NamedTuple):
 @kernel
 def _blank_terms(order: int, system: Reduced) -> _Terms:
     links = system.stiffness.size
+    # Scenes without contact elements, nearly all, make no room for them.
     elements = links if (system.iz < -1).any() else 0
     return _Terms(
         np.zeros((elements, order)),
@@ -144,6 +151,7 @@ def _set_forces(
             d = terms.overlap[a]
             term = _element_coefficient(a, k, system, terms.x[a], x_rate, d[0], d[1:])
         elif iz[a] >= 0:
+            # x' that starts from zero is given its sign as soon as a coefficient of it is known.
             if sigma[a] == 0.0:
                 sigma[a] = sign_after(x_rate, k + 1, speed_noise)
             zs, beside, power = Y[:, iz[a]], Y[:, system.beside[a]], terms.power[a]
@@ -202,6 +210,8 @@ def motion_series(
         _set_forces(k, Y, system, terms, speed_noise, force)
         if forcing.family == LOADED:
             for c in range(force.size):
+                # Before the loads are added to the forces of the links: what a support has to give
+                # is what its mass takes, less what links and loads do.
                 taken[k, c] = system.own_mass[c] * driven[k, c] - force[c] - pushed[k, c]
                 force[c] += pushed[k, c]
         answers(system.compliance, force, coupled)
@@ -210,6 +220,7 @@ def motion_series(
             if coupled.size > 0:
                 Y[k + 1, iv[c]] = (coupled[c] - system.carried[c] * ground[k]) / (k + 1)
                 continue
+            # That of a support is given in space; below both are put relative to the ground.
             free = driven[k, c] if is_support(c, system.mass) else force[c] / system.mass[c]
             Y[k + 1, iv[c]] = (free - ground[k]) / (k + 1)
         if system.ledger >= 0:
