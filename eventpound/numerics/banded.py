@@ -33,11 +33,13 @@ def factor_banded(band: Floats) -> bool:
             total = band[i, d]
             for e in range(d + 1, min(width, i) + 1):
                 k = i - e
+                # L_jk is zero beyond the band.
                 if j - k <= width:
                     total -= band[i, e] * band[k, 0] * band[j, j - k]
             band[i, d] = total / band[j, 0]
         for d in range(1, min(width, i) + 1):
             band[i, 0] -= band[i, d] * band[i, d] * band[i - d, 0]
+        # So asked, a pivot that is no number fails, too.
         if not band[i, 0] > 0.0:
             return False
     return True

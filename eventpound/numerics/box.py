@@ -111,6 +111,7 @@ def least_in_box(
         A corner of the box, on which forces stay that nothing moves.
     """
     k, m, n = start.size, acceleration.shape[0], mass.size + 1
+    # The ground is the last body, of infinite mass and no acceleration.
     masses, given, level = np.full(n, np.inf), np.zeros((n, m)), np.zeros(n)
     masses[:-1], given[:-1], level[:-1] = mass, acceleration.T, noise
     left, right = np.where(ends[0] < 0, n - 1, ends[0]), np.where(ends[1] < 0, n - 1, ends[1])
@@ -151,6 +152,7 @@ def _pivot(joints: _Joints, work: _Pivoting) -> bool:
         if not _enter(joints, j, rounding, work):
             return False
         pivots += 1
+        # Pivots that only rounding asks for would go on for ever: now twice as much is none.
         if pivots % (_PATIENCE * (work.passive.size + 1)) == 0:
             rounding *= 2.0
 
@@ -167,9 +169,11 @@ def _settle(joints: _Joints, rounding: float, work: _Pivoting) -> None:
                 _set_force(joints, b, c, rounding, work)
         for i in range(work.passive.size):
             one, other = work.root[joints.left[i]], work.root[joints.right[i]]
+            # The roots' own accelerations first: supports that move alike leave exactly zero.
             apart = joints.acceleration[other, c] - joints.acceleration[one, c]
             rate = apart + (work.rate[other, 0] - work.rate[one, 0])
             noise = work.rate[one, 1] + work.rate[other, 1] + rounding * abs(apart)
+            # Within a cluster nothing parts: w is zero there, not zero to rounding.
             work.w[i, c] = unless_rounding(rate, noise) if one != other else 0.0
 
 
@@ -207,6 +211,7 @@ def _set_loads(joints: _Joints, c: int, rounding: float, work: _Pivoting) -> Non
     """Set what acts on bodies beside what moves their roots, without passive joints."""
     load, rate, mass = work.load, work.rate, joints.mass
     for b in range(mass.size):
+        # Beside its root: what all of a cluster do alike asks no force of its joints.
         apart = joints.acceleration[b, c] - joints.acceleration[work.root[b], c]
         noise = joints.noise[b] if c == 0 else 0.0
         # What moves as it is told to does so under any load.
@@ -214,6 +219,7 @@ def _set_loads(joints: _Joints, c: int, rounding: float, work: _Pivoting) -> Non
         if np.isfinite(mass[b]):
             load[b, 0], load[b, 1] = mass[b] * apart, mass[b] * (noise + rounding * abs(apart))
     for i in range(work.passive.size):
+        # The accelerations have the forces `start` in them already.
         start = joints.start[i] if c == 0 else 0.0
         force = 0.0 if work.passive[i] else work.x[i, c] - start
         _load(joints, i, force, rounding * (abs(start) + abs(force)), work)
@@ -233,6 +239,7 @@ def _share(mass: Floats, work: _Pivoting) -> None:
     load, rate, weight = work.load, work.rate, work.weight
     for b in range(mass.size):
         weight[b] = mass[b]
+    # From the leaves on: `order` has each body behind the one that it hangs on.
     for place in range(mass.size - 1, -1, -1):
         b = work.order[place]
         if work.above[b] >= 0:
@@ -246,6 +253,7 @@ def _share(mass: Floats, work: _Pivoting) -> None:
 @scalar_kernel
 def _carried(b: int, joints: _Joints, work: _Pivoting) -> float:
     """Force of the joint above a body."""
+    # m a of all that hangs on the joint, less what else pulls at it.
     force = work.weight[b] * work.rate[work.root[b], 0] - work.load[b, 0]
     return force if joints.right[work.above[b]] == b else -force
 
@@ -255,10 +263,12 @@ def _set_force(joints: _Joints, b: int, c: int, rounding: float, work: _Pivoting
     """Give the joint above a body what it carries, its bound where it is there to rounding."""
     i, force = work.above[b], _carried(b, joints, work)
     noise = work.weight[b] * work.rate[work.root[b], 1] + work.load[b, 1] + rounding * abs(force)
+    # Bounds, and `start`, are of the first coefficient alone.
     if c > 0:
         work.x[i, c], work.doubt[i, c] = unless_rounding(force, noise), noise
         return
     noise += rounding * abs(joints.start[i])
+    # What it carries comes on top of what the accelerations have in them.
     force += joints.start[i]
     for bound in (joints.low[i], joints.high[i]):
         force = bound if abs(force - bound) <= noise else force
@@ -270,6 +280,7 @@ def _first_wrong(joints: _Joints, work: _Pivoting) -> int:
     """The first force on a bound whose w tells it to leave that, or -1."""
     for i in range(work.passive.size):
         way = -1.0 if work.x[i, 0] <= joints.low[i] else 1.0
+        # Where both bounds are one there is no way to go.
         free = not work.passive[i] and joints.low[i] < joints.high[i]
         if free and _sign(work.w[i]) * way > 0.0:
             return i
@@ -286,6 +297,7 @@ def _enter(joints: _Joints, j: int, rounding: float, work: _Pivoting) -> bool:
     x, w_j, along = work.x, work.w[j], work.along
     way = -_sign(w_j)
     while True:
+        # Anew each time, for with a joint that leaves the clusters are others.
         curvature = _set_along(joints, j, way, work)
         _set_stops(joints, j, way, curvature, rounding, work)
         first = _first(work)
@@ -301,6 +313,7 @@ def _enter(joints: _Joints, j: int, rounding: float, work: _Pivoting) -> bool:
             return True
         blocking = j if first == along.size + 1 else first - 1
         for c in range(w_j.size):
+            # On its bound whatever ε is: no coefficient behind the first is left.
             x[blocking, c] = work.bound[first] if c == 0 else 0.0
         if blocking == j:
             return True
@@ -322,6 +335,7 @@ def _set_along(joints: _Joints, j: int, way: float, work: _Pivoting) -> float:
     for b in range(work.root.size):
         if work.above[b] >= 0:
             along[work.above[b]] = _carried(b, joints, work)
+    # The one that enters is in no cluster, so `_carried` knows nothing of it.
     along[j] = way
     one, other = work.root[joints.left[j]], work.root[joints.right[j]]
     return (work.rate[other, 0] - work.rate[one, 0]) * way if one != other else 0.0
@@ -345,6 +359,7 @@ def _set_stops(
         for c in range(x.shape[1]):
             slack = (bound if c == 0 else 0.0) - x[i, c]
             work.slack[stop, c] = -slack if along[i] < 0.0 else slack
+            # What is not passive stands on its bound exactly.
             work.level[stop, c] = work.doubt[i, c] if work.passive[i] else 0.0
 
 
@@ -360,6 +375,8 @@ def _first(work: _Pivoting) -> int:
         for i in range(speed.size):
             if speed[i] > 0.0 and slack[i, c] / speed[i] < least:
                 least, noise = slack[i, c] / speed[i], level[i, c] / speed[i]
+        # Each beside its own rounding: that of a direction that is all but zero would be as long as
+        # any step, and all would count as first.
         for i in range(speed.size):
             if speed[i] > 0.0 and slack[i, c] / speed[i] > least + noise + level[i, c] / speed[i]:
                 speed[i] = 0.0

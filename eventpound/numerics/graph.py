@@ -45,6 +45,7 @@ def grouped(label: Ints, groups: int) -> tuple[Ints, Ints]:
     """
     first = np.zeros(groups + 1, np.int64)
     for i in range(label.size):
+        # One place on, so that the sums below are where each group begins.
         first[label[i] + 1] += 1
     for g in range(groups):
         first[g + 1] += first[g]

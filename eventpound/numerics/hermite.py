@@ -52,6 +52,7 @@ def quintic_at(
     """Value and slope at the part x of a step, from value, slope and second derivative."""
     b = np.array(quintic_bernstein(start, end, h))
     y = 1.0 - x
+    # De Casteljau's division down to two: their difference is the slope.
     for count in (5, 4, 3, 2):
         for i in range(count):
             b[i] = y * b[i] + x * b[i + 1]

@@ -57,6 +57,7 @@ def _solve_passive(G: Floats, passive: np.ndarray, count: int, work: _Work) -> N
             for c in range(b):
                 total -= lower[a, c] * lower[b, c]
             lower[a, b] = np.sqrt(total) if a == b else total / lower[b, b]
+    # The second turn solves for what rounding has left of the right-hand side.
     for _ in range(2):
         for a in range(count):
             total = residual[index[a]]
@@ -83,6 +84,7 @@ def _most_violated(w: Floats, passive: np.ndarray, level: float, noise: Floats) 
     worst = -1
     lowest = 0.0
     for i in range(w.size):
+        # What a cycle could not bring to zero is its rounding, and must not enter again.
         if not passive[i] and w[i] < -max(level, noise[i]) and w[i] < lowest:
             lowest = w[i]
             worst = i
@@ -122,6 +124,7 @@ def _enter(
         for i in range(passive.size):
             if passive[i]:
                 schur += G[j, i] * direction[i]
+        # Along a cycle of contacts G is singular: w_j stays as it is, however far x_j goes.
         full = np.inf if schur <= SINGULAR * G[j, j] else -w_j / schur
         step = full
         blocking = -1
@@ -129,6 +132,7 @@ def _enter(
             if passive[i] and direction[i] < 0.0 and -x[i] / direction[i] < step:
                 step = -x[i] / direction[i]
                 blocking = i
+        # Then w_j is d·q and should vanish; it is no better than the terms along d.
         if step == np.inf:
             along = terms[j]
             for i in range(x.size):
@@ -138,9 +142,11 @@ def _enter(
             if passive[i]:
                 x[i] += step * direction[i]
         x[j] += step
+        # x_j went the whole way: w_j has vanished, and j is passive.
         if blocking < 0:
             passive[j] = True
             return 0.0, 0.0
+        # An entry has come to zero: it leaves, and the way goes on from the w_j that is left.
         w_j += step * schur
         x[blocking] = 0.0
         passive[blocking] = False
@@ -171,15 +177,18 @@ def _pivot_to_solution(
             return True
         left, rounding = _enter(G, x, w[j], j, passive, work)
         rounding = max(rounding, noise[j])
+        # x_j would grow for ever and help nothing: there is no solution.
         if -left > rounding:
             return False
         cycle_noise[j] = rounding
+        # Solved anew from q, as the entries carry the rounding of every step so far.
         for i in range(size):
             work.rows[_RIGHT, i] = -q[i]
         _solve_passive(G, passive, _count(passive), work)
         feasible = True
         for i in range(size):
             feasible = feasible and fresh[i] >= 0.0
+        # Where that makes one negative by rounding, the entries stay as the steps have left them.
         if feasible:
             copy_numbers(fresh, x)
     return False
@@ -212,9 +221,11 @@ def solve_dense(G: Floats, q: Floats, noise: float) -> tuple[Floats, Floats, boo
     x, w = np.zeros(size), np.empty(size)
     for i in range(size):
         root[i] = np.sqrt(G[i, i])
+        # Along a cycle up to all entries of q add up.
         right[i], level[i] = q[i] / root[i], size * noise / root[i]
     for i in range(size):
         for j in range(size):
+            # With a unit diagonal thresholds mean the same for light and for heavy bodies.
             scaled[i, j] = G[i, j] / (root[i] * root[j])
     work = _Work(lower, np.zeros((6, size)), np.empty(size, np.int64))
     solved = _pivot_to_solution(scaled, right, level, x, w, np.zeros(size, np.bool_), work)
@@ -241,6 +252,7 @@ def _solve_rows(coupling: Floats, rhs: Floats, passive: np.ndarray, x: Floats) -
         x[i] = rhs[i]
         if i > 0 and passive[i - 1]:
             x[i] += coupling[i] / pivot[i - 1] * x[i - 1]
+            # Two springs in series, c_i and the run behind it.
             to_left *= coupling[i] / pivot[i - 1]
         else:
             to_left = coupling[i]
@@ -291,6 +303,7 @@ def solve_chain(coupling: Floats, q: Floats) -> tuple[Floats, Floats]:
             after = coupling[i + 1] * x[i + 1] if i + 1 < size else 0.0
             w[i] = q[i] + diagonal * x[i] - before - after
             terms = abs(q[i]) + diagonal * abs(x[i]) + abs(before) + abs(after)
+            # w is summed from four terms: within their rounding it has no sign.
             if not passive[i] and w[i] < -32.0 * EPS * terms:
                 passive[i] = True
                 grown = True
@@ -299,6 +312,7 @@ def solve_chain(coupling: Floats, q: Floats) -> tuple[Floats, Floats]:
     for i in range(size):
         if passive[i]:
             w[i] = 0.0
+            # What has entered stays positive (a Stieltjes matrix): below zero it is rounding.
             x[i] = max(x[i], 0.0)
         else:
             w[i] = max(w[i], 0.0)

@@ -63,6 +63,7 @@ def _quadratic_root(c0: float, c1: float, c2: float) -> float:
     if discriminant < 0.0:
         return np.inf
     root = np.sqrt(discriminant)
+    # Either form adds numbers of one sign, where the other would cancel.
     if c1 < 0.0:
         return 2.0 * c0 / (root - c1)
     return -(c1 + root) / (2.0 * c2) if c2 < 0.0 else np.inf
@@ -77,6 +78,7 @@ def _bernstein(c: Floats, start: int, size: int, limit: float, b: Floats) -> Non
     for k in range(1, degree + 1):
         power *= limit
         b[k] = c[start + k] * (power * INVERSE_BINOMIAL[degree, k])
+    # Pascal's triangle in place gives the sums over C(i, k), without a table of it.
     for k in range(1, degree + 1):
         for i in range(degree, k - 1, -1):
             b[i] += b[i - 1]
@@ -110,11 +112,13 @@ def _first_bracket(work: Floats, size: int) -> tuple[float, float, float]:
         deepest = top == work.shape[0] - 1 or width <= NARROWEST
         last = part[size - 1]
         if last < 0.0 and (changes == 1 or deepest):
+            # A start below zero is so by rounding: the chord begins at zero.
             return start, start + width, start + width * max(part[0], 0.0) / (part[0] - last)
         if changes == 0 or deepest:
             start += width
             top -= 1
             continue
+        # The left half lies on top, so that parts come from the left to the right.
         widths[top] = widths[top + 1] = 0.5 * width
         _halve(part, work[top + 1], size)
         top += 1
@@ -142,11 +146,13 @@ def falling_root(c: Floats, start: int, size: int, low: float, high: float, gues
         else:
             low = x
         beta = (value / slope) * (bend / slope) if slope < 0.0 else MOST_CURVATURE
+        # `low` is not inside the bracket, which is halved then.
         following = x - value / (slope * (1.0 - beta)) if abs(beta) < MOST_CURVATURE else low
         if not low < following < high:
             following = 0.5 * (low + high)
             if value == 0.0 or not low < following < high:
                 return x if value == 0.0 else following
+            # What halving leaves tells nothing of the order of convergence.
             x, before = following, high - low
             continue
         step = abs(following - x)
@@ -207,6 +213,7 @@ def first_root(c: Floats, size: int, limit: float, work: Floats) -> float:
         return np.inf
     near = 2.0 * _quadratic_root(c[start], c[start + 1], c[start + 2] if size - start > 2 else 0.0)
     for turn in range(2):
+        # Nearly the whole interval is searched just as well at once.
         if turn == 0 and near > NEARLY_ALL * limit:
             continue
         end = near if turn == 0 else limit

@@ -35,6 +35,7 @@ def solve_definite(K: Floats, right: Floats) -> Floats:
     Where K is diagonal, a division.
     """
     n = K.shape[0]
+    # Without square roots, so that a diagonal K only divides.
     for j in range(n):
         for k in range(j):
             K[j, j] -= K[j, k] * K[j, k] * K[k, k]
