@@ -121,6 +121,7 @@ def write_change(
     code: int, contact: int, group: int, rate: float, now: Now, events: Floats
 ) -> None:
     """Write down that a contact changed its mode, by a code of `transition_code`."""
+    # The codes of a transition follow each other as these kinds do.
     kind = REST + code - 1
     if kind == REST:
         gather_unlisted(contact, now, events)
@@ -133,6 +134,7 @@ def gather_unlisted(contact: int, now: Now, events: Floats) -> None:
     impulse, lost, impacts, last = 0.0, 0.0, 0, -1
     for i in range(now.listed, now.events):
         row = events[i]
+        # Also the last of a cascade, whose kind is the smallest number.
         if row[1] <= UNLISTED and row[3] == contact:
             impulse += row[6]
             lost += row[7]

@@ -50,6 +50,7 @@ def settle_closed(at: Instant) -> int:
     elif one != NONE:
         _close_several(at)
         ended = _impacts_of_several(at)
+        # Without an impulse nothing has been left at the rounding of velocities.
         if ended == DONE and at.now[0].here > 0:
             _still_several(at)
         return ended
@@ -67,6 +68,7 @@ def close_collapsed(at: Instant) -> None:
     """Where an interval was none, close every gap that is none beside it."""
     if not _collapsed(at.now[0].interval, at.time):
         return
+    # No impact of the run so far goes further in such an interval.
     none = LAST_INTERVAL * (at.length + at.now[0].fastest * at.time)
     for j in range(at.gap.size):
         if abs(at.gap[j]) <= none:
@@ -127,6 +129,7 @@ def put_as_one(clusters: Clusters, places: bool, mass: Floats, x: Floats) -> Non
         if c >= 0 and not is_support(b, mass):
             total[c] += mass[b]
             moment[c] += mass[b] * (x[b] - offset[b])
+    # Backwards: of several supports the first one tells.
     for b in range(mass.size - 1, -1, -1):
         if cluster[b] >= 0 and is_support(b, mass):
             total[cluster[b]], moment[cluster[b]] = 1.0, x[b] - offset[b]
@@ -134,6 +137,7 @@ def put_as_one(clusters: Clusters, places: bool, mass: Floats, x: Floats) -> Non
         c = cluster[b]
         if c < 0:
             x[b] = offset[b]
+        # A body by itself keeps every bit.
         elif total[c] != mass[b]:
             x[b] = offset[b] + moment[c] / total[c]
 
@@ -157,6 +161,7 @@ def _put_followers(clusters: Clusters, offset: Floats, mass: Floats, x: Floats) 
         c = clusters.of_body[b]
         if c < 0:
             x[b] = offset[b]
+        # Whom nothing holds, and who holds nothing, keeps every bit.
         elif tied[c]:
             x[b] = offset[b] + placed[c]
 
@@ -202,6 +207,7 @@ def rebound(meeting: Meeting, now: Now, events: Floats) -> tuple[float, float]:
     plastic = is_last(-before, meeting.last_speed, meeting.time, now)
     listed = -before >= LISTED_SPEED * now.fastest
     kind = kind_of_impact(listed, plastic, before, restitution)
+    # After the kind: a last impact is told from one whose own law is plastic.
     if plastic:
         restitution = 0.0
     after, impulse, lost = newton(before, restitution, meeting.inverse)
@@ -221,6 +227,7 @@ def _impact_of_only(j: int, at: Instant) -> None:
     meeting = Meeting(j, at.gap_rate[j], at.restitution[j], inverse, at.last_speed, at.time)
     after, impulse = rebound(meeting, at.now[0], at.events)
     push_apart(j, impulse, at.mass, at.left, at.right, at.gap_rate, at.v)
+    # By the law itself, where the velocities have left their rounding.
     at.gap_rate[j] = after
     if after == 0.0:
         _close_one(left, right, 0.0, at.mass, at.v)
@@ -258,6 +265,7 @@ def next_problem(shut: Bools, at: Instant) -> tuple[int, bool]:
         return DONE, False
     if is_endless(now.here, now.lost_here, now.passed_on):
         return ENDLESS, False
+    # Every window is judged by itself, or early losses would hide that none are left.
     if now.here % WINDOW == 0:
         now.lost_here = now.passed_on = 0.0
     return PROBLEM, is_last(approach, at.last_speed, at.time, now)

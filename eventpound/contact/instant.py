@@ -33,6 +33,7 @@ def begin_instant(at: Instant) -> None:
     """Close what closes in this instant, and remember what impacts are about to change."""
     end_flight(at.now[0])
     close_together(at)
+    # Before impacts: `_struck` asks for whom they have changed.
     copy_numbers(at.v, at.before)
 
 
@@ -83,6 +84,7 @@ def _keep_released(at: Instant) -> None:
         for end in (at.left[j], at.right[j]):
             if end >= 0 and _struck(end, at):
                 released[j] = False
+        # Kept for another event at the same time, at which it is still let go.
         vanished[j] = released[j]
     now.settled_at = now.t
 
@@ -136,6 +138,7 @@ def touching_between(
     left: Ints, right: Ints, opening: Floats, z: Floats, forcing: Forcing, at: Instant
 ) -> Touching:
     """`touching_of`, the contacts between these ends and with these openings (K,)."""
+    # Of the present branch; F = k (x - o) = k x + f.
     stiffness = np.where(at.branch < 0, at.compression, at.extension)
     return Touching(
         (at.gap == 0.0) & (at.gap_rate == 0.0),
@@ -172,6 +175,7 @@ def take_rests(resting: Bools, pressed: Bools, solved: bool, at: Instant) -> int
         return NO_FORCES
     write_changes(at.resting, resting, at.gap_rate, at.now[0], at.events)
     for j in range(resting.size):
+        # Of redundant contacts those that are pressed carry: with others it is another mode.
         changed = at.resting[j] != resting[j] or at.pressed[j] != pressed[j]
         at.now[0].stale |= changed
         at.resting[j], at.pressed[j] = resting[j], pressed[j]

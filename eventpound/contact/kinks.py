@@ -114,6 +114,7 @@ def turn_at_kinks(at: Instant) -> None:
             continue
         rate = difference(at.v, at.ends[a, 0], at.ends[a, 1])
         if abs(rate) > still:
+            # On a kink the elongation is zero and tells no side.
             side = -1 if rate < 0.0 else 1
             if of_memory:
                 side = CLOSED if at.branch[a] == YIELDING and rate > 0.0 else at.branch[a]

@@ -124,6 +124,7 @@ def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
         now = _pressed(touching, pressed, undecided)
         for j in range(undecided.size):
             if undecided[j] and not now.leaves[j]:
+                # What is pressed makes its two sides move as one: no order opens it.
                 kept[j], undecided[j] = True, False
         order, opening, level = _first_deciding(now, undecided, touching)
         if order < 0:
@@ -134,6 +135,7 @@ def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
         if not solved:
             return undecided, pressed, False
         passed_over = touching.released & (order == 0)
+        # The next turn would be this one again.
         if not _take_decided(members, force, after, level, passed_over, undecided, pressed):
             break
     return pressed | kept | undecided, pressed, True
@@ -211,6 +213,7 @@ def _take_decided(
     decided = False
     for i in range(members.size):
         j = members[i]
+        # Where both are nothing a higher order decides.
         opens, holds = after[i] > level[j], force[i] > 0.0
         if (opens or holds) and not passed_over[j]:
             decided = True
@@ -239,6 +242,7 @@ def _first_deciding(
     gaps, shape (K,), and their noise, shape (K,).
     """
     opening, level = np.zeros(undecided.size), np.zeros(undecided.size)
+    # Mostly the accelerations decide, for which twelve orders need not be made.
     for highest in (1, ORDER):
         found = accelerations(now.y, now.system, highest, touching)
         left = _left_over(now, found[0], touching)
@@ -247,6 +251,7 @@ def _first_deciding(
             _put_openings(now, found[order], noise[order], opening, level)
             deciding = False
             for j in range(opening.size):
+                # Rounding must open nothing in the complementarity problem.
                 opening[j] = opening[j] if abs(opening[j]) > level[j] else 0.0
                 vanished = opening[j] == 0.0 or (order == 0 and touching.released[j])
                 deciding |= undecided[j] and not vanished
@@ -259,6 +264,8 @@ def _first_deciding(
 def accelerations(y: Floats, system: Reduced, highest: int, touching: Touching) -> Floats:
     """Taylor coefficients of the accelerations of clusters, (highest, C)."""
     Y = motion_series(0.0, y, system, touching.forcing, highest, touching.speed_noise)
+    # Of velocities from the first on: that of the acceleration is k + 1 times as large, of one
+    # sign.
     return Y[1:][:, system.iv]
 
 
@@ -288,6 +295,7 @@ def noise_of(
         if system.compliance.size > 0:
             _spread_noise(system.compliance, noise[order])
         _pass_on(rounding, order, system, stiffness, damping)
+        # As derivatives in the scene's own time go; those of higher orders are no sums of forces.
         own, part = own / (time * (order + 1)), UNDECIDED
     return noise
 
@@ -336,6 +344,8 @@ def _slopes(y: Floats, system: Reduced) -> tuple[Floats, Floats]:
     for a in range(stiffness.size):
         if system.iz[a] <= FIRST_CODE:
             code, (x, x_rate), f = system.iz[a], link_motion(a, y, system), system.preload[a]
+            # The numbers of its law are no stiffness and no dashpot: that of hertz-damp, over a
+            # closing speed of 1e-12 m/s, would make all there is rounding.
             slopes = element_pull(code, stiffness[a], f, damping[a], x, x_rate, 0.0)
             stiffness[a], damping[a] = abs(slopes[1]), slopes[2]
         else:
@@ -357,6 +367,7 @@ def _pass_on(
     """
     for a in range(stiffness.size):
         error = 0.0
+        # Both ends err by the worse of them, for the link pulls at both.
         for c in system.ends[a]:
             if c >= 0:
                 error = max(error, rounding[order, c])
@@ -403,6 +414,7 @@ def _put_openings(
         one, other = first[members[i]], second[members[i]]
         level[members[i]] = largest[label[i]]
         mass = now.system.mass
+        # Nothing that is undecided moves these, so nothing of its rounding is in them.
         if (one < 0 or is_support(one, mass)) and (other < 0 or is_support(other, mass)):
             level[members[i]] = max(
                 noise[one] if one >= 0 else 0.0, noise[other] if other >= 0 else 0.0
