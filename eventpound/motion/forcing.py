@@ -108,6 +108,7 @@ def signal_value(family: int, coefficients: Floats, samples: Floats, t: float) -
         s = t - coefficients[0]
         total = 0.0
         for k in range(1, coefficients.size, 3):
+            # By two angles, so that exact zeros of the phase stay exact at the start of a pulse.
             cosine, _ = _turned(coefficients[k + 1] * s, coefficients[k + 2])
             total += coefficients[k] * cosine
         return total
@@ -146,6 +147,7 @@ def next_sample(coefficients: Floats, t: float, stop: float) -> float:
     """
     origin, dt = coefficients[0], coefficients[1]
     i = math.floor((t - origin) / dt) + 1
+    # The quotient may be rounded down to the sample at which t is, or just before it.
     while sample_time(origin, dt, i) <= t + 1e-9 * dt:
         i += 1
     following: float = sample_time(origin, dt, i)
@@ -162,6 +164,7 @@ def next_corner(piece: Formula, t: float, stop: float) -> float:
         return next_sample(piece.coefficients, t, stop)
     if piece.family == _LOADED:
         return _next_corner_of_any(piece.coefficients, t, stop)
+    # Other formulas are smooth.
     return stop
 
 
@@ -205,6 +208,8 @@ def _safe_step_of_signal(family: int, coefficients: Floats, t: float) -> float:
     if family != _GAUSSIAN or coefficients[1] <= 0.0:
         return math.inf
     width, to_center = 1.0 / math.sqrt(coefficients[1]), coefficients[0] - t
+    # Half its own time shows it while it lasts. Before, a step ends where it begins, as an
+    # integrator at rest would step over all of it; afterwards nothing comes.
     if abs(to_center) < (QUIET + GAUSSIAN_STEP) * width:
         return GAUSSIAN_STEP * width
     return to_center - QUIET * width if to_center > 0.0 else math.inf
@@ -302,6 +307,7 @@ def decay_time(piece: Formula, t: float) -> float:
 @scalar_kernel
 def _gaussian_decay(coefficients: Floats, t: float) -> float:
     """`decay_time` of a GAUSSIAN; a cubic without decay (q = 0) has none."""
+    # The logarithm of exp(-q s²) changes by 2 q |s| a second.
     pace = coefficients[1] * abs(t - coefficients[0])
     return 0.5 / pace if pace > 0.0 else math.inf
 
@@ -311,6 +317,7 @@ def _turned(angle: float, phase: float) -> tuple[float, float]:
     """Cosine and sine of angle + phase, exact zeros of the phase kept."""
     cosine_p = math.cos(phase)
     sine_p = math.sin(phase)
+    # In floating point the cosine of π/2 is 6e-17: a pulse would begin with a jump.
     if abs(cosine_p) < ZERO_OF_PHASE:
         cosine_p = 0.0
     if abs(sine_p) < ZERO_OF_PHASE:
@@ -346,6 +353,7 @@ def _gaussian_taylor(coefficients: Floats, t: float, order: int, out: Floats) ->
     s = t - coefficients[0]
     q = coefficients[1]
     c_0, c_1, c_2, c_3 = coefficients[2:6]
+    # Taylor coefficients of the cubic about s.
     cubic = (
         c_0 + s * (c_1 + s * (c_2 + s * c_3)),
         c_1 + s * (2.0 * c_2 + s * 3.0 * c_3),
@@ -368,10 +376,12 @@ def _straight_line(t_0: float, dt: float, samples: Floats, t: float) -> tuple[fl
     rounded: so a solver that stops at t_i finds the line to its right.
     """
     i = math.floor((t - t_0) / dt)
+    # The quotient may be rounded to either side of a sample.
     if t >= sample_time(t_0, dt, i + 1):
         i += 1
     elif t < sample_time(t_0, dt, i):
         i -= 1
+    # Beyond its ends a record goes on by its first and its last line.
     i = min(max(i, 0), samples.size - 2)
     slope = (samples[i + 1] - samples[i]) / dt
     return samples[i] + slope * (t - sample_time(t_0, dt, i)), slope

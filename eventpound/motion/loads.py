@@ -62,6 +62,7 @@ def support_motion(row: int, piece: Formula, t: float) -> tuple[float, float]:
     """Displacement (m) and velocity (m/s) of a support relative to the ground at the time t (s)."""
     d, v = _travel(row, piece, t)
     d_of_ground, v_of_ground = _travel(0, piece, t)
+    # Coordinates are relative to the ground, which has travelled, too.
     return d - d_of_ground, v - v_of_ground
 
 
@@ -70,6 +71,7 @@ def _travel(row: int, piece: Formula, t: float) -> tuple[float, float]:
     """Displacement (m) and velocity (m/s) in space of the ground, row 0, or of a support."""
     coefficients, samples = piece.coefficients, piece.samples
     family, low, high, first, last = places_of(row, coefficients)
+    # Behind the samples stand their running sums, v and d.
     own = samples[first : first + 3 * (last - first)]
     d, v = signal_travel(family, coefficients[low:high], own, t)
     at = FIRST_ROW + ROW_WIDTH * row
@@ -123,6 +125,7 @@ def add_load_series(piece: Formula, t: float, order: int, work: Floats, force: F
         load_taylor(row, piece, t, order, work)
         b, driven = body_of(row, coefficients), is_driven(row, coefficients)
         for k in range(order):
+            # No force counts for a support: its row is its acceleration.
             force[k, b] = work[k] if driven else force[k, b] + work[k]
 
 

@@ -76,6 +76,7 @@ def largest_swings(
 def _pushed(push: Floats, part: int, parts: int, f: Floats) -> None:
     """``h^2 U''`` over one of equal parts of a cell, with the length of the part for h, into f."""
     x, y = part / parts, 1.0 / parts
+    # y² for h², and y more for each power of the part's own x.
     f[0] = y**2 * (push[0] + x * (push[1] + x * (push[2] + x * push[3])))
     f[1] = y**3 * (push[1] + x * (2.0 * push[2] + x * 3.0 * push[3]))
     f[2] = y**4 * (push[2] + x * 3.0 * push[3])

@@ -45,6 +45,7 @@ def signal_travel(
         d, v = _gaussian_travel(coefficients, t)
     elif family == _SAMPLES:
         n, dt = samples.size // 3, coefficients[1]
+        # Beyond its ends a record goes on by its first and its last line.
         i = min(max(math.floor((t - coefficients[0]) / dt), 0), n - 2)
         h = t - (coefficients[0] + i * dt)
         a, slope = samples[i], (samples[i + 1] - samples[i]) / dt
@@ -67,6 +68,7 @@ def _gaussian_travel(coefficients: Floats, t: float) -> tuple[float, float]:
         return s * s * (c_0 / 2.0 + s * (c_1 / 6.0 + s * (c_2 / 12.0 + s * c_3 / 20.0))), v
     gaussian, integral = math.exp(-q * s * s), 0.5 * math.sqrt(math.pi / q)
     integral *= math.erf(math.sqrt(q) * s)
+    # By the derivative of (b_0 + b_1 s + b_2 s²) exp(-q s²), from s³ down.
     b_2, b_1 = -0.5 * c_3 / q, -0.5 * c_2 / q
     b_0 = (b_2 - 0.5 * c_1) / q
     left_of_c, left_of_b = _left(c_0, b_1), _left(b_0, -0.5 * b_2 / q)
@@ -78,4 +80,5 @@ def _gaussian_travel(coefficients: Floats, t: float) -> tuple[float, float]:
 @scalar_kernel
 def _left(whole: float, part: float) -> float:
     """What is left of a number beside a part of it, none where that is rounding."""
+    # A wavelet is made so that nothing is left; what rounding leaves would drift away with t.
     return whole - part if abs(whole - part) > ROUNDING * abs(whole) else 0.0
