@@ -87,6 +87,7 @@ def _may_peak(i: int, a: Observed, b: Observed, h: float, running: Running) -> b
     flat = FLAT_TURN * rounding if motion else rounding
     doubt = DOUBT * (high - low) + rounding
     turns = start[1] * end[1] < 0.0 and max(abs(start[1]), abs(end[1])) * h > flat
+    # What cannot exceed the extremes so far is not worth a search.
     above = (turns or high > max(start[0], end[0]) + flat) and (high + doubt > running.maximum[i])
     below = (turns or low < min(start[0], end[0]) - flat) and (low - doubt < running.minimum[i])
     return above or below
@@ -152,6 +153,7 @@ def _margin_between(low: float, high: float, x: float, x_rate: float) -> tuple[f
         return below, x_rate
     if below == np.inf:
         return above, -x_rate
+    # Zero at both ends and smooth between, with the slope of a distance at either.
     width = below + above
     return below * above / width, x_rate * (above - below) / width
 
@@ -191,6 +193,7 @@ def inspect_step(
     at = running.at
     for i in range(at.gap, at.end):
         j = contact_pressed(i, at)
+        # An open contact has no force to peak.
         marks.peak[i] = not (j >= 0 and watched.open_contacts[j]) and _may_peak(i, a, b, h, running)
     some = marks.closing.any() or marks.detaching.any() or marks.kink.any() or marks.peak.any()
     return bool(some or watched.follows)

@@ -61,6 +61,7 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     rules, state, record, located = run.rules, run.state, run.record, run.located
     now, progress = state.now[0], state.progress[0]
     t = now.t
+    # Neither over a corner of the motion nor over a pulse that is still to come.
     stop = min(next_corner(piece, t, piece.stop), t + longest_safe_step(piece, t))
     forcing = by_address(forcing_now(piece, t))
     series = local_series(run, forcing, mode, stop - t)
@@ -87,6 +88,7 @@ def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         add_shares(tau, run, step)
     observe_at(tau, step)
     observed = step.observed
+    # What was recorded since is of a mode that is none.
     if fleeting:
         restore_record(record)
     elif any_event:
@@ -181,6 +183,7 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
                 return ended
             progress.phase = RESTS
         if progress.phase == RESTS:
+            # Only at the start of a run: first branches need accelerations, and these a mode.
             if lacks_branch(at):
                 return FIRST_BRANCHES
             if run.laws.contact.size > 0:

@@ -95,6 +95,7 @@ def add_share(p: int, weight: float, force: float, rate: float, laws: Laws) -> N
     """
     if laws.touch[CLOSED, p] != 0.0:
         laws.touch[IMPULSE, p] += weight * force
+        # d' is the negative of the rate of the gap.
         laws.touch[WORK, p] -= weight * force * rate
 
 

@@ -123,9 +123,12 @@ def first_below(g: EventFunction, end: float, step: DenseStep) -> float:
         changes = 0
         for i in range(3):
             changes += (c[i] < 0.0) != (c[i + 1] < 0.0)
+        # With one change of sign there is one root between a and b.
         if below and (changes <= 1 or short):
             return _falling_root(a, b, g, step)
+        # The cubic is not the quantity itself: its bound counts with room for what it errs by.
         clear = not below and (short or min(c) > 0.05 * (max(c) - min(c)) - noise)
+        # A dip, whose lowest point decides at once what halving would go on about.
         if not (clear or below) and a.rate < 0.0 < b.rate:
             bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
             tau = turning_point(_rate_at, (g, step), bracket, 2.0 * EPS * b.tau)
@@ -138,6 +141,7 @@ def first_below(g: EventFunction, end: float, step: DenseStep) -> float:
         elif b.tau == end:
             return np.inf
         else:
+            # Behind a clear stretch a longer one is tried again.
             a, width = b, 2.0 * width
 
 
@@ -149,6 +153,7 @@ def _falling_root(a: Sample, b: Sample, g: EventFunction, step: DenseStep) -> fl
     for i in range(MOST_ITERATIONS):
         if not low < tau < high or i > NEWTON:
             tau = 0.5 * (low + high)
+        # No number lies between them: `high` is the first at which the quantity is below zero.
         if tau <= low or tau >= high:
             return high
         s = _sample(tau, g, step)
@@ -191,6 +196,7 @@ def _narrowed(bracket: Bracket, x: float, at_x: float) -> Bracket:
     if (at_x < 0.0) != (at_b < 0.0):
         return Bracket(b, at_b, x, at_x)
     part = 1.0 - at_x / at_b
+    # Half (the Illinois rule) where theirs would not keep the sign.
     return Bracket(a, at_a * (part if part > 0.0 else 0.5), x, at_x)
 
 
@@ -257,9 +263,11 @@ def first_event(
             g = EventFunction(kind, i, noise, 0.0)
             if (kind == _FORCE and released[i]) or (kind == _KINK and kinked[i]):
                 g = EventFunction(kind, i, noise, _level_of_kept(g, step))
+            # No further than to the first so far, of which only what comes as early has part.
             tau = first_below(g, first, step)
             if tau == np.inf:
                 continue
+            # Those found before come later.
             if tau < first:
                 clear_located(located)
             first, any_event = tau, True
@@ -271,6 +279,7 @@ def first_event(
                 located.kinked[i] = True
     if not any_event:
         return np.inf
+    # The searches have looked elsewhere since.
     observe_at(first, step)
     add_vanished(step.observed, watched, rules, located)
     return first
@@ -393,6 +402,7 @@ def _other_way(a: Sample, b: Sample, g: EventFunction, running: Running, step: D
         middle = _sample(0.5 * (a.tau + b.tau), g, step)
         if middle.rate * (a.rate + b.rate) < 0.0:
             return middle
+        # The half that may go further beyond is looked into.
         if _beyond(a, middle, g.index, running) > _beyond(middle, b, g.index, running):
             b = middle
         else:
@@ -416,6 +426,7 @@ def _take_turn(
     """Take the turning point between two samples, if any, into the extremes."""
     if a.rate * b.rate < 0.0:
         bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
+        # To the rounding of the time, by whose square the value errs.
         tau = turning_point(_rate_at, (g, step), bracket, 4.0 * EPS * step.dense.end)
         value = _sample(tau, g, step).value
         update_turning_point(g.index, value, step.forcing.start + tau, near, running)

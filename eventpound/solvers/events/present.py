@@ -47,6 +47,7 @@ def tolerances_of_state(rules: Rules, system: Reduced, bodies: Bodies) -> Floats
         if c >= 0:
             result[system.iq[c]] = min(result[system.iq[c]], rules.atol_u[b])
             result[system.iv[c]] = min(result[system.iv[c]], rules.atol_v[b])
+    # A z that stands still has no place.
     for h in range(system.z_of.size):
         if system.z_of[h] >= 0:
             result[system.z_of[h]] = rules.atol_z[h]
@@ -60,6 +61,7 @@ def set_state(y: Floats, t: float, mode: Dynamics, forcing: Forcing, state: Stat
     """Make a state vector the present state, at the time t (s)."""
     system, bodies = mode.system, mode.bodies
     now = state.now[0]
+    # Before the clock goes on.
     now.since_impact += t - now.t
     now.t = t
     bodies_motion(placed(t, y, system, forcing), bodies, state.u, state.v)
@@ -69,6 +71,7 @@ def set_state(y: Floats, t: float, mode: Dynamics, forcing: Forcing, state: Stat
     if system.ledger >= 0:
         copy_numbers(y[system.ledger :], state.ledger)
     for j in range(state.gap.size):
+        # That of a contact with a law, or of a slider that slips.
         if state.gap[j] == np.inf:
             continue
         left, right, resting = bodies.left[j], bodies.right[j], state.resting[j]
@@ -103,6 +106,7 @@ def make_ready(run: Run, mode: Dynamics, piece: CurrentPiece) -> None:
     system, bodies, state = mode.system, mode.bodies, run.state
     rate = run.rate[: system.size]
     forcing = by_address(forcing_now(piece, state.now[0].t))
+    # What links of one cluster are observed with: their z are not in the state.
     copy_numbers(state.z, bodies.frozen_z)
     y = state_vector(bodies, system, bodies.mass, state.u, state.v, state.z, state.ledger)
     copy_numbers(y, run.y)

@@ -69,6 +69,7 @@ def take_directions(y: Floats, system: Reduced, rtol: float, direction: Floats) 
     direction : ndarray, shape (A,)
         Of each link, 0 for none; updated.
     """
+    # The kink of a contact element is one of its force, and no tolerance hides it.
     for a in range(0 if rtol < HELD_BELOW else system.plain, direction.size):
         kinked = system.iz[a] >= 0 or system.iz[a] == APPROACH_CODE or system.iz[a] == CUT_CODE
         if kinked and direction[a] == 0.0:
@@ -137,6 +138,7 @@ def _side_on(tau: float, a: int, dense: Dense, origin: float, system: Reduced) -
     place, speed = 0.0, 0.0
     if dense.frame.shape[1] > 0:
         place, speed, _ = frame_motion(dense.frame, origin + tau)
+        # Between bodies the frame cancels; an end on the ground does not go with it.
         rate += (speed if system.ends[a, 0] >= 0 else 0.0) - (
             speed if system.ends[a, 1] >= 0 else 0.0
         )
@@ -155,6 +157,7 @@ def _reversal(a: int, way: float, dense: Dense, origin: float, system: Reduced) 
     """When link a, which moves in the direction `way`, reverses in a step (s); or inf."""
     low, high, end = dense.start, dense.start, dense.end
     at_low, at_high = max(way * _side_on(low, a, dense, origin, system), 0.0), 0.0
+    # Part by part, for a link may turn twice within the step.
     for i in range(PARTS):
         high = dense.start + (end - dense.start) * (i + 1) / PARTS if i + 1 < PARTS else end
         at_high = way * _side_on(high, a, dense, origin, system)
@@ -209,5 +212,6 @@ def first_reversal(
     for a in range(direction.size):
         if times[a] <= first + together:
             direction[a] = -direction[a]
+    # No step is as short as rounding, neither up to a reversal nor behind it.
     first = max(first, dense.start + together)
     return first if first < dense.end - together else dense.end

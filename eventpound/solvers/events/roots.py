@@ -82,6 +82,7 @@ def root_functions(pairs: Floats, lifted: Floats) -> None:
     for i in range(lifted.size):
         pairs[i, 0] += lifted[i]
         for k in range(2):
+            # SUNDIALS leaves a function that is zero at a start out of its search.
             if abs(pairs[i, k]) < NO_ZERO:
                 pairs[i, k] = NO_ZERO
 

@@ -117,6 +117,7 @@ def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float
 def _radius(c: Floats, allowed: float) -> float:
     """Time over which the last two terms of a series stay below what is allowed."""
     radius = np.inf
+    # Two, since every other term of a series may be zero.
     for k in (c.size - 2, c.size - 1):
         if c[k] != 0.0:
             radius = min(radius, (allowed / abs(c[k])) ** (1.0 / k))
@@ -173,6 +174,7 @@ def _ground_radius(forcing: Forcing, bodies_mass: Floats, acceleration: float) -
     for row in range(1, rows_of(forcing.coefficients) + 1):
         load_taylor(row, forcing, forcing.start, ORDER + 1, out)
         driven = is_driven(row, forcing.coefficients)
+        # The load of a support is an acceleration, and allowed as such.
         mass = 1.0 if driven else bodies_mass[body_of(row, forcing.coefficients)]
         radius = min(radius, _radius(out, acceleration * mass))
     return radius
@@ -194,6 +196,7 @@ def _first_reversal(Y: Floats, system: Reduced, weight: Floats, limit: float) ->
         for k in range(order):
             travel = max(travel, abs(x_rate[k]) * first ** (k + 1))
         bend = z_bend(a, system.memory, Y[0, iz], Y[0, system.beside[a]], travel)
+        # A z that is a line to within the tolerance is not bent by a reversal either.
         if bend <= SERIES_SHARE * weight[iz]:
             continue
         first = min(first, _sign_change(x_rate, first))
@@ -274,6 +277,8 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Sh
     radius = _series_radius(Y, weight)
     if system.plain < system.stiffness.size:
         radius = _closing_radius(y, system, weight, min(radius, limit))
+    # A contact force follows the loads themselves, which move nobody that rests: no coefficient of
+    # a body shows how far their series hold.
     pressed = forcing.family == LOADED and bodies.resting.size > 0
     if pressed or system.mass.size == 0:
         radius = min(radius, _ground_radius(forcing, bodies.mass, GROUND_ERROR * acceleration))
@@ -282,8 +287,10 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Sh
     C = gap_series(Y, system, bodies, state, ground, least, rules.time)
     first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
     closed = min(first, limit, radius)
+    # No further than to the first closing, and the check of the equations no further than to this.
     reversal = _first_reversal(Y, system, weight, closed)
     end = _trusted(Y, system, forcing, weight, reversal)
+    # It ends before they close.
     if end < first:
         for j in range(closing.size):
             closing[j] = False

@@ -66,6 +66,7 @@ def rate_at(
     s, v, a = frame_motion(frame, forcing.start + tau)
     relative = y.copy()
     for c in range(system.mass.size):
+        # In the frame y holds u + s and v + s', whose rates have s' and s'' on top.
         relative[system.iq[c]] -= s
         relative[system.iv[c]] -= v
     motion_rate(tau, relative, rate, system, forcing)
@@ -90,6 +91,7 @@ def _between(tau: float, tau_0: float, tau_1: float, first: int, e: Examination)
     s, v, _ = frame_motion(frame, start + tau)
     for c in range(system.mass.size):
         iq, iv = system.iq[c], system.iv[c]
+        # In the frame the motion is smooth over samples, and its second rate is known at both ends.
         q, q_rate = quintic_at(
             (y[first, iq] + s_0, y[first, iv] + v_0, rate[first, iv] + a_0),
             (y[last, iq] + s_1, y[last, iv] + v_1, rate[last, iv] + a_1),
@@ -112,6 +114,7 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
     while origin + k * dt < tau_1 - SAME_SAMPLE * dt:
         tau = origin + k * dt
         k += 1
+        # The sample at which the step starts, but for rounding.
         if tau <= low + SAME_SAMPLE * dt:
             continue
         y = _between(tau, tau_0, tau_1, first, e)
@@ -119,6 +122,7 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
         observe_motion(tau, y, rate, mode.system, mode.bodies, forcing, middle)
         if inspect_step(before, middle, tau - low, mode.watched, e.record.running, e.marks):
             return True
+        # The two observations between take turns: 2, 3, 2 ...
         low, before, row = tau, middle, 5 - row
     after = e.observations[1 - first]
     return inspect_step(before, after, tau_1 - low, mode.watched, e.record.running, e.marks)
@@ -177,6 +181,7 @@ def examine(
         marked = _inspect_between_samples(tau_0, tau_1, first, e)
     if marked:
         return MARKED, excess
+    # A marked step may end sooner, and takes its extremes where it is searched.
     update_extremes(after, e.forcing.start + tau_1, e.record.running)
     return CLEAR, excess
 
@@ -188,6 +193,7 @@ def broken_contact(observed: Observed, watched: Watched, length_noise: float) ->
     `length_noise`: gaps below this have no sign (m).
     """
     for j in range(observed.gap.shape[1]):
+        # Far beyond what a search may leave, which has found no event here.
         if watched.open_contacts[j] and observed.gap[0, j] < -GAP_NOISE * length_noise:
             return j
     for j in range(observed.gap.shape[1]):

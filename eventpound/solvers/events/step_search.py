@@ -55,6 +55,7 @@ def search_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple
     if not inspect_step(before, after, h, watched, run.record.running, marks):
         return np.inf, False
     if not step.dense.own and run.state.progress[0].finder != OURSELVES:
+        # Events are found by the library: only turning points are left to look for.
         return np.inf, True
     if step.dense.own:
         for j in range(marks.closing.size):
@@ -105,6 +106,7 @@ def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> 
         observe_at(high, by_address(DenseStep(part, mode, forcing, observations[1])))
         step = by_address(DenseStep(part, mode, forcing, observations[2]))
         tau, marked = search_between(high - low, run, mode, step)
+        # The integrator stands on its root: `located` has it, and what vanishes with it is added.
         if high == dense.end and state.progress[0].finder == FOUND_AT_END:
             tau = high
             observe_at(tau, step)
@@ -119,6 +121,7 @@ def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> 
             set_state(state_at(tau, step), origin + tau, mode, forcing, state)
             close_located(run)
             return EVENT
+        # Beyond an event there is another mode, in which none of these need hold.
         after = observations[1]
         if broken_contact(after, watched, rules.length_noise) >= 0:
             observe_at(high, step)
