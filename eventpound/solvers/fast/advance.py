@@ -131,6 +131,7 @@ def _settle_instant(run: FastRun) -> int:
     plan, state, series, observed = run.plan, run.state, run.series, run.observed
     ground, progress = plan.ground, state.progress[0]
     t, order, progress.known = state.now[0].t, plan.limits.order, False
+    # At a border of pieces the motion from now on counts.
     while progress.due == 1 and ground.ends[progress.piece] <= t:
         progress.piece += 1
     piece = by_address(piece_of(progress.piece, ground))
@@ -140,6 +141,7 @@ def _settle_instant(run: FastRun) -> int:
         at = by_address(instant_of(run))
         pass_kinks(run.located.kinked, observed.z, at)
         if lacks_branch(at):
+            # Those that are clear come first: the others ask for accelerations, which these change.
             choose_clear_branches(at)
             if follows(run):
                 put_on_branches(run)

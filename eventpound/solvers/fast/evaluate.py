@@ -36,6 +36,7 @@ def observe_at(tau: float, order: int, ground: float, run: FastRun) -> None:
         observed.u[b], observed.v[b] = state.u[b], state.v[b]
         if c < 0:
             observed.v[b] = 0.0
+        # At the start itself the state stays what it is, to the last bit.
         elif tau > 0.0:
             change, observed.v[b], series.expected[c] = motion(tau, order, series.X[c])
             observed.u[b] += change
@@ -85,6 +86,7 @@ def _accelerations(run: FastRun) -> None:
     plan, state, series, observed = run.plan, run.state, run.series, run.observed
     if state.progress[0].resting == 0 and series.free.shape[0] == 0:
         for b in range(plan.mass.size):
+            # Those of supports `_add_loads` has put there.
             if not is_support(b, plan.mass):
                 observed.a[b] = observed.body_force[b] / plan.mass[b]
         return
@@ -97,6 +99,7 @@ def _accelerations(run: FastRun) -> None:
         c = series.of_body[b]
         if c >= 0:
             total[c] += observed.body_force[b] * series.inverse_mass[c]
+    # Backwards: of several supports in a cluster the first one counts.
     for b in range(plan.mass.size - 1, -1, -1):
         c = series.of_body[b]
         if c >= 0 and is_support(b, plan.mass):
@@ -136,6 +139,7 @@ def _gaps(tau: float, order: int, run: FastRun) -> None:
             observed.gap[j], observed.gap_rate[j] = state.gap[j], state.gap_rate[j]
             continue
         gap, rate = gap_of(j, contacts, observed.u, observed.v)
+        # A difference of displacements has their rounding, which is much beside a small gap.
         if gap < OWN_GAP * plan.limits.length:
             gap_polynomial(j, order, run)
             c = series.c
@@ -167,6 +171,7 @@ def spread_forces(out: Floats, run: FastRun) -> None:
     if series.free.shape[0] > 0:
         return
     for i in range(run.state.progress[0].edges):
+        # Leaves first: what a body lacks its contact gives, and the body behind bears it.
         b, parent = series.elimination[i, 0], series.elimination[i, 2]
         out[series.elimination[i, 1]] = series.elimination[i, 3] * residual[b]
         if parent >= 0:
@@ -191,6 +196,7 @@ def contact_force_series(order: int, run: FastRun) -> None:
             if c >= 0:
                 residual[b] += m * (k + 1) * (k + 2) * series.X[c, k + 2]
         for a in range(ends.shape[0]):
+            # A link within a cluster does not change.
             if k > 0 and series.ends[a, 0] == series.ends[a, 1]:
                 continue
             if ends[a, 0] >= 0:
@@ -198,5 +204,6 @@ def contact_force_series(order: int, run: FastRun) -> None:
             if ends[a, 1] >= 0:
                 residual[ends[a, 1]] += series.F[a, k]
         for b in range(mass.size if series.load.shape[0] > 0 else 0):
+            # Supports come with loads only. They are roots: nothing has to balance there.
             residual[b] = 0.0 if is_support(b, mass) else residual[b] - series.load[k, b]
         spread_forces(series.contact_force[:, k], run)

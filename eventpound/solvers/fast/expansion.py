@@ -56,9 +56,11 @@ def _begin_link(i: int, run: FastRun) -> None:
     link, a, memory = series.moving[i], series.active[i], plan.links.law.memory
     head, tail, ground = series.ends[a, 0], series.ends[a, 1], plan.mass.size
     link.number = a
+    # The ground is the row behind all clusters, whose coefficients are zero: no branch in the loop.
     link.head, link.tail = head if head >= 0 else ground, tail if tail >= 0 else ground
     link.stiffness, link.damping, link.curved = series.stiffness[a], plan.links.law.damping[a], -1
     h = plan.links.z_of_link[a]
+    # On a curve the stiffness is without z, which the series adds term by term.
     if h >= 0 and DOWN <= state.part[h] <= UP:
         link.curved, link.pull = h, pull_per_z(a, memory)
         sign = 1.0 if state.part[h] == UP else -1.0
@@ -123,6 +125,7 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
             a, head, tail = link.number, link.head, link.tail
             force = F[a, 0]
             if k > 0:
+                # At order zero `begin_series` has the force from the state itself.
                 x_k = X[tail, k] - X[head, k]
                 rate_k = X[tail, k + 1] - X[head, k + 1]
                 force = link.stiffness * x_k + link.damping * (k + 1) * rate_k
@@ -143,12 +146,15 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
                 X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
                 acceleration[c] = 0.0
         if loaded:
+            # After the forces: the given motion of a support takes the place of what these make of
+            # it.
             drive_clusters(k, plan.mass, series)
         power *= h
         if k + 2 < FEWEST:
             continue
         order = k + 2
         error = _last_terms(order, power, over, clusters, series)
+        # Only where the motion alone would end the series: it takes a look at every link.
         if (following or progress.resting > 0) and (error <= CONVERGED or order == most):
             error = max(error, _last_of_others(order, power * over, over, run))
         if error <= CONVERGED:
@@ -164,6 +170,7 @@ def _last_terms(order: int, power: float, over: float, clusters: int, series: Fa
     X, worst = series.X, 0.0
     of_u, of_v = series.weights[0], series.weights[1]
     for c in range(clusters):
+        # A term x_k h^k of u is one of k x_k h^(k-1) in v.
         last = power * max(abs(X[c, order]), over * abs(X[c, order - 1]))
         worst = max(worst, last * max(of_u[c], order * over * of_v[c]))
     return worst
@@ -246,6 +253,7 @@ def begin_series(t: float, piece: CurrentPiece, run: FastRun) -> None:
         x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], state.u, state.v)
         series.x[a], series.x_rate[a] = x, x_rate
         h = links.z_of_link[a]
+        # The step before has ended here, and its end was observed.
         if known:
             force, z = observed.force[a], observed.z[h] if h >= 0 else 0.0
         else:
@@ -272,6 +280,7 @@ def wrong_way(order: int, run: FastRun) -> bool:
             continue
         for k in range(2, order + 1):
             x_k = distance_coefficient(head, tail, k, series)
+            # The second is half the acceleration, whose rounding has no direction.
             if 2.0 * abs(x_k) > (still / plan.limits.time if k == 2 else 0.0):
                 if state.sigma[h] * x_k < 0.0:
                     reverse(h, series.x[a], hysteresis, state)
@@ -323,6 +332,7 @@ def largest_step_size(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[
 def choose_step_size(tried: float, order: int, error: float, longest: float) -> float:
     """Length of a step (s), for which the series of this order were `tried` with this error."""
     if error > 1.0:
+        # The lower of the two terms decides; half the tolerance is aimed at.
         shrunk = tried * (0.5 / error) ** (1.0 / (order - 1))
         return shrunk if error < np.inf else RETRIED * tried
     if tried < longest and error < 0.5:

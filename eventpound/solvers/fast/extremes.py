@@ -75,11 +75,13 @@ def turning_times(c: Floats, size: int, tau: float, turns: Floats, work: Floats)
     spread = 0.0
     for k in range(size - 1, 0, -1):
         spread = (spread + abs(c[k])) * tau
+    # So large a rate does not change its sign.
     if abs(c[0]) > spread:
         return 0
     steepens = 0.0
     for k in range(size - 1, 1, -1):
         steepens = (steepens + k * abs(c[k])) * tau
+    # So large a slope of it does not either: there is one root at most.
     if abs(c[1]) > steepens:
         return _only_turning_time(c, size, tau, turns)
     found, past = 0, 0.0
@@ -89,6 +91,7 @@ def turning_times(c: Floats, size: int, tau: float, turns: Floats, work: Floats)
             start += 1
         if start == size:
             break
+        # `first_root` looks for a fall.
         if c[start] < 0.0:
             for k in range(size):
                 c[k] = -c[k]
@@ -99,6 +102,7 @@ def turning_times(c: Floats, size: int, tau: float, turns: Floats, work: Floats)
         turns[found] = past
         found += 1
         shift(c, size, root)
+        # At its root the rate is zero, whatever rounding left of it, or it would be found again.
         c[0] = 0.0
     return found
 
@@ -131,6 +135,7 @@ def inside_step(tau: float, order: int, run: FastRun) -> None:
     distances = plan.distances
     for k in range(distances.first.size):
         first, second = distances.first[k], distances.second[k]
+        # What turns with its only body is taken with that.
         if _leader_of(k, at, distances) != k:
             continue
         if first < 0:
@@ -155,6 +160,7 @@ def _pair(i: int, head: int, tail: int, value: float, tau: float, order: int, ru
     rate = distance_coefficient(head, tail, 1, series)
     slope = 2.0 * distance_coefficient(head, tail, 2, series)
     bend = 3.0 * distance_coefficient(head, tail, 3, series)
+    # `stays_above` is about what starts above zero.
     if rate < 0.0:
         rate, slope, bend = -rate, -slope, -bend
     if not stays_above(rate, slope, bend, swing, tau):
@@ -200,6 +206,7 @@ def take_turn(
     for k in range(at.acceleration - at.gap):
         if k != leader and _leader_of(k, at, distances) == leader:
             start = plan.contacts.gap[k] if k < plan.contacts.gap.size else 0.0
+            # A gap on the left of its body opens as that moves on, one on the right closes.
             there = start + (value if distances.second[k] == b else -value)
             update_turning_point(at.gap + k, there, t, near, running)
 
@@ -230,6 +237,7 @@ def forces_inside_step(tau: float, order: int, last: Floats, run: FastRun) -> bo
         if c < 0:
             continue
         value, its_rate = _acceleration_term(c, 0, series), _acceleration_term(c, 1, series)
+        # Links between bodies cancel in the sum, so those to the ground give all of Σ m a.
         shear, end = shear - m * value, end - m * last[b]
         rate, bend = rate - m * its_rate, bend + m * series.bend[c]
         if _may_turn(at.acceleration + b, value, last[b], its_rate, series.bend[c], tau, running):

@@ -50,6 +50,7 @@ def find_branches(run: FastRun) -> None:
     links, memory, noise = plan.links, plan.links.law.memory, LENGTH * plan.limits.length
     for h in plan.hysteresis.followed:
         a, z = plan.hysteresis.link[h], state.xi_r[h]
+        # With that its z is `xi_r` itself.
         state.sigma[h] = 1.0
         x, x_rate = series.x[a], series.x_rate[a]
         state.branch[a] = branch_within(a, memory, links.offset[a], x, x_rate, z, noise)
@@ -80,6 +81,8 @@ def begin_followed(run: FastRun) -> None:
         h = plan.hysteresis.followed[i]
         a = plan.hysteresis.link[h]
         k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
+        # Everyone else takes it to be in its core, with Q/u_y in the stiffness; here z has a
+        # series.
         series.stiffness[a] = k
         error = limits.atol_z[h] + limits.rtol * abs(series.z[h, 0])
         of.sigma[i], of.weight[i] = 0.0, 1.0 / (LOCAL_SHARE * error)
@@ -109,6 +112,8 @@ def follow(k: int, run: FastRun) -> None:
             if second >= 0:
                 series.force[second] -= force
         x_rate[k] = (k + 1) * distance_coefficient(first, second, k + 1, series)
+        # z' asks for the sign of x' just after the start: its first coefficient beyond rounding has
+        # it.
         level = noise if k == 0 else noise / limits.time if k == 1 else 0.0
         if of.sigma[i] == 0.0 and abs(x_rate[k]) > level:
             of.sigma[i] = 1.0 if x_rate[k] > 0.0 else -1.0
@@ -147,6 +152,7 @@ def observe_followed(tau: float, order: int, run: FastRun) -> None:
         observed.force[a] += force
         add_pull(a, force, links.ends, observed)
     of.defect[0] = 0.0
+    # After all z have moved, since the rate of one may ask for another.
     for i in range(of.sigma.size):
         of.defect[0] = max(of.defect[0], _defect(i, tau, order, run))
 

@@ -63,6 +63,7 @@ def enter_mode(run: FastRun) -> None:
         for side in range(2):
             b = links.ends[a, side]
             series.ends[a, side] = series.of_body[b] if b >= 0 else -1
+        # A link within a cluster changes neither length nor force.
         if series.ends[a, 0] != series.ends[a, 1]:
             series.active[progress.active] = a
             progress.active += 1
@@ -79,6 +80,7 @@ def _enter_rest(run: FastRun) -> None:
         if series.of_body[b] >= 0:
             total[series.of_body[b]] += plan.mass[b]
     for c in range(plan.mass.size):
+        # A cluster of points alone has no mass; what it does follows from others.
         total[c] = 1.0 / total[c] if total[c] > 0.0 else 0.0
 
 
@@ -172,6 +174,7 @@ def settle(forcing: Forcing, z: Floats, at: Instant, run: FastRun) -> int:
     sliders, slides = plan.links.sliders, any_slider(run)
     if slides:
         begin_beside_sliders(run.observed.contact_force, run.located.kinked, sliders, at)
+    # What has ended by now has been seen to, and must not end once more.
     run.located.kinked[:] = False
     ended = settle_impacts(at)
     if ended != DONE:

@@ -62,6 +62,7 @@ def open_gaps(plan: FastPlan, state: FastState) -> None:
         left, right = contacts.left[j], contacts.right[j]
         opened, state.gap_rate[j] = elongation(left, right, state.u, state.v)
         gap = contacts.gap[j] + opened
+        # A gap of rounding would close with an impact, or penetrate.
         state.gap[j] = 0.0 if abs(gap) <= rounding else gap
 
 
@@ -122,6 +123,7 @@ def tangent(a: int, links: Links, state: FastState) -> float:
     """Stiffness of a link (N/m), on a curved part of its backbone without its z."""
     k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
     h = links.z_of_link[a]
+    # On a curve z has a series of its own, and beyond it stands still.
     if h >= 0 and state.part[h] <= UNLOADING:
         k += memory_stiffness(a, links.law.memory)
     return float(k)
@@ -133,6 +135,7 @@ def saturate(x: Floats, hysteresis: Hysteresis, state: FastState) -> None:
     for h in range(hysteresis.link.size):
         if state.part[h] != UP:
             continue
+        # No event: Φ is one from there on to within what does not count.
         if xi_at(h, x[hysteresis.link[h]], hysteresis, state) >= hysteresis.saturated[h]:
             state.part[h] = SATURATED
 
@@ -154,6 +157,7 @@ def set_curve(
     h: int, x: float, sigma: float, y: float, hysteresis: Hysteresis, state: FastState
 ) -> None:
     """Put a link on the curve of direction σ at the elongation x (m) and ``σ z / b = y``."""
+    # Beyond one y is so by rounding only.
     xi = backbone_inverse(hysteresis.tables, hysteresis.at[h], min(max(y, -1.0), 1.0))
     state.sigma[h] = sigma
     state.x_r[h] = x
@@ -175,6 +179,7 @@ def reverse(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> None:
     """Turn a link round at the elongation x (m)."""
     sigma = state.sigma[h]
     y = sigma * hysteretic_variable(h, x, hysteresis, state) / hysteresis.bound[h]
+    # z stays, so σ z / b changes its sign with σ.
     set_curve(h, x, -sigma, -y, hysteresis, state)
 
 
@@ -185,11 +190,13 @@ def cross_border(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> 
     core = hysteresis.core[h]
     xi = xi_at(h, x, hysteresis, state)
     if part == CORE and xi < 0.0:
+        # The lower end of the core is its upper one on the curve of the other direction.
         state.sigma[h] = -state.sigma[h]
         state.xi_r[h], state.x_r[h], state.part[h] = core, x, UP
     elif part <= UNLOADING:
         state.part[h] = UP
     elif part == DOWN:
+        # From here on ξ counts from the border exactly, without the rounding of the way there.
         state.xi_r[h], state.x_r[h] = hysteresis.down[h], x
         state.part[h] = UNLOADING if hysteresis.down[h] < -core else CORE
 

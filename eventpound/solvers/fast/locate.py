@@ -73,6 +73,7 @@ def first_event(order: int, h: float, run: FastRun) -> float:
     state = run.state
     clear_located(run.located)
     first = _closings(order, h, run)
+    # Each search ends at the first event so far: nothing later belongs to this step.
     first = _hysteretic(order, min(h, first), first, run)
     first = _kinks(order, min(h, first), first, run)
     if follows(run):
@@ -93,6 +94,7 @@ def _closings(order: int, h: float, run: FastRun) -> float:
         left, right = contacts.left[j], contacts.right[j]
         a = series.of_body[left] if left >= 0 else -1
         b = series.of_body[right] if right >= 0 else -1
+        # Mostly bounds exclude a closing; of a gap that starts from zero they tell nothing.
         if state.gap[j] > 0.0 and distance_stays_above(state.gap[j], 1.0, a, b, h, series):
             continue
         gap_polynomial(j, order, run)
@@ -115,6 +117,7 @@ def _hysteretic(order: int, h: float, first: float, run: FastRun) -> float:
         if state.part[i] != CORE and travel > plan.limits.hysteresis * hysteresis.scale[i]:
             tau = _reversal(order, h, a, state.sigma[i], run)
             first = _note(tau, first, i, located.turned, located)
+        # Saturation, which ends UP, changes nothing by more than the tolerance: no event.
         if state.part[i] < UP:
             tau = _border(order, h, first, i, run)
             first = _note(tau, first, i, located.crossed, located)
@@ -147,11 +150,13 @@ def _border(order: int, h: float, first: float, i: int, run: FastRun) -> float:
     a, part = hysteresis.link[i], state.part[i]
     head, tail = series.ends[a, 0], series.ends[a, 1]
     xi, factor = xi_at(i, series.x[a], hysteresis, state), state.sigma[i] / hysteresis.scale[i]
+    # ξ grows by σ/(u_y b) with x: what is above becomes less by that, what is below more.
     above = (hysteresis.core[i] if part <= UNLOADING else hysteresis.down[i]) - xi
     below, limit, tau = hysteresis.core[i] + xi, min(h, first), np.inf
     if not distance_stays_above(above, -factor, head, tail, h, series):
         set_distance(above, -factor, head, tail, order, series)
         tau = first_fall(series.c, order + 1, limit, OF_BACKBONE, 0.0, series.work)
+    # Other parts end downwards by a reversal.
     if part == CORE and not distance_stays_above(below, factor, head, tail, h, series):
         set_distance(below, factor, head, tail, order, series)
         tau = min(tau, first_fall(series.c, order + 1, limit, OF_BACKBONE, 0.0, series.work))
@@ -220,6 +225,7 @@ def _of_followed(order: int, h: float, first: float, run: FastRun) -> float:
     for i in range(plan.hysteresis.followed.size):
         z = plan.hysteresis.followed[i]
         a = plan.hysteresis.link[z]
+        # Within a cluster neither x nor z moves.
         if series.ends[a, 0] == series.ends[a, 1]:
             continue
         if has_branches(a, plan.links.law.memory) and state.branch[a] != 0:
@@ -290,6 +296,7 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
         spread = 0.0
         for k in range(order - 2, 0, -1):
             spread = (spread + abs(force[k])) * h
+        # Larger than all by which it can change within h.
         if force[0] > spread:
             continue
         # Where the acceleration problem has just kept it, only rounding can let it fall at once.
@@ -299,6 +306,7 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
         tau = release_time(force, order - 1, h, min(h, first), level, kept, series.work)
         first = _note(tau, first, j, located.released, located)
     slowest = np.inf
+    # `_has_end` makes the margin that `_margin_and_slope` reads: one right after the other.
     for end in range(2 * state.resting.size):
         if located.released[end // 2] and _has_end(end, order, run):
             _, slope = _margin_and_slope(end, first, order, run)
@@ -348,4 +356,5 @@ def _drop_rounding(
         if abs(force[k]) > scale + rounding:
             return
         force[k] = 0.0
+        # As a derivative in the scene's own time goes.
         scale /= plan.limits.time

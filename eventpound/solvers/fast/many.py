@@ -202,6 +202,7 @@ def run_rows(budget: int, begun: int, rows: VariantArrays, scratch: Scratch, kep
             continue
         state = state_of_run(i, rows.state, rows.motions)
         record = FastRecord(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
+        # Nothing of the run before may show in this one.
         clear_scratch(series, located, observed)
         record.unique[:] = True
         at = places_of(plan.mass.size, plan.links.springs, plan.contacts.gap.size)
@@ -280,5 +281,6 @@ def _count_events(
             resting_time[j] += event[0] - since[j]
             since[j] = np.inf
     for j in range(since.size):
+        # What still rests has no end among the events.
         if since[j] < np.inf:
             resting_time[j] += t - since[j]

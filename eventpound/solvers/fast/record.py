@@ -73,6 +73,7 @@ def is_due(t: float, times: Floats, progress: FastProgress) -> bool:
 def pass_time(tau: float, t: float, steps: int, now: Now, progress: FastProgress) -> None:
     """Let the time be t (s), tau (s) later, after some steps."""
     now.t = t
+    # By the length itself: between the short flights of a cascade times do not differ.
     now.since_impact += tau
     progress.steps += steps
     progress.stalled = progress.stalled + steps if tau == 0.0 else 0
@@ -136,6 +137,7 @@ def restore_record(run: FastRun) -> None:
     state, series, record, times = run.state, run.series, run.record, run.plan.output_times
     now, progress = state.now[0], state.progress[0]
     progress.rows, now.t = progress.saved_rows, progress.saved_at
+    # Rows at output times are written again where time passes once more.
     while progress.output > 0 and times[progress.output - 1] >= now.t:
         progress.output -= 1
     copy_extremes(series.saved, record.extremes)
@@ -158,6 +160,7 @@ def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
         if piece.family == LOADED:
             _add_loaded(state.now[0].t + at, weight, piece, run)
         for b in range(plan.mass.size):
+            # The work of a support is its own, and its mass infinite.
             if not is_support(b, plan.mass):
                 state.ledger[0] -= weight * plan.mass[b] * observed.v[b] * g
         for a in range(links.ends.shape[0]):

@@ -48,6 +48,8 @@ def set_travel(order: int, h: float, count: int, series: FastSeries) -> None:
     X, ground = series.X, series.ground
     for c in range(count):
         travel, swing, bend = 0.0, 0.0, 0.0
+        # What the quadratics do not hold, by Horner's rule: of u from τ^3 on, of v and of the rate
+        # of the acceleration from τ^3 and τ on.
         for k in range(order, 3, -1):
             size = abs(X[c, k])
             travel = (travel + size) * h
@@ -73,6 +75,7 @@ def motion(tau: float, order: int, x: Floats) -> tuple[float, float, float]:
         change = change * tau + x[k]
     bend = bend * tau + rate
     rate = rate * tau + change
+    # Horner's rule leaves half the second derivative.
     return change * tau, rate, 2.0 * bend
 
 
@@ -102,6 +105,7 @@ def stays_above(c0: float, c1: float, c2: float, rest: float, h: float) -> bool:
     """Whether ``c0 + c1 x + c2 x²`` stays above `rest` on [0, h]."""
     low = min(c0, c0 + h * (c1 + h * c2))
     if c2 > 0.0 and c1 < 0.0 and -c1 < 2.0 * c2 * h:
+        # Its vertex lies inside.
         low = c0 - c1 * c1 / (4.0 * c2)
     return low > rest
 
@@ -152,6 +156,7 @@ def gap_polynomial(j: int, order: int, run: FastRun) -> None:
     set_distance(max(state.gap[j], 0.0), 1.0, first, second, order, series)
     c[1] = state.gap_rate[j]
     opening = c[0] == 0.0 and c[1] == 0.0
+    # Rounding can close only what is about to open.
     if not (opening or c[1] > 0.0 > c[2]):
         return
     for k in range(2, order + 1):
@@ -209,6 +214,7 @@ def fall_beyond(c: Floats, size: int, limit: float, level: float, work: Floats) 
     start = c[0]
     c[0] = start + 2.0 * level
     tau = first_root(c, size, limit, work) if c[0] > 0.0 else 0.0
+    # Who asked reads it again.
     c[0] = start
     return tau
 

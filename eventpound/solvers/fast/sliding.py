@@ -68,6 +68,7 @@ def set_margin(j: int, end: int, order: int, run: FastRun) -> None:
     force, d = run.series.contact_force[j], run.series.d
     low, high = ends_of_stick(_slip_force(j, run))
     for k in range(order - 1):
+        # λ - low, or high - λ.
         d[k] = force[k] if end == 0 else -force[k]
     d[0] += -low if end == 0 else high
 
@@ -109,6 +110,7 @@ def observe_slider_forces(run: FastRun) -> None:
     links, observed = run.plan.links, run.observed
     for j in range(observed.gap.size - links.sliders.size, observed.gap.size):
         a = _link_of(j, run)
+        # Friction is what the slip would give less what sticking takes of it: f = σ F - λ.
         observed.force[a] -= observed.contact_force[j]
         observed.base[1] -= _to_ground(a, run) * observed.contact_force[j]
 

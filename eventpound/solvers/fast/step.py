@@ -74,15 +74,18 @@ def take_step(stop: float, piece: CurrentPiece, run: FastRun) -> int:
     tau = min(h, first)
     t_end, g_end, error, pulls = t, 0.0, np.inf, False
     for _again in range(MOST_HALVINGS):
+        # t and the rest of the way may add up to another number than the stop.
         t_end = stop if tau == stop - t else t + tau
         g_end = ground_acceleration(piece, t_end)
         observe_at(tau, order, g_end, run)
         error = defect_error(tau, order, g_end, observed.a, series)
         pulls = _pulls(first <= tau, run)
         if progress.resting > 0:
+            # One that pulls has passed its release: the step is cut as by any other error.
             error = max(error, 2.0 if pulls else 0.0, _contact_force_error(tau, order, run))
         if error <= 1.0:
             break
+        # What was located lies beyond the end now.
         first = np.inf
         tau *= shortening(error, order)
     ended = PULL if pulls else audit(error, run)
@@ -124,6 +127,7 @@ def _expansion(limit: float, piece: CurrentPiece, run: FastRun) -> tuple[int, fl
         order, error = expand(tried, most, run)
         progress.expansions += 1
         progress.known = False
+        # A link that was turned round has other terms.
         if not wrong_way(order, run):
             break
     h = choose_step_size(tried, order, error, longest)
@@ -254,6 +258,7 @@ def _apply(run: FastRun) -> None:
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     for h in range(hysteresis.link.size):
         x = series.x[hysteresis.link[h]]
+        # A reversal first: what lies on a border after it is another curve's.
         if located.turned[h]:
             reverse(h, x, hysteresis, state)
         elif located.crossed[h]:

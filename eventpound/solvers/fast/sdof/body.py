@@ -193,6 +193,7 @@ def tangent(body: SdofBody) -> float:
 @compiled
 def steepest(body: SdofBody) -> float:
     """Largest tangent stiffness for each unit of mass (1/s²)."""
+    # On the way down Φ' = 1 - ρ |Φ|^n is above one where ρ < 0, by -ρ at most.
     return body.stiffness + body.strength * body.per_scale * (1.0 + max(0.0, -body.kappa_down))
 
 
@@ -228,6 +229,7 @@ def turn_round(u: float, run: SdofRun) -> None:
     """Put the link on the curve for the other direction at u (m); ``σ y`` stays."""
     body = run.body
     sigma = -body.sigma
+    # Beyond one it is so by rounding.
     y = min(max(sigma * body.z, -1.0), 1.0)
     body.sigma, body.u_r = sigma, u
     body.xi_r = backbone_inverse(run.table, 0, y)
@@ -239,6 +241,7 @@ def pass_border(u: float, body: SdofBody) -> None:
     """Move a link that has reached the border of its part to the next."""
     part = body.part
     if part == CORE and place_of(u, body) < 0.0:
+        # The lower end of the core is its upper one on the curve of the other direction.
         body.sigma, body.u_r, body.xi_r, body.part = -body.sigma, u, body.core_end, UP
     elif part <= UNLOADING:
         body.part = UP
@@ -276,6 +279,7 @@ def _set_constants(plan: FastPlan, body: SdofBody) -> None:
     stiffness, damping, pull = 0.0, 0.0, 0.0
     body.side, body.scale = 1.0, np.inf
     for a in range(links.offset.size):
+        # A link from the body to the ground is stretched by -u.
         side = 1.0 if links.ends[a, 1] == 0 else -1.0
         stiffness += links.extension[a]
         damping += links.law.damping[a]
@@ -331,6 +335,7 @@ def store_body(o: Oscillator, body: SdofBody, state: FastState) -> None:
         state.gap[o.left], state.gap_rate[o.left] = body.left, body.v
         state.resting[o.left] = body.rests_on < 0.0
     if body.hysteretic:
+        # From u back to the elongation of the link.
         state.sigma[0], state.part[0] = body.side * body.sigma, body.part
         state.x_r[0], state.xi_r[0] = body.side * body.u_r, body.xi_r
 
@@ -353,6 +358,7 @@ def acceleration_level(body: SdofBody) -> float:
 def set_force(g: float, body: SdofBody) -> None:
     """Contact forces (N) under the acceleration g of the ground (m/s²)."""
     side = body.rests_on
+    # At rest m a_g = m A - λ at a barrier on the right, m A + λ on the left.
     body.right_force = body.mass * (body.a - g) if side > 0.0 else 0.0
     body.left_force = body.mass * (g - body.a) if side < 0.0 else 0.0
 

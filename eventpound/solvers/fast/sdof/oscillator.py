@@ -81,6 +81,7 @@ def impact_at_barrier(side: float, j: int, run: SdofRun) -> None:
     """Newton's law at the barrier on one side, contact j, which the body has met."""
     body, limits, restitution = run.body, run.plan.limits, run.plan.contacts.restitution[j]
     last = last_speed(limits.length / limits.time, False)
+    # On the right the gap is right_gap - u, so its rate is -v; on the left v.
     meeting = Meeting(j, -side * body.v, restitution, 1.0 / body.mass, last, limits.time)
     after, _ = rebound(meeting, run.now, run.events)
     end_impacts(run.now)
@@ -106,6 +107,7 @@ def stays_closed(side: float, piece: CurrentPiece, run: SdofRun) -> bool:
     for k in range(1, MOST_DECIDING):
         level /= time * k
         if abs(ground[k]) > level:
+            # λ = ± m (A - a_g) with A constant: its coefficients are those of a_g, turned round.
             return side * ground[k] < 0.0
     return True
 
@@ -122,6 +124,7 @@ def settle_sdof(g: float, piece: CurrentPiece, run: SdofRun) -> None:
     body.z = spring_state(body.u, run)
     if side != 0.0 and duty(0.0, -side * body.v) == IMPACT:
         impact_at_barrier(side, j, run)
+    # After the impact, which may have turned it.
     if turns_back(body.part, body.sigma, body.v, body.still):
         turn_round(body.u, run)
     body.a = absolute_acceleration(body.u, body.v, body.z, body)
@@ -129,6 +132,7 @@ def settle_sdof(g: float, piece: CurrentPiece, run: SdofRun) -> None:
     if side != 0.0 and duty(0.0, -side * body.v) == ACCELERATION:
         pull = body.a - g
         stays = side * pull > 0.0
+        # Order zero tells nothing, or has vanished by definition: the next ones do.
         if body.released or abs(pull) <= acceleration_level(body):
             stays = stays_closed(side, piece, run)
         rests = side if stays else 0.0
@@ -212,6 +216,7 @@ def oscillate(budget: int, plan: FastPlan, state: FastState, sdof: Sdof, record:
 def _settle(run: SdofRun) -> None:
     """Do the duties of the present instant and write down what follows it."""
     body, ground, t, progress = run.body, run.plan.ground, run.now.t, run.progress
+    # At a border of pieces the motion from now on counts.
     while progress.due == 1 and ground.ends[progress.piece] <= t:
         progress.piece += 1
     piece = by_address(piece_of(progress.piece, ground))
@@ -222,6 +227,7 @@ def _settle(run: SdofRun) -> None:
         body.segment = -1
     set_force(g, body)
     write_present(t, g, run)
+    # A body at rest has the acceleration of the ground, whatever its spring pulls.
     take_settled(t, g if body.rests_on != 0.0 else body.a, run)
 
 
@@ -268,12 +274,14 @@ def _swing(last_step: int, run: SdofRun) -> int:
             dt = coefficients[1]
             if stop <= now.t + SAME_SAMPLE * dt and stop < piece_end:
                 stop, segment = sample_after(now.t, piece_end, piece)
+            # Exact steps go from sample to sample.
             if now.t == sample_time(coefficients[0], dt, segment):
                 budget = last_step - progress.steps
                 if sample_steps(budget, segment, piece_end, piece, run) > segment:
                     stop, segment = sample_after(now.t, piece_end, piece)
                 if progress.steps >= last_step:
                     break
+        # On another segment of a record the ground is another line.
         if body.pair and body.segment != segment:
             body.segment = segment
             body.even, body.odd = pair_at(now.t, piece, body)

@@ -53,6 +53,7 @@ def write_sdof_row(
     if body.hysteretic:
         row[at.z] = body.whole * z
     for s in range(springs):
+        # A spring from the body to the ground is stretched by -u.
         x = u if run.plan.links.ends[s, 1] >= 0 else -u
         row[at.force + s] = run.plan.links.extension[s] * (x - run.plan.links.offset[s])
         if run.plan.links.z_of_link[s] >= 0:
@@ -152,6 +153,7 @@ def take_settled(t: float, a: float, run: SdofRun) -> None:
         update_settled(at.gap + o.right, body.right, t, run.running)
     if o.left >= 0:
         update_settled(at.gap + o.left, body.left, t, run.running)
+    # Base shear is what the links pull: at rest that is not m times the acceleration of the ground.
     _take_forces(t, a, -body.mass * body.a, run)
     take_contact_forces(t, run)
 
@@ -171,6 +173,7 @@ def damped_acceleration(t: float, tau: float, order: int, run: SdofRun) -> None:
     """Turning points of acceleration and base shear within a step, and their values at its end."""
     body, d, spread = run.body, run.scratch.rate, 0.0
     for k in range(order - 2, 0, -1):
+        # The absolute acceleration: that of u and of the ground.
         ground = body.ground[k] * (body.odd if k & 1 else body.even)
         term = (k + 1) * (k + 2) * body.x[k + 2] + ground
         d[k - 1] = k * term

@@ -71,9 +71,11 @@ def linear_series(stiffness: float, most: int, body: SdofBody) -> tuple[int, boo
         order = k + 3
         last = power * max(abs(third) * h, abs(fourth) * square)
         power *= square
+        # A term x_k h^k of u is k x_k h^(k-1) in v; `of_v` has the h that is missing.
         if last <= of_u and NUMBER[order] * last <= of_v:
             good = True
             break
+    # Bounds of roots may read two coefficients beyond the last.
     body.x[order + 1] = body.x[order + 2] = 0.0
     return order, good
 
@@ -134,15 +136,18 @@ def _term(k: int, kappa: float, over: float, lift: float, most: int, body: SdofB
     x = (
         -body.stiffness * body.x[k + 1]
         - body.damping * (k + 2) * body.x[k + 2]
+        # Coefficient k + 1 of the ground is an odd one where k is even.
         - body.ground[k + 1] * (body.odd if k & 1 == 0 else body.even)
         - body.strength * z
     ) * INVERSE_PAIRS[k + 1]
     body.x[k + 3] = x
     body.speed[k + 1] = body.per_scale * (k + 2) * body.x[k + 2]
+    # h^(k+3), from the h² that stands at the beginning.
     reach = body.reach * body.step
     last = abs(x) * reach
     worse = max(last, body.term)
     body.reach, body.term = reach, last
+    # Two in a row, since one may be zero by chance.
     if worse <= body.of_u and (k + 3) * worse <= body.of_v * body.step:
         return k + 3
     return -(k + 3) if k + 3 >= most else 0
@@ -155,6 +160,7 @@ def shorter(order: int, body: SdofBody) -> float:
     power = h
     for _ in range(order - 2):
         power *= h
+    # In u, and k times over h as much in v.
     most = max(1.0 / body.of_u, order / (body.of_v * h))
     before, last = abs(body.x[order - 1]) * power, abs(body.x[order]) * power * h
     # The larger in size decides; one that decides by its lower power only errs by little more.
@@ -172,6 +178,7 @@ def swing(tau: float, body: SdofBody) -> tuple[float, float]:
     omega = math.sqrt(k)
     y, r = -body.a / k, body.v / omega
     half, sine = math.sin(0.5 * omega * tau), math.sin(omega * tau)
+    # 1 - cos ωτ without cancellation.
     square = 2.0 * half * half
     return r * sine - y * square, omega * (r * (1.0 - square) - y * sine)
 
@@ -194,8 +201,10 @@ def know_piece(i: int, piece: CurrentPiece, body: SdofBody) -> None:
     if family == _SINUSOIDS:
         square = coefficients[2] * coefficients[2]
         for k in range(ROOM - 2):
+            # a'' = -w² a.
             g[k + 2] = -square * g[k] * INVERSE_PAIRS[k]
         cosine, sine = math.cos(coefficients[3]), math.sin(coefficients[3])
+        # In floating point the cosine of π/2 is 6e-17: a pulse would begin with a jump.
         body.cosine = cosine if abs(cosine) >= ZERO_OF_PHASE else 0.0
         body.sine = sine if abs(sine) >= ZERO_OF_PHASE else 0.0
 
@@ -237,7 +246,9 @@ def sample_after(t: float, piece_end: float, piece: CurrentPiece) -> tuple[float
     coefficients, samples = piece.coefficients, piece.samples
     stop = next_sample(coefficients, t, piece_end)
     origin, dt = coefficients[0], coefficients[1]
+    # Half a step back from a sample lies the middle of its segment, whatever rounding does.
     segment = math.floor((stop - origin) / dt - 0.5)
+    # The end of a piece is no sample: the segment is that of the start.
     if stop == piece_end:
         segment = math.floor((t - origin) / dt + SAME_SAMPLE)
     return stop, min(max(segment, 0), samples.size - 2)
@@ -271,6 +282,7 @@ def _located_turn(
         c[k] = sign * NUMBER[first + k] * body.x[first + k]
         if k > 2:
             swing = swing * h + NUMBER[k] * abs(c[k])
+    # Its slope stays below zero, so there is one root at most.
     if max(c[1], c[1] + 2.0 * c[2] * h) + swing * h * h < 0.0:
         return only_root(c, degree + 1, h)
     return first_root(c, degree + 1, h, work)
@@ -291,6 +303,7 @@ def first_reached(
             first += 1
         if first > order:
             return np.inf
+        # It sets out that way, and so is there.
         if sign * body.x[first] > 0.0:
             return 0.0
     degree = max(order - first, 2)

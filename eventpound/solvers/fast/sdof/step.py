@@ -99,6 +99,7 @@ def expand_step(a_g: float, run: SdofRun) -> tuple[int, int, float]:
     body, most = run.body, run.plan.limits.order
     order, first, good = 0, 1, False
     for _ in range(MOST_REVERSALS):
+        # No event: Φ is one there to within what does not count.
         if body.part == UP and place_of(body.u, body) >= body.saturation:
             body.part, body.z = SATURATED, body.sigma
         body.x[1], body.x[2] = body.v, 0.5 * (body.a - a_g)
@@ -111,6 +112,7 @@ def expand_step(a_g: float, run: SdofRun) -> tuple[int, int, float]:
         first = 1
         if abs(body.v) <= body.still:
             first = _leading(order, body.still / run.plan.limits.time, body)
+        # Else it is about to go against the curve that it is on.
         if part == CORE or body.sigma * body.x[first] >= 0.0:
             break
         turn_round(body.u, run)
@@ -130,6 +132,7 @@ def _leading(order: int, level: float, body: SdofBody) -> int:
             least = GAP_COEFFICIENT * abs(body.x[k])
             if k == 2:
                 least = 0.5 * acceleration_level(body)
+            # By this one it opens. Those before are rounding, and none may close it again.
             if -side * body.x[k] > least:
                 break
             body.x[k] = 0.0
@@ -147,6 +150,7 @@ def expected_step_size(a_g: float, body: SdofBody) -> float:
     where it turns.
     """
     v, a = body.v, body.a - a_g
+    # It turns after |v/a|.
     if v * a < 0.0:
         stands = BEYOND_REACH * v * v <= body.standing * abs(a)
         return (2.0 * BEYOND if stands else BEYOND) * abs(v / a)
@@ -164,6 +168,7 @@ def first_event(h: float, order: int, first: int, run: SdofRun) -> tuple[float, 
     """
     body = run.body
     reach = h * (abs(body.v) + h * abs(body.x[2]))
+    # Two terms alone mostly tell that it moves; only where they do not the whole series is asked.
     if reach <= body.standing:
         reach = 0.0
         for k in range(order, 0, -1):
@@ -189,12 +194,14 @@ def _of_one_way(h: float, order: int, first: int, run: SdofRun) -> tuple[float, 
     body.change, body.rate, body.bend = motion(tau, order, body.x[:])
     gone, one_way = way * body.change, tau
     gap = gap_to(way, body)
+    # Up to its turn it goes one way, so that what lies behind its end has been passed once.
     if gap <= gone and tau > 0.0:
         tau = crossing(gap, way, order, one_way, body)
         event = closed_at(way)
     if body.part < UP and body.hysteretic:
         border = body.down_end if body.part == DOWN else body.core_end
         distance = (border - way * body.sigma * place_of(body.u, body)) * body.scale
+        # It stands on the border already, but for rounding.
         if distance <= OF_BACKBONE * body.scale:
             tau, event = 0.0, CROSSED
         elif distance <= gone:
@@ -239,8 +246,10 @@ def _first_unordered(h: float, reach: float, order: int, run: SdofRun) -> tuple[
                 tau, event = at, closed_at(side)
     if body.hysteretic and body.part <= DOWN:
         xi = place_of(body.u, body)
+        # What ends UNLOADING is the end of the core, and so for the core on either side.
         border = body.core_end if body.part <= UNLOADING else body.down_end
         for side in (1.0, -1.0):
+            # Only the core has a border below.
             if side < 0.0 and body.part != CORE:
                 continue
             distance = (border - side * xi) * body.scale
@@ -258,6 +267,7 @@ def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SdofRun) -> 
     """One step of at most `wanted` (s); GOING_ON, or why not."""
     body, t = run.body, run.now.t
     a_g = body.even
+    # A ground of several terms is expanded anew, with 1 for both factors of its series.
     if not body.pair:
         a_g = expand_ground(t, run.plan.limits.order + MORE_TERMS, piece, body.ground[:])
         body.even = body.odd = 1.0
@@ -274,6 +284,7 @@ def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SdofRun) -> 
             break
         if halving == MOST_HALVINGS - 1:
             return NO_STEP
+        # What ends the step now is its error.
         event = FREE
         tau *= _shortened(tau, order, body)
         body.change, body.rate, body.bend = motion(tau, order, body.x[:])
@@ -291,6 +302,7 @@ def arrive(tau: float, t_end: float, turned: bool, event: int, run: SdofRun) -> 
     """Make the end of a step of length tau (s) the present state, and do what ends it there."""
     body = run.body
     if turned:
+        # Exactly, where the root has left its rounding.
         body.rate = 0.0
         take_if_new(t_end, body.u + body.change, body.next_a, run)
     pass_time(tau, t_end, 1, run.now, run.progress)
@@ -348,6 +360,7 @@ def _move(body: SdofBody) -> None:
     """
     change = body.change
     u = body.u + change
+    # `near` counts from the gap itself, whose rounding becomes small with it.
     near, far = body.right - change, body.right_gap - u
     body.right = far if far >= body.own_gap else near
     near, far = body.left + change, body.left_gap + u
@@ -365,6 +378,7 @@ def _do_event(event: int, t: float, run: SdofRun) -> None:
     elif event == CROSSED:
         pass_border(body.u, body)
     else:
+        # Before the impact sets back the time since the last one.
         end_flight(run.now)
         if event == CLOSED_RIGHT:
             body.right = 0.0
