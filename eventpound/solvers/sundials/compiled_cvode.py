@@ -114,6 +114,7 @@ def _take(
 ) -> tuple[int, float]:
     """A step from `start` (s) up to where a link reverses; see `carry_on`."""
     system, direction = e.dynamics.system, handles.given.system.direction
+    # A link has reversed here, and z' has a kink: nothing before it may be in the formulas.
     if handles.reached[TURNED] == start:
         _begin_anew(handles, start, first, e)
     take_directions(e.y[first], system, handles.rtol, direction)
@@ -124,6 +125,7 @@ def _take(
     put_state(_put_reached, handles, end, e, e.y[1 - first])
     turned = reversal_in(_dense, handles, start, end, first, flag, handles.rtol, direction, e)
     if turned < np.inf:
+        # The step ends at the reversal, on its own polynomial.
         put_state(_put_inner, handles, turned, e, e.y[1 - first])
         handles.reached[TURNED] = turned
         return 0, turned
@@ -132,6 +134,7 @@ def _take(
 
 @kernel
 def _solve(handles: CvodeHandles, stop: float) -> int:
+    # CVODE forgets a stop time that it has come to.
     set_stop_time(handles.memory, stop)
     return cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
 

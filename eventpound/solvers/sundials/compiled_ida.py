@@ -159,6 +159,7 @@ def _check(
 ) -> tuple[int, float]:
     """`examine_descriptor`."""
     problem = handles.given.problem
+    # A copy: the vector is IDA's own.
     y = relative_to_ground(end, _unknowns(handles.vector, handles), problem)
     return examine_descriptor(start, end, first, allowed, y, e, handles.followed)
 
@@ -201,6 +202,7 @@ def derivatives(handles: IdaHandles, t: float) -> Floats:
 def _put_inner(handles: IdaHandles, tau: float, k: int, clusters: Floats) -> None:
     ida_get_dky(handles.memory, tau, k, handles.interpolated)
     y, mode = _unknowns(handles.interpolated, handles), handles.mode
+    # Offsets in clusters are constants, so a derivative has none.
     to_clusters(y, 1.0 if k == 0 else 0.0, mode.system, mode.bodies, clusters)
 
 

@@ -67,6 +67,7 @@ def from_clusters(clusters: Floats, system: Reduced, bodies: Bodies, y: Floats) 
             y[N + b] = clusters[system.iv[c]]
     for h in range(H):
         place = bodies.z_of[h]
+        # Here a z that stands still is an unknown like any other.
         y[2 * N + h] = clusters[place] if place >= 0 else bodies.frozen_z[h]
     if system.ledger >= 0:
         copy_numbers(clusters[system.ledger :], y[y.size - (clusters.size - system.ledger) :])
@@ -82,6 +83,7 @@ def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, cluste
     clusters[:] = 0.0
     for d in range(bodies.weights.shape[0]):
         c = bodies.of_body[N + d]
+        # Points alone have no mass: they are where their bodies put them.
         if c >= 0 and bodies.cluster_mass[c] == 0.0:
             u, v = dot(bodies.weights[d, :N], y[:N]), dot(bodies.weights[d, :N], y[N : 2 * N])
             clusters[system.iq[c]], clusters[system.iv[c]] = u - share * bodies.offset[N + d], v
@@ -91,6 +93,7 @@ def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, cluste
             part = bodies.mass[b] / bodies.cluster_mass[c]
             clusters[system.iq[c]] += part * (y[b] - share * bodies.offset[b])
             clusters[system.iv[c]] += part * y[N + b]
+    # Backwards: of several supports in a cluster the first one counts.
     for b in range(N - 1, -1, -1):
         c = bodies.of_body[b]
         if c >= 0 and is_support(b, bodies.mass):
@@ -110,6 +113,7 @@ def consistent(
     """Make λ and every rate agree with the positions, velocities and z; then enter the frame."""
     d, frame = problem.d, problem.frame
     N = d.mass.size
+    # Relative to the ground; the frame comes last.
     solve_contact_forces(tau, y, problem)
     observe_descriptor(tau, y, problem, rate, scratch)
     to_moving_frame(problem, tau, 1.0, y)
@@ -156,6 +160,7 @@ def begin_descriptor(
     d = problem.d
     last = 2 * d.mass.size + d.hysteretic
     fastest, tolerance = 0.0, np.empty(last)
+    # λ, which the error test leaves out, and the ledger count for nothing here.
     for i in range(last):
         tolerance[i] = tolerances.atol[i] + tolerances.rtol * abs(y[i])
         fastest = max(fastest, abs(rate[i]) / tolerance[i])
@@ -163,6 +168,7 @@ def begin_descriptor(
     ahead, rate_ahead = y.copy(), np.zeros(y.size)
     for i in range(last):
         ahead[i] += h * rate[i]
+    # `consistent` begins relative to the ground.
     to_moving_frame(problem, tau + h, -1.0, ahead)
     consistent(tau + h, ahead, rate_ahead, problem, scratch)
     curvature = 0.0
@@ -194,6 +200,7 @@ def _turn(
         return
     after = start[1] / (start[1] - end[1]) * h
     near = NEAR * np.sqrt(2.0 * running.rounding[i] / curvature)
+    # The parabola through value and rate at the start and the rate at the end.
     value = start[0] + 0.5 * start[1] * after
     update_turning_point(i, value, t + after, near, running)
 
@@ -244,6 +251,7 @@ def examine_descriptor(
     if verdict != CLEAR:
         return verdict, excess
     gap, gap_rate = constraint_errors(problem.d, y)
+    # Also of steps that are marked.
     drift[0], drift[1] = max(drift[0], gap), max(drift[1], gap_rate)
     before, running = e.observations[first], e.record.running
     if inspect_step(before, after, tau_1 - tau_0, mode.watched, running, e.marks):

@@ -79,6 +79,7 @@ def carry_on(
         flag, end = take(handles, start, first, bounds, e)
         if flag < 0 or end <= start or flag == ROOT_RETURN:
             return flag, first, start, end, CLEAR, excess, steps
+        # What |z| exceeds its bound by already is no fault of this step.
         verdict, reached = check(handles, start, end, first, max(e.z_allowed, excess), e)
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
@@ -87,6 +88,7 @@ def carry_on(
             write_samples(show, (handles, e), e.forcing.start, start, end, e.record.journal)
         if verdict != CLEAR or end >= bounds.stop or steps == bounds.most:
             return flag, first, start, end, verdict, excess, steps
+        # The rows of both ends take turns.
         start, first = end, 1 - first
 
 
@@ -262,6 +264,7 @@ def root_at(
     if not any_fell(roots.pairs):
         return CLEAR, tau
     whole, y, places = whole_end(handles), e.y[1 - first], e.dynamics.bodies.z_of
+    # SUNDIALS has gone on to there, and its root is one of the whole step's polynomial.
     put_inner(handles, whole, 0, y)
     for h in range(places.size):
         if places[h] >= 0 and abs(y[places[h]]) - e.z_bound[h] > max(e.z_allowed, excess):
