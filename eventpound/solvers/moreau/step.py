@@ -115,6 +115,7 @@ def _strike(active: Active, j: int, run: Stepping) -> None:
     solve_banded(equations.band, active.column)
     q = gap_rate(structure, j, equations.increment)
     q += structure.restitution[j] * gap_rate(structure, j, run.state.v)
+    # Newton's law in Moreau's form: γ₁ + ε γ₀ = 0, unless that would pull.
     p = max(0.0, -q / gap_rate(structure, j, active.column))
     run.trial.contact[j] = p
     for b in range(structure.mass.size):
@@ -188,8 +189,10 @@ def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
         end_of_step(step.h, run)
         momentum_residual(step, run)
         _take_impulses(1.0, run)
+        # The impulses of active contacts are known only after a first turn.
         if (iteration > 0 or count == 0) and balanced(run):
             return DONE
+        # Out again: the complementarity problem finds the impulses anew.
         _take_impulses(-1.0, run)
         fill_newton_matrix(step.h, run)
         if not factor_banded(equations.band):
@@ -197,6 +200,7 @@ def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
         copy_values(equations.residual, equations.increment)
         solve_banded(equations.band, equations.increment)
         for b in range(trial.v.size):
+            # Free velocities, which the impulses then change.
             equations.increment[b] = trial.v[b] - equations.increment[b]
         if count == 1:
             _strike(active, active.contacts[0], run)
@@ -217,6 +221,7 @@ def _close_step(step: FixedStep, active: Active, run: Stepping) -> None:
     lost, impacts, group = 0.0, 0, -1
     for j in range(structure.gap.size):
         before, after = gap_rate(structure, j, state.v), gap_rate(structure, j, trial.v)
+        # An impulse takes -p (γ₀ + γ₁)/2.
         lost -= 0.5 * trial.contact[j] * (before + after)
         if trial.contact[j] > 0.0 and before < -still:
             impacts += 1

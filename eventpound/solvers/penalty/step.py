@@ -68,6 +68,7 @@ def _take_elements(step: FixedStep, elements: PenaltyElements, run: Stepping) ->
                 -gap_rate(structure, j, trial.v),
                 max(0.0, gap_of(structure, j, state.u)),
             )
+            # u₁ has h/2 of v₁ in it, so a slope by the depth counts with a factor h/2 more.
             equations.pressing[j] = half * (by_rate + half * by_penetration)
         trial.contact[j] = force
         pull_together(equations.residual, left, right, half * (force + state.contact[j]))
@@ -114,6 +115,7 @@ def _solve_step(step: FixedStep, elements: PenaltyElements, run: Stepping) -> in
     """Newton's iteration for the end of the step; an outcome."""
     structure, v, contact = run.structure, run.trial.v, run.state.contact
     predict(step, run)
+    # As if the contact forces stayed, as `predict` has it of the links.
     for j in range(structure.gap.size):
         left, right = structure.left[j], structure.right[j]
         if left >= 0:
@@ -161,12 +163,14 @@ def _follow_contacts(step: FixedStep, laws: Laws, run: Stepping) -> None:
         gap_0, gap_1 = gap_of(structure, j, state.u), gap_of(structure, j, trial.u)
         rate_0, rate_1 = gap_rate(structure, j, state.v), gap_rate(structure, j, trial.v)
         if gap_1 < 0.0:
+            # Where the chord of the gap is zero.
             ahead = h * max(0.0, gap_0) / (max(0.0, gap_0) - gap_1)
             switch_touch(j, True, gap_0, rate_0, 0.0, laws, t + ahead)
         if laws.touch[CLOSED, j] == 0.0:
             continue
         force, rate = state.contact[j] + trial.contact[j], 0.5 * (rate_0 + rate_1)
         add_share(j, 0.5 * h, force, rate, laws)
+        # By the mean force and the mean rate, as the rule itself has them.
         record.work[CONTACT] -= 0.5 * h * force * rate
         if switch_touch(j, gap_1 < 0.0, gap_1, rate_1, 0.0, laws, t + h):
             write_touch(j, rate_1, laws, record.now[0], record.events)

@@ -63,6 +63,7 @@ def _stage(
     Above zero the equation is convex, so Newton's method comes down from the
     bound without fail.
     """
+    # Above zero g is largest at zero, and loading ends at the bound: y is beyond neither.
     y = min(known + length * z_slopes(a, memory, 1.0, 0.0, 0.0)[0], max(bound, known))
     for _ in range(MOST_ITERATIONS):
         g, g_y = z_slopes(a, memory, 1.0, y, 0.0)
@@ -96,6 +97,7 @@ def z_after(a: int, memory: Floats, z: float, change: float, bound: float) -> tu
     z, z_x : float
         z and ∂z/∂Δx (1/m); not numbers where a stage has no solution.
     """
+    # Along its direction every change of x is loading or unloading of y = σ z.
     sign, length = 1.0 if change >= 0.0 else -1.0, abs(change)
     start = sign * z
     implicit, explicit = DIAGONAL * length, (1.0 - DIAGONAL) * length
@@ -104,6 +106,7 @@ def z_after(a: int, memory: Floats, z: float, change: float, bound: float) -> tu
     # The derivative by the length follows from those of the two stages.
     by_1 = DIAGONAL * g_1 / (1.0 - implicit * slope_1)
     by_2 = (1.0 - DIAGONAL) * g_1 + explicit * slope_1 * by_1 + DIAGONAL * g_2
+    # The second stage is the result. In the derivative the signs of z = σ y and Δx = σ |Δx| cancel.
     return sign * y_2, by_2 / (1.0 - implicit * slope_2)
 
 
@@ -120,6 +123,7 @@ class FixedStep(NamedTuple):
 @step_kernel
 def _step_of(i: int, span: Span, ground: float, forcing: Forcing, theta: float) -> FixedStep:
     """Step i of a span, at whose start the ground has this acceleration (m/s²)."""
+    # Not by adding h up, which would add its rounding up, too.
     start, end = forcing.start + i * span.h, forcing.start + (i + 1) * span.h
     ground_end = ground_acceleration(forcing, end)
     return FixedStep(start, end, span.h, ground_end, (1.0 - theta) * ground + theta * ground_end)
@@ -154,12 +158,14 @@ def end_of_step(h: float, run: Stepping) -> None:
         z, slope, place = 0.0, k, structure.z_of_link[link]
         if place >= 0:
             before = difference(state.v, first, second)
+            # u₁ - u₀ by the rule itself, without the rounding of a difference.
             change = h * ((1.0 - theta) * before + theta * rate)
             bound = structure.bound[link]
             z, z_x = z_after(link, law.memory, state.z[place], change, bound)
             trial.z[place] = z
             slope += pull_per_z(link, law.memory) * z_x
         force = link_force(link, law.memory, k, 0.0, 0.0, x, rate, z)
+        # Springs are listed without their dashpots.
         trial.link[link], equations.slope[link] = force, slope
         force += law.damping[link] * rate
         pull_together(trial.f, first, second, force)
@@ -186,6 +192,7 @@ def balanced(run: Stepping) -> bool:
     structure, equations = run.structure, run.equations
     for b in range(structure.mass.size):
         allowed = BALANCE * structure.speed * structure.mass[b]
+        # So asked, a number that is none is no balance.
         if not abs(equations.residual[b]) <= allowed + BALANCE_ROUNDING * equations.terms[b]:
             return False
     return True
@@ -199,6 +206,7 @@ def couple(band: Floats, first: int, second: int, value: float) -> None:
     if second >= 0:
         band[second, 0] += value
     if first >= 0 and second >= 0:
+        # The lower triangle alone is kept, by its distance from the diagonal.
         band[max(first, second), abs(first - second)] -= value
 
 
@@ -211,6 +219,7 @@ def fill_newton_matrix(h: float, run: Stepping) -> None:
     for b in range(structure.mass.size):
         equations.band[b, 0] = structure.mass[b]
     for link in range(structure.bound.size):
+        # ∂u₁/∂v₁ = h θ.
         value = reach * (structure.law.damping[link] + reach * equations.slope[link])
         couple(equations.band, structure.ends[link, 0], structure.ends[link, 1], value)
 
@@ -221,6 +230,7 @@ def _add_work(step: FixedStep, run: Stepping) -> None:
     structure, state, trial, work = run.structure, run.state, run.trial, run.record.work
     theta, law, h = structure.theta, structure.law, step.h
     for b in range(structure.mass.size):
+        # With the mean velocity M (v₁ - v₀) does exactly the change of the kinetic energy.
         mean = 0.5 * (state.v[b] + trial.v[b])
         work[INPUT] -= h * structure.mass[b] * mean * step.ground
     for link in range(structure.bound.size):
@@ -273,6 +283,7 @@ def take_steps(
     now = run.record.now[0]
     ground = ground_acceleration(forcing, forcing.start + span.first * span.h)
     for i in range(span.first, span.last):
+        # No step begins whose events may find no room, as none can be taken back.
         if now.events + most_events > run.record.events.shape[0]:
             return i, NO_ROOM
         step = _step_of(i, span, ground, forcing, run.structure.theta)

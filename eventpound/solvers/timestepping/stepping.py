@@ -272,6 +272,7 @@ def _observe_present(
     copy_values(state.contact, observed.contact_force[0])
     for j in range(structure.gap.size):
         observed.gap[0, j] = gap_of(structure, j, state.u)
+        # A contact pushes its bodies apart.
         pull_together(acceleration, structure.left[j], structure.right[j], -state.contact[j])
     for b in range(structure.mass.size):
         acceleration[b] /= structure.mass[b]
@@ -283,6 +284,7 @@ def _observe_present(
         if first < 0 or second < 0:
             rate = difference(state.v, first, second)
             force = state.link[link] + structure.law.damping[link] * rate
+            # What a link pulls at the ground, from either end.
             observed.shear[0] += force if first < 0 else -force
 
 
