@@ -176,7 +176,7 @@ class Response:
     def shocks(self) -> pd.DataFrame:
         """Each record of a sequence by itself, one row a shock; of one record none.
 
-        Every shock is run from the state in which this run has it begin up to the beginning of
+        Each shock is run again, from the state of this run at its beginning to the beginning of
         the next. Columns shock (from 1), start and end (s), record and its scale, failed (why it
         could not be run), then what `summary` holds.
         """
@@ -404,8 +404,8 @@ class Response:
     def history(self) -> pd.DataFrame:
         """State at the output times and events, columns as in ``history.csv``.
 
-        Accelerations leave impacts out, in which they are not finite: for what an accelerometer
-        logs, `at` takes its sampling interval.
+        Accelerations leave impacts out, where they are not finite; `at` with a `logger` has what
+        an accelerometer shows.
         """
         return self.rows()
 
@@ -439,7 +439,7 @@ class Response:
         """State at any times, columns as in ``history.csv``.
 
         The run is made again, step by step the same, with rows there by the solver's own
-        interpolant. So nothing has to be kept of a run for it.
+        interpolant.
 
         Parameters
         ----------
@@ -556,7 +556,7 @@ class Response:
 
     @property
     def impacts(self) -> int:
-        """Number of impact rows, with the impacts that accumulations stand for."""
+        """Number of impacts, those that accumulations stand for included."""
         return sum(e.count for e in self.recording.events if e.kind in STRIKES)
 
 

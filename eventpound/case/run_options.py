@@ -86,7 +86,7 @@ DEMAND_OVER_CAPACITY = "demand_over_capacity"
 
 @dataclass(frozen=True, slots=True)
 class Stated:
-    """What ``[run]`` says of quantities: which are wanted, and numbers that some are about.
+    """What ``[run]`` says of quantities: which are wanted, and numbers that some need.
 
     ``[capacity]`` gives `capacities`, what quantities may not exceed (SI), by their names, and the
     `fractile` of the demands over records that are held against them (per cent).

@@ -93,7 +93,7 @@ class BatchResponse(Runs):
         return f"<p>{escape(repr(self))}</p>" + str(self.table.to_html(max_rows=10, max_cols=12))
 
     def values_of(self, name: str) -> Floats | None:
-        """Values of a quantity by its name, shape (n,); None where the scene has no such one."""
+        """Values of a quantity by its name, shape (n,); None where the scene has none."""
         return values_of(self, name)
 
     @property
