@@ -14,7 +14,7 @@ import numpy as np
 import eventpound
 from eventpound import ContactLaw
 from eventpound.report.model_figure import model_figure
-from eventpound.report.tornado import tornado_figure
+from eventpound.report.study_curves import tornado_figure
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "explained"

@@ -1,4 +1,9 @@
-"""Several solvers on one case, each at several tolerances or steps, and other programs' results.
+"""Runs judged by a reference, and by the rigid law that contact laws stand for.
+
+A law with a `restitution` means that; one with ζ, a or ξ what the formula of
+`eventpound.scene.contact_law` has for it, inverted; one without damping, 1.
+
+Several solvers on one case, each at several tolerances or steps, and other programs' results.
 
 A run of a scene with contact laws is held against that scene, which tells what its steps
 do, and against the same scene under Newton's law, which tells what they and the springs do. The
@@ -7,6 +12,7 @@ reference of the one held against that of the other is what the springs alone do
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,11 +25,65 @@ from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions, Way, warn_left_out
 from eventpound.errors import ComputationError, InputError
 from eventpound.scene.check import check_scene
-from eventpound.scene.rigid import rigid
+from eventpound.scene.contact import Contact
+from eventpound.scene.contact_law import Element
+from eventpound.scene.scene import Scene
 from eventpound.score.difference import Difference
 from eventpound.simulation import check_case, check_solver, refuse_suite
 from eventpound.solvers import solver_named
 from eventpound.tolerances import REPEATS
+
+
+def meant_restitution(contact: Contact) -> float:
+    """Coefficient of restitution that a contact with a law stands for, or that of Newton's.
+
+    Parameters
+    ----------
+    contact : Contact
+        A checked one.
+    """
+    if contact.restitution is not None:
+        return contact.restitution
+    if contact.law is None or contact.law.damping is None:
+        return 1.0
+    return restitution_of(contact.law.element, contact.law.damping)
+
+
+def restitution_of(element: Element, constant: float) -> float:
+    """Coefficient of restitution whose formula gives this ζ, a or ξ; 0 beyond its end."""
+    if element is Element.KELVIN_VOIGT:
+        if constant >= 1.0:
+            return 0.0
+        return math.exp(-math.pi * constant / math.sqrt(1.0 - constant**2))
+    if element is Element.HERTZ_DAMP:
+        return math.sqrt(max(0.0, 1.0 - constant / 0.75))
+    if element is Element.JANKOWSKI:
+        # A quadratic of e, in the form that does not cancel where it has a small root.
+        lead = 4.5 * math.sqrt(5.0)
+        square = lead + constant * (9.0 * math.pi - 16.0)
+        return lead / (8.0 * constant + math.sqrt(64.0 * constant**2 + square * lead))
+    return 1.0
+
+
+def rigid(scene: Scene, restitution: float | None = None) -> Scene:
+    """The scene with Newton's law in the place of every other.
+
+    Parameters
+    ----------
+    scene : Scene
+        Checked.
+    restitution : float, optional
+        ε of the contacts that have a law (`meant_restitution`).
+    """
+
+    def changed(contact: Contact) -> Contact:
+        if contact.law is None:
+            return contact
+        e = meant_restitution(contact) if restitution is None else restitution
+        return replace(contact, restitution=e, law=None)
+
+    return replace(scene, contacts=tuple(map(changed, scene.contacts)))
+
 
 Chosen = tuple[str, Mapping[str, object]]
 """A solver's name and its settings."""

@@ -32,9 +32,8 @@ from typing import Any
 from eventpound.basics.interruption import Terminable, is_interruption
 from eventpound.basics.told import show_warning
 from eventpound.cli.arguments import EXAMPLES, Command, Commands, Options
-from eventpound.cli.output import Output
 from eventpound.cli.progress import CompilationLine
-from eventpound.cli.talk import add_loudness, complain, located, set_loudness, tell_step
+from eventpound.cli.talk import Output, add_loudness, complain, located, set_loudness, tell_step
 from eventpound.errors import ComputationError, InputError, InterruptionError
 from eventpound.numerics.compiling import watched
 

@@ -110,7 +110,7 @@ def _study_entry(directory: Path, out: Path) -> GalleryEntry:
     """Make one study and draw it."""
     from eventpound.report.gallery import GalleryEntry, about_case
     from eventpound.report.study_files import draw
-    from eventpound.study.engines.local import engine_of
+    from eventpound.study.engine import engine_of
     from eventpound.study.reading import load_study
     from eventpound.study.running import run_study
     from eventpound.study.table import TABLE

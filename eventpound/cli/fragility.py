@@ -56,7 +56,7 @@ def add_fragility(commands: Commands) -> None:
 def _fragility(options: Options) -> int:
     import pandas as pd
 
-    from eventpound.report.fragility_figure import fragility_figure
+    from eventpound.report.study_curves import fragility_figure
     from eventpound.report.style import on_paper
     from eventpound.report.symbols import dimension_of
     from eventpound.results.tables import table_csv

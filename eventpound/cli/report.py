@@ -142,8 +142,8 @@ def _pages_of(made: DesignRuns, options: Options, out: Path) -> dict[str, bytes]
 
 def _appendix(made: DesignRuns, options: Options, out: Path) -> list[Section]:
     """What stands behind the sheets of a run or a suite."""
+    from eventpound.report.many_appendix import suite_sections
     from eventpound.report.run_appendix import run_sections
-    from eventpound.report.suite_appendix import suite_sections
     from eventpound.results import read
     from eventpound.study.table import read_suite
 
@@ -187,7 +187,7 @@ def _of_study(
     """Make the runs of a study; its design numbers and the files of its report."""
     from eventpound.report.design_study import study_cells, study_sheets, study_workbook
     from eventpound.report.design_tables import capacity_words
-    from eventpound.report.study_appendix import study_sections
+    from eventpound.report.many_appendix import study_sections
     from eventpound.results.cells import lines_of
     from eventpound.results.trade import trade_of
     from eventpound.study.design import made_of_study, plan_asking

@@ -64,8 +64,8 @@ def _sensitivities(options: Options) -> int:
         print("\n".join(lines_of(Cells((str(name), "% for 1 %", ""), rows, (True, False, True)))))
     files = {"sensitivities.csv": table_csv(table)}
     if not options.no_figures:
+        from eventpound.report.study_curves import tornado_figure
         from eventpound.report.style import on_paper
-        from eventpound.report.tornado import tornado_figure
 
         if (figure := tornado_figure(table, case.title)) is not None:
             files |= on_paper({"sensitivities.png": figure}, paper)

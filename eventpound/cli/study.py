@@ -31,7 +31,7 @@ from eventpound.cli.progress import Counter
 from eventpound.cli.talk import going_on
 
 if TYPE_CHECKING:
-    from eventpound.study.engines.local import Engine
+    from eventpound.study.engine import Engine
 
 
 def add_study(commands: Commands) -> None:
@@ -71,10 +71,10 @@ def _study(options: Options) -> int:
 def _engine(options: Options, solver: str) -> Engine:
     """What computes the chunks, by the options and the solver."""
     if options.scheduler or options.workers:
-        from eventpound.study.engines.cluster import Cluster
+        from eventpound.study.engine import Cluster
 
         return Cluster(options.scheduler, options.workers or 1)
-    from eventpound.study.engines.local import engine_of
+    from eventpound.study.engine import engine_of
 
     return engine_of(solver, options.processes)
 

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from eventpound.errors import InputError
-from eventpound.report.contacts import show_zero
+from eventpound.report.displacements import show_zero
 from eventpound.report.loops import draw_loop
 from eventpound.report.markers import draw_circles, draw_rests, event_legend
 from eventpound.report.style import DASHED, PALETTE, legend_above, new_figure, styled, zero_lines

@@ -11,8 +11,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from eventpound.motion.base import Scales
-from eventpound.report.intensity_figure import intensity_figure
 from eventpound.report.model_figure import model_figure
+from eventpound.report.study_curves import intensity_figure
 from eventpound.report.study_figure import study_figures
 from eventpound.report.style import Paper, on_paper, png
 from eventpound.results.files import write_together

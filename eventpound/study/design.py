@@ -29,7 +29,7 @@ from eventpound.response import Response
 from eventpound.scene.scene import Scene
 from eventpound.simulation import response_of
 from eventpound.study.demands import STOREY_DRIFT, Demand, demands_of, least_governs, words_of
-from eventpound.study.engines.local import engine_of
+from eventpound.study.engine import engine_of
 from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import RECORD, Plan
 from eventpound.study.records import FAILED

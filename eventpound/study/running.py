@@ -32,7 +32,7 @@ from eventpound.results.files import (
 )
 from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import sha256
-from eventpound.study.engines.local import Engine
+from eventpound.study.engine import Engine
 from eventpound.study.plan import RECORD, Plan
 from eventpound.study.table import (
     MANIFEST,

@@ -21,7 +21,7 @@ from eventpound.errors import InputError
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
-from eventpound.study.engines.local import Batch, Processes
+from eventpound.study.engine import Batch, Processes
 from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import RECORD, base_of, described, solver_of
 from eventpound.study.quantities import planned

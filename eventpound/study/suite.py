@@ -27,7 +27,7 @@ from eventpound.response import Response
 from eventpound.results.manifest import case_in_manifest, machine, versions
 from eventpound.results.tables import table_csv
 from eventpound.simulation import check_solver
-from eventpound.study.engines.local import Batch
+from eventpound.study.engine import Batch
 from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import OfSuite, Plan, base_of, described
 from eventpound.study.records import FAILED, record_columns, sa_of_suite

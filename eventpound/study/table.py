@@ -20,7 +20,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.lookup import is_whole
 from eventpound.response import Response
 from eventpound.results.jsontext import read_json
-from eventpound.results.read import read_manifest as read_stated
+from eventpound.results.run_files import read_manifest as read_stated
 from eventpound.results.tables import rows_csv
 from eventpound.study.plan import RECORD, Chunk, Plan
 from eventpound.study.records import FAILED, about, peak_errors, reason

@@ -20,7 +20,7 @@ import numpy as np
 import pandas as pd
 
 from eventpound.report.study_figure import MATTERS, VISIBLE
-from eventpound.study.engines.local import Batch
+from eventpound.study.engine import Batch
 from eventpound.study.reading import load_study
 from eventpound.study.running import run_study
 from eventpound.study.table import read_table

@@ -17,7 +17,7 @@ import pytest
 
 import eventpound.basics.input_files
 import eventpound.results.files
-import eventpound.study.engines.local
+import eventpound.study.engine
 import eventpound.study.suite
 from eventpound.basics.input_files import matching_files, read_bytes
 from eventpound.cli import main
@@ -297,7 +297,7 @@ def test_a_suite_that_is_stopped_at_once_writes_nothing(tmp_path, monkeypatch, c
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(eventpound.study.engines.local, "compute", stop)
+    monkeypatch.setattr(eventpound.study.engine, "compute", stop)
     assert main(["run", str(tmp_path)]) == 130
     assert files_below(results) == set()
     assert "0 of 3 records were done" in capsys.readouterr().err

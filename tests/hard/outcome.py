@@ -13,7 +13,7 @@ from eventpound.accuracy.estimate import estimate_errors
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.model import assemble
 from eventpound.response import Response
-from eventpound.results.summary import summarise
+from eventpound.results.run_files import summarise
 from eventpound.simulation import response_of
 from eventpound.solvers.events.scales import scene_scales
 from tests.benchmarks.agreement import NUDGE, loud, quantities, sequence

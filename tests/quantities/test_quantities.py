@@ -20,7 +20,7 @@ from eventpound.quantities.base import TakenFrom, pi_unit
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import find, listing, names_of
 from eventpound.response import Response
-from eventpound.results.summary import summarise
+from eventpound.results.run_files import summarise
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.units import Dimension
 from tests.solvers.scenes import pounding_pair

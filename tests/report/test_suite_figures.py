@@ -22,8 +22,7 @@ from eventpound.report import suite_plot
 from eventpound.report.bridge_response import bridge_response_figure
 from eventpound.report.pulse_fit import pulse_fit_figure
 from eventpound.report.similarity_contours import similarity_contours_figure
-from eventpound.report.suite_plot import named_lengths, plot_suite
-from eventpound.report.suite_spectrum import suite_spectrum_figure
+from eventpound.report.suite_plot import named_lengths, plot_suite, suite_spectrum_figure
 from eventpound.report.view import View
 from eventpound.results import gather
 

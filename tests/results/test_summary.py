@@ -7,7 +7,7 @@ import pytest
 
 from eventpound.motion.free import NoMotion
 from eventpound.results import read, write
-from eventpound.results.summary import summarise
+from eventpound.results.run_files import summarise
 from eventpound.solvers.base import Drift
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from eventpound.errors import InputError
-from eventpound.results.read import read_events, read_history
+from eventpound.results.run_files import read_events, read_history
 
 
 def test_another_programs_history(tmp_path):

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from eventpound.accuracy.compare import meant_restitution, restitution_of, rigid
 from eventpound.scene import Contact, ContactLaw
 from eventpound.scene.contact_law import BY_WORD, Element, damping_constant
-from eventpound.scene.rigid import meant_restitution, restitution_of, rigid
 from tests.solvers.laws.test_scenes import pair
 
 

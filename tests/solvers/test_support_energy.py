@@ -10,7 +10,7 @@ import pytest
 
 from eventpound.motion import Ricker, Sine
 from eventpound.motion.constant import PhasedSine
-from eventpound.results.summary import summarise
+from eventpound.results.run_files import summarise
 from eventpound.scene import GROUND, Body, Contact, Force, Linear, Scene, Spring, Support
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.simulation import response_of

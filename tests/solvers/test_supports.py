@@ -18,7 +18,7 @@ from eventpound.errors import ComputationError, InputError
 from eventpound.motion import Harmonic, NoMotion, Record, Ricker, Sine
 from eventpound.motion.constant import Constant, PhasedSine
 from eventpound.motion.delayed import travelled
-from eventpound.results.summary import summarise
+from eventpound.results.run_files import summarise
 from eventpound.scene import (
     BARRIER,
     GROUND,

@@ -44,7 +44,7 @@ def expected_table(study):
 
 @pytest.mark.filterwarnings("default")
 def test_two_workers_give_the_same_table_though_one_is_killed(make_study, cluster):
-    from eventpound.study.engines.cluster import Cluster
+    from eventpound.study.engine import Cluster
 
     address, workers = cluster
     study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 640")).study
@@ -78,7 +78,7 @@ def test_the_only_worker_is_killed_and_comes_back(make_study):
     """What was sent to it once is sent again."""
     from distributed import Client
 
-    from eventpound.study.engines.cluster import Cluster
+    from eventpound.study.engine import Cluster
 
     study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 320")).study
     with Client(n_workers=1, threads_per_worker=1, dashboard_address=None) as client:

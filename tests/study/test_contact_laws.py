@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from eventpound import load_case, simulate
-from eventpound.scene.rigid import rigid
+from eventpound.accuracy.compare import rigid
 from eventpound.study.reading import load_study
 from eventpound.study.table import compute, header
 

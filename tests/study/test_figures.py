@@ -9,7 +9,7 @@ from eventpound.errors import InputError
 from eventpound.report.gallery import about_case
 from eventpound.report.study_figure import study_figures
 from eventpound.report.symbols import axis_label, value_label
-from eventpound.study.engines.local import Batch
+from eventpound.study.engine import Batch
 from eventpound.study.running import run_study
 from eventpound.study.table import read_table
 from tests.study.conftest import ELASTOPLASTIC

@@ -8,7 +8,7 @@ import pytest
 from eventpound import load_case, simulate_suite
 from eventpound.cli import main
 from eventpound.errors import InputError
-from eventpound.study.engines.local import Batch, Processes
+from eventpound.study.engine import Batch, Processes
 from eventpound.study.plan import Chunk
 from eventpound.study.reading import load_study
 from eventpound.study.running import run_study

@@ -13,7 +13,7 @@ from multiprocessing import active_children
 import pytest
 
 from eventpound.cli import main
-from eventpound.study.engines.local import Batch, Processes
+from eventpound.study.engine import Batch, Processes
 from eventpound.study.running import Store, run_study
 from eventpound.study.table import compute, header, read_table
 from tests.study.conftest import ELASTOPLASTIC

@@ -28,7 +28,7 @@ from eventpound import (
 )
 from eventpound.basics.input_files import read_columns
 from eventpound.cli import main
-from eventpound.report.tornado import tornado_figure
+from eventpound.report.study_curves import tornado_figure
 from eventpound.scene.parameters import number_places, with_values
 from tests.study.saltation import Array, LinearSystem, final_sensitivity
 

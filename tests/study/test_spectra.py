@@ -8,7 +8,7 @@ import pytest
 from eventpound.cli import main
 from eventpound.motion.base import Scales
 from eventpound.simulation import response_of
-from eventpound.study.engines.local import Batch
+from eventpound.study.engine import Batch
 from eventpound.study.running import run_study
 from eventpound.study.spectra import dimensional_name, dimensional_spectrum
 from eventpound.study.table import read_table

@@ -1,4 +1,4 @@
-"""Threads and processes of this machine, the usual engine.
+"""Engines: threads and processes of this machine, or workers of a Dask cluster.
 
 The fast solver leaves Python's lock while it runs a chunk, so threads share all cores. Any other
 computes one run at a time, and is given processes.
@@ -7,6 +7,7 @@ computes one run at a time, and is given processes.
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 import warnings
 from collections.abc import Callable, Iterable, Iterator
@@ -21,13 +22,13 @@ from concurrent.futures.process import BrokenProcessPool
 from itertools import chain
 from multiprocessing import get_context, parent_process
 from threading import Thread
-from typing import Protocol
+from typing import Any, Protocol
 
 from eventpound.basics.cores import cores
 from eventpound.basics.interruption import Deferred
 from eventpound.basics.told import show_warning
 from eventpound.case.solver_options import FAST
-from eventpound.errors import ComputationError
+from eventpound.errors import ComputationError, InputError
 from eventpound.study.plan import Chunk, Plan
 from eventpound.study.table import Keep, compute
 
@@ -190,3 +191,65 @@ def _end_with_parent() -> None:
 def _compute(chunk: Chunk) -> bytes:
     assert _study is not None
     return compute(_study, chunk)
+
+
+_IN_FLIGHT_A_WORKER = 2
+_MOST_LOSSES = 8
+
+
+class Cluster:
+    """Chunks on the workers of a Dask scheduler.
+
+    Parameters
+    ----------
+    scheduler : str, optional
+        Address of a running scheduler, ``"tcp://host:8786"``.
+    workers : int
+        Without a scheduler: how many processes to start on this machine.
+
+    Raises
+    ------
+    InputError
+        Where Dask is not installed, or the scheduler does not answer.
+    """
+
+    def __init__(self, scheduler: str | None = None, workers: int = 1) -> None:
+        try:
+            import distributed
+        except ImportError:
+            raise InputError(
+                'Dask is not installed; pip install "eventpound[dask]" brings it'
+            ) from None
+        self._distributed: Any = distributed
+        self.scheduler, self.workers = scheduler, workers
+
+    def run(self, study: Plan, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
+        """Compute chunks of a study; those of a worker that is lost are made again elsewhere."""
+        with self._client() as client:
+            # Sent once to each worker, not with every chunk; a task, because the scheduler makes
+            # a task again that was lost with its worker.
+            shared = client.submit(pickle.loads, pickle.dumps(study), pure=False)
+            pool = client.get_executor(pure=False, retries=_MOST_LOSSES)
+            flight: dict[Chunk, Any] = {}
+            try:
+                yield from computed(
+                    lambda chunk: pool.submit(compute, shared, chunk),
+                    iter(chunks),
+                    lambda: _IN_FLIGHT_A_WORKER * max(1, len(client.nthreads())),
+                    flight,
+                )
+            except Exception as error:
+                numbers = [chunk.number for chunk in flight]
+                raise ComputationError(
+                    f"one of the chunks {numbers} ended as {error!r}; what is stored is kept", 0.0
+                ) from error
+
+    def _client(self) -> Any:
+        """A client of the scheduler, or of one of our own that ends with it."""
+        dask = self._distributed
+        if self.scheduler is None:
+            return dask.Client(n_workers=self.workers, threads_per_worker=1, dashboard_address=None)
+        try:
+            return dask.Client(self.scheduler, timeout="10s")
+        except OSError as error:
+            raise InputError(f"--scheduler {self.scheduler}: does not answer: {error}") from error
