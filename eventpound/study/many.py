@@ -30,7 +30,7 @@ from eventpound.units import Dimension
 @checked
 def simulate_many(
     case: Case | Scene,
-    parameters: Mapping[str, Sequence[float] | Floats],
+    parameters: Mapping[str, Sequence[float | str] | Floats],
     *,
     rtol: float | str | None = None,
     duration: float | str | Floats | Sequence[float] | None = None,
