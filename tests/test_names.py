@@ -40,3 +40,14 @@ def test_no_two_modules_have_a_public_function_of_one_name() -> None:
                     places[node.name].add(name)
     twice = {name: sorted(found) for name, found in places.items() if len(found) > 1}
     assert {n for n, f in twice.items() if not all(m.startswith(ENGINE) for m in f)} == LEFT
+
+
+MOST_BY_POSITION = 12
+"""Arguments that a reader still counts."""
+
+
+def test_long_calls_name_their_arguments() -> None:
+    for path in ROOT.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call):
+                assert len(node.args) <= MOST_BY_POSITION, f"{path}:{node.lineno}"

@@ -119,22 +119,22 @@ def least_in_box(
     x = np.zeros((k, m))
     x[:, 0] = start
     work = _Pivoting(
-        x,
-        np.zeros((k, m)),
-        np.zeros((k, m)),
-        np.zeros(k, np.bool_),
-        np.zeros(k),
-        np.zeros(n, np.int64),
-        np.zeros(n, np.int64),
-        np.zeros(n, np.int64),
-        np.zeros(n, np.int64),
-        np.zeros(n),
-        np.zeros((n, 2)),
-        np.zeros((n, 2)),
-        np.zeros((k + 2, m)),
-        np.zeros((k + 2, m)),
-        np.zeros(k + 2),
-        np.zeros(k + 2),
+        x=x,
+        w=np.zeros((k, m)),
+        doubt=np.zeros((k, m)),
+        passive=np.zeros(k, np.bool_),
+        along=np.zeros(k),
+        root=np.zeros(n, np.int64),
+        above=np.zeros(n, np.int64),
+        next=np.zeros(n, np.int64),
+        order=np.zeros(n, np.int64),
+        weight=np.zeros(n),
+        load=np.zeros((n, 2)),
+        rate=np.zeros((n, 2)),
+        slack=np.zeros((k + 2, m)),
+        level=np.zeros((k + 2, m)),
+        speed=np.zeros(k + 2),
+        bound=np.zeros(k + 2),
     )
     found = _pivot(joints, work)
     return np.minimum(np.maximum(x[:, 0], box[0]), box[1]), found

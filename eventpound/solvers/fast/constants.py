@@ -199,21 +199,21 @@ def zero_state(
     """A state of zeros; `counts`: N, L, K and H, `runs`: the leading axes."""
     bodies, links, contacts, hysteretic = ((*runs, count) for count in counts)
     return FastState(
-        np.zeros(bodies),
-        np.zeros(bodies),
-        np.zeros(hysteretic),
-        np.zeros(hysteretic),
-        np.zeros(hysteretic),
-        np.zeros(hysteretic, np.int64),
-        np.zeros(contacts),
-        np.zeros(contacts),
-        np.zeros(contacts, np.bool_),
-        np.zeros(contacts, np.bool_),
-        np.zeros(contacts, np.bool_),
-        np.zeros(links, np.int64),
-        np.zeros((*runs, ledger)),
-        np.zeros((*runs, 1), Now.layout),
-        np.zeros((*runs, 1), FastProgress.layout),
+        u=np.zeros(bodies),
+        v=np.zeros(bodies),
+        sigma=np.zeros(hysteretic),
+        x_r=np.zeros(hysteretic),
+        xi_r=np.zeros(hysteretic),
+        part=np.zeros(hysteretic, np.int64),
+        gap=np.zeros(contacts),
+        gap_rate=np.zeros(contacts),
+        resting=np.zeros(contacts, np.bool_),
+        pressed=np.zeros(contacts, np.bool_),
+        unlocked=np.zeros(contacts, np.bool_),
+        branch=np.zeros(links, np.int64),
+        ledger=np.zeros((*runs, ledger)),
+        now=np.zeros((*runs, 1), Now.layout),
+        progress=np.zeros((*runs, 1), FastProgress.layout),
     )
 
 

@@ -106,20 +106,20 @@ def structure_of(model: Model, scales: SceneScales, theta: float) -> Structure:
     pairs = np.concatenate((model.link_ends, np.column_stack((model.left, model.right))))
     pairs = pairs[(pairs >= 0).all(axis=1)]
     return Structure(
-        model.mass,
-        model.link_ends,
-        model.elastic,
-        model.law,
-        bound,
-        model.z_of_link,
-        model.left,
-        model.right,
-        model.gap,
-        model.restitution,
-        model.springs,
-        int(np.abs(pairs[:, 0] - pairs[:, 1]).max(initial=0)),
-        theta,
-        scales.speed,
+        mass=model.mass,
+        ends=model.link_ends,
+        elastic=model.elastic,
+        law=model.law,
+        bound=bound,
+        z_of_link=model.z_of_link,
+        left=model.left,
+        right=model.right,
+        gap=model.gap,
+        restitution=model.restitution,
+        springs=model.springs,
+        bandwidth=int(np.abs(pairs[:, 0] - pairs[:, 1]).max(initial=0)),
+        theta=theta,
+        speed=scales.speed,
     )
 
 
