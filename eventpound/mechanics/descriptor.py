@@ -42,8 +42,6 @@ class Descriptor(NamedTuple):
     carries, 0 for those at rest on a barrier. B (L, N), W (R, N): rows are directions of
     elongations and gaps, opening (R,) the gaps at u = 0 (m).
     all_gaps (K, N), all_openings (K,): those of every contact.
-    inverse_coupling (R, R): of Wᵀ M⁻¹ W (kg).
-    sliders (J,), link_ends (L, 2), weights: of the `Model`, whose points are no unknowns here.
     ledger_weight: factor of the rows of the ledger, which determine nothing else: no such row
     must become the pivot of another unknown, as it does where energies are large numbers.
     """
@@ -65,10 +63,6 @@ class Descriptor(NamedTuple):
     opening: Floats
     all_gaps: Floats
     all_openings: Floats
-    inverse_coupling: Floats
-    sliders: Ints
-    link_ends: Ints
-    weights: Floats
     ledger_weight: float
 
 
@@ -101,28 +95,26 @@ def descriptor_form(
     members = clusters.resting[~clusters.redundant]
     W = every[members]
     size = 2 * bodies + hysteretic + members.size
+    stiffness, preload = model.elastic.on_side(branch)
     return Descriptor(
-        size + ledger,
-        hysteretic,
-        size if ledger > 0 else -1,
-        model.z_of_link,
-        _dependent(W, model.supports),
-        clusters.resting,
-        members,
-        mass,
-        np.where(clusters.of_body[:bodies] < 0, 0.0, 1.0),
-        *model.elastic.on_side(branch),
-        LinkLaw(model.law.damping, in_python(memory_on_branches)(model.law.memory, branch)),
-        np.ascontiguousarray(model.elongations(np.eye(bodies)).T),
-        W,
-        model.gap[members],
-        every,
-        model.gap,
-        np.asarray(np.linalg.inv(W / mass @ W.T), np.float64),
-        model.sliders,
-        model.link_ends,
-        model.weights,
-        ledger_weight,
+        size=size + ledger,
+        hysteretic=hysteretic,
+        ledger=size if ledger > 0 else -1,
+        z_of_link=model.z_of_link,
+        dependent=_dependent(W, model.supports),
+        resting=clusters.resting,
+        carrying=members,
+        mass=mass,
+        framed=np.where(clusters.of_body[:bodies] < 0, 0.0, 1.0),
+        stiffness=stiffness,
+        preload=preload,
+        law=LinkLaw(model.law.damping, in_python(memory_on_branches)(model.law.memory, branch)),
+        B=np.ascontiguousarray(model.elongations(np.eye(bodies)).T),
+        W=W,
+        opening=model.gap[members],
+        all_gaps=every,
+        all_openings=model.gap,
+        ledger_weight=ledger_weight,
     )
 
 

@@ -22,7 +22,6 @@ from eventpound.mechanics.elements import (
     z_slopes,
 )
 from eventpound.mechanics.ground_frame import frame_motion
-from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import (
@@ -30,7 +29,6 @@ from eventpound.motion.loads import (
     add_body_loads,
     body_of,
     is_driven,
-    load_value,
     rows_of,
     support_motion,
 )
@@ -42,121 +40,43 @@ from eventpound.numerics.small_systems import dot
 class DescriptorProblem(NamedTuple):
     """A mode in descriptor form, a piece of the ground motion, and the moving frame (4, n).
 
-    n is 0 for no frame. Times tau (s) count from the start of the piece.
+    n is 0 for no frame. Times tau (s) count from the start of the piece. drift (2,): largest gap
+    (m) and gap rate (m/s) of a resting contact so far, which who examines steps brings up to date.
     """
 
     d: Descriptor
     forcing: Forcing
     frame: Floats
+    drift: Floats
 
 
 @kernel
-def body_loads(d: Descriptor, forces: Floats, loads: Floats) -> None:
-    """What the links put on each body, ``-Σ_l B_l F_l``."""
-    for b in range(d.mass.size):
-        total = 0.0
-        for link in range(forces.size):
-            total -= d.B[link, b] * forces[link]
-        loads[b] = total
-
-
-@kernel
-def accelerations(d: Descriptor, loads: Floats, contact: Floats, ground: float, a: Floats) -> None:
-    """``u'' = M⁻¹ (loads + W λ) - 1 a_g``; of a support `loads` (N,) is the acceleration."""
-    for b in range(d.mass.size):
-        total = loads[b]
-        for j in range(contact.size):
-            total += d.W[j, b] * contact[j]
-        a[b] = total / d.mass[b] - ground
-        if is_support(b, d.mass):
-            a[b] = loads[b] - ground
-
-
-@kernel
-def contact_forces(d: Descriptor, loads: Floats, ground: float, contact: Floats) -> None:
-    """λ of ``Wᵀ u'' = 0``."""
-    closing, a = np.empty(contact.size), np.empty(d.mass.size)
-    # With no contact force at first: λ is what takes the rest of Wᵀ u'' to zero.
-    accelerations(d, loads, contact[:0], ground, a)
-    for j in range(contact.size):
-        closing[j] = -dot(d.W[j], a)
-    for j in range(contact.size):
-        contact[j] = dot(d.inverse_coupling[j], closing)
-
-
-@kernel
-def link_states(
-    d: Descriptor, y: Floats, elongation: Floats, z_rates: Floats, forces: Floats
-) -> None:
-    """Elongations and their rates (2 rows or more), rates of z and forces of the links."""
+def _link_loads(d: Descriptor, y: Floats, z_rates: Floats, loads: Floats) -> None:
+    """Rates of z (H,), and what the links put on each body (N,), ``-Σ_l B_l F_l``."""
     N, law = d.mass.size, d.law
-    for link in range(forces.size):
+    loads[:] = 0.0
+    for link in range(d.stiffness.size):
         x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
         h, k, c = d.z_of_link[link], d.stiffness[link], law.damping[link]
         z = y[2 * N + h] if h >= 0 else 0.0
         if h >= 0:
             beside = y[2 * N + d.z_of_link[number_beside(link, law.memory)]]
             z_rates[h] = z_rate(link, law.memory, x_rate, x_rate, z, beside)
-        elongation[0, link], elongation[1, link] = x, x_rate
-        forces[link] = link_force(link, law.memory, k, d.preload[link], c, x, x_rate, z)
+        force = link_force(link, law.memory, k, d.preload[link], c, x, x_rate, z)
+        for b in range(N):
+            loads[b] -= d.B[link, b] * force
 
 
 @kernel
-def _pushed(
-    tau: float, y: Floats, problem: DescriptorProblem
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """What moves the bodies at tau, contacts apart: all that acts on each, (N,), is the last.
-
-    Of a support it is the acceleration (m/s²). Before it the links: rates of their elongations
-    (L,), rates of z (H,), and their forces (L,).
-    """
-    d, forcing = problem.d, problem.forcing
-    elongation, forces = np.empty((2, d.stiffness.size)), np.empty(d.stiffness.size)
-    z_rates, loads = np.empty(d.hysteretic), np.empty(d.mass.size)
-    link_states(d, y, elongation, z_rates, forces)
-    body_loads(d, forces, loads)
-    if forcing.family == LOADED:
-        add_body_loads(forcing, forcing.start + tau, loads, loads)
-    return elongation[1], z_rates, forces, loads
-
-
-@kernel
-def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates: Floats) -> None:
-    """Rates of input ``-Σ m v a_g``, viscous ``Σ c x'²`` and hysteretic work ``Σ Q z x'``."""
-    N = d.mass.size
-    rates[:] = 0.0
-    for b in range(N):
-        # The mass of a support is infinite; what it puts in has a row of its own.
-        rates[0] -= 0.0 if is_support(b, d.mass) else d.mass[b] * y[N + b] * ground
-    for link in range(d.stiffness.size):
-        rates[1] += d.law.damping[link] * x_rate[link] * x_rate[link]
-        h = d.z_of_link[link]
-        if h >= 0:
-            rates[2] += pull_per_z(link, d.law.memory) * y[2 * N + h] * x_rate[link]
-
-
-@kernel
-def loaded_powers(
-    tau: float, y: Floats, problem: DescriptorProblem, pulled: Floats, rates: Floats
-) -> None:
-    """Add the power of forces, and of supports, to the `rates` of the ledger.
-
-    `pulled` (N,): what the links put on each body, ``-Σ_l B_l F_l`` (N). A support resists them
-    and its contacts. `rates` are in W.
-    """
-    d, forcing = problem.d, problem.forcing
-    N, first = d.mass.size, 2 * d.mass.size + d.hysteretic
-    coefficients = forcing.coefficients
-    for row in range(1, rows_of(coefficients) + 1):
-        b = body_of(row, coefficients)
-        if is_driven(row, coefficients):
-            total = pulled[b]
-            for j in range(d.opening.size):
-                total += d.W[j, b] * y[first + j]
-            # The support holds against links and contacts, so it does the negative of their work.
-            rates[WORK_OF_SUPPORTS + b] = -total * y[N + b]
-        else:
-            rates[0] += y[N + b] * load_value(row, forcing, forcing.start + tau)
+def _accelerations(d: Descriptor, loads: Floats, contact: Floats, ground: float) -> Floats:
+    """``u'' = M⁻¹ (loads + W λ) - 1 a_g``; of a support `loads` (N,) is the acceleration."""
+    a = np.empty(d.mass.size)
+    for b in range(a.size):
+        total = loads[b]
+        for j in range(contact.size):
+            total += d.W[j, b] * contact[j]
+        a[b] = (loads[b] if is_support(b, d.mass) else total / d.mass[b]) - ground
+    return a
 
 
 @kernel
@@ -202,7 +122,8 @@ def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Descript
         Time since the start of the segment (s).
     y, rate, out : ndarray, shape (size,)
         Unknowns and their rates, in the frame; the residual in m/s (free u), m/s²
-        (free v and λ), 1/s (z), m and m/s (u and v of dependent bodies).
+        (free v and λ), 1/s (z), m and m/s (u and v of dependent bodies). Rows of the ledger,
+        from which nothing follows, are left as they are.
     problem : DescriptorProblem
         Whose equations.
     """
@@ -211,9 +132,11 @@ def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Descript
     ground = ground_acceleration(forcing, t)
     lift = frame_motion(frame, t)[2] if frame.shape[1] > 0 else 0.0
     relative = relative_to_ground(tau, y, problem)
-    x_rate, z_rates, forces, loads = _pushed(tau, relative, problem)
-    a = np.empty(N)
-    accelerations(d, loads, relative[2 * N + H : 2 * N + H + R], ground, a)
+    z_rates, loads = np.empty(H), np.empty(N)
+    _link_loads(d, relative, z_rates, loads)
+    if forcing.family == LOADED:
+        add_body_loads(forcing, t, loads, loads)
+    a = _accelerations(d, loads, relative[2 * N + H : 2 * N + H + R], ground)
     for b in range(N):
         out[b] = rate[b] - y[N + b]
         # In the frame the velocity is v + s', and its rate has s'' beside the acceleration.
@@ -225,27 +148,6 @@ def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Descript
         out[2 * N + H + j] = dot(d.W[j], a)
     for h in range(H):
         out[2 * N + h] = rate[2 * N + h] - z_rates[h]
-    if d.ledger >= 0:
-        last = out[d.ledger :]
-        ledger_rates(d, relative, x_rate, ground, last)
-        if forcing.family == LOADED:
-            body_loads(d, forces, loads)
-            loaded_powers(tau, relative, problem, loads, last)
-        for i in range(last.size):
-            # Small, for none of these rows may become the pivot of another unknown.
-            last[i] = d.ledger_weight * (rate[d.ledger + i] - last[i])
-
-
-@kernel
-def solve_contact_forces(tau: float, y: Floats, problem: DescriptorProblem) -> None:
-    """Put λ of the equations of motion into y (relative to the ground)."""
-    d = problem.d
-    N, H, R = d.mass.size, d.hysteretic, d.opening.size
-    if R == 0:
-        return
-    ground = ground_acceleration(problem.forcing, problem.forcing.start + tau)
-    loads = _pushed(tau, y, problem)[3]
-    contact_forces(d, loads, ground, y[2 * N + H : 2 * N + H + R])
 
 
 @kernel
@@ -259,26 +161,6 @@ def constraint_errors(d: Descriptor, y: Floats) -> tuple[float, float]:
         gap = max(gap, abs(d.all_openings[j] + dot(d.all_gaps[j], y[:N])))
         gap_rate = max(gap_rate, abs(dot(d.all_gaps[j], y[N : 2 * N])))
     return gap, gap_rate
-
-
-@kernel
-def onto_constraints(d: Descriptor, y: Floats) -> None:
-    """Close the gaps and gap rates of resting contacts (y relative to the ground), in place.
-
-    Bodies are moved as their contacts' forces would, ``M⁻¹ W (Wᵀ M⁻¹ W)⁻¹`` times the gaps: the
-    least that moves them, weighted by mass, which leaves the momentum of each group.
-    """
-    N, R = d.mass.size, d.opening.size
-    gaps, rates = np.empty(R), np.empty(R)
-    # All of them before a body is moved, which opens the gaps beside.
-    for j in range(R):
-        gaps[j] = d.opening[j] + dot(d.W[j], y[:N])
-        rates[j] = dot(d.W[j], y[N : 2 * N])
-    for j in range(R):
-        push, change = dot(d.inverse_coupling[j], gaps), dot(d.inverse_coupling[j], rates)
-        for b in range(N):
-            y[b] -= d.W[j, b] * push / d.mass[b]
-            y[N + b] -= d.W[j, b] * change / d.mass[b]
 
 
 @kernel

@@ -40,7 +40,7 @@ def integrator(rtol: float, method: str) -> Integrator:
         from eventpound.solvers.sundials.compiled_cvode import DirectCvode
 
         return DirectCvode(found, rtol, method)
-    from eventpound.solvers.sundials.python_cvode import WrappedCvode
+    from eventpound.solvers.sundials.wrapped import WrappedCvode
 
     return WrappedCvode(rtol, method)
 

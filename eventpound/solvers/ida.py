@@ -26,7 +26,7 @@ from eventpound.tolerances import FINEST_RTOL
 
 if TYPE_CHECKING:
     from eventpound.solvers.sundials.compiled_ida import DirectIda
-    from eventpound.solvers.sundials.python_ida import WrappedIda
+    from eventpound.solvers.sundials.wrapped import WrappedIda
 
 
 class Ida:
@@ -89,6 +89,6 @@ def integrator(task: Task, model: Model, scales: SceneScales) -> DirectIda | Wra
         from eventpound.solvers.sundials.compiled_ida import DirectIda
 
         return DirectIda(library, modes)
-    from eventpound.solvers.sundials.python_ida import WrappedIda
+    from eventpound.solvers.sundials.wrapped import WrappedIda
 
     return WrappedIda(modes)

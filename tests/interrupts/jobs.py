@@ -204,7 +204,7 @@ def _through_scikit_sundae(folder: Path) -> int:
     from eventpound import load_case
     from eventpound.simulation import task_of
     from eventpound.solvers.events.loop import EventLoop
-    from eventpound.solvers.sundials.python_cvode import WrappedCvode
+    from eventpound.solvers.sundials.wrapped import WrappedCvode
 
     task = task_of(load_case(folder / "case"), 1e-6)
     EventLoop(task, WrappedCvode(task.rtol, "Adams")).run()

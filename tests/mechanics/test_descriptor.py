@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -10,16 +13,15 @@ from eventpound.mechanics.descriptor_motion import (
     DescriptorProblem,
     constraint_errors,
     jacobian,
-    residual,
-    solve_contact_forces,
     to_moving_frame,
 )
-from eventpound.mechanics.descriptor_observation import observe_descriptor
 from eventpound.mechanics.ground_frame import NO_FRAME, frame_motion
-from eventpound.mechanics.observables import Observed, blank_observed
+from eventpound.mechanics.observables import bodies_motion
 from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.compiled import by_python
+from eventpound.solvers.sundials.descriptor_steps import full_residual, to_clusters
 from tests.mechanics.dense import rates
-from tests.mechanics.scenes import LEDGER, Instant, assert_contacts, random_instant
+from tests.mechanics.scenes import LEDGER, Instant, random_instant
 
 # A dozen terms of order ten and a saddle-point matrix of condition below 1e4.
 TOLERANCE = 1e-11
@@ -34,58 +36,26 @@ def _descriptor(at: Instant) -> Descriptor:
     return descriptor_form(at.model, at.clusters, branch, ledger=LEDGER, ledger_weight=0.3)
 
 
-def _consistent(at: Instant, d: Descriptor) -> tuple[np.ndarray, np.ndarray, Observed]:
-    """Unknowns and rates that satisfy the equations at the start of the segment."""
-    y, rate, observed = np.zeros(d.size), np.zeros(d.size), blank_observed(*at.model.counts)
-    y[: 2 * at.u.size + at.z.size] = np.concatenate((at.u, at.v, at.z))
-    problem = DescriptorProblem(d, at.forcing, NO_FRAME)
-    solve_contact_forces(0.0, y, problem)
-    observe_descriptor(0.0, y, problem, rate, observed)
-    return y, rate, observed
+def _on_the_motion(at: Instant, d: Descriptor) -> tuple[np.ndarray, np.ndarray]:
+    """Unknowns and rates of full matrices at the start of the segment; λ changes at no rate."""
+    ground = ground_acceleration(at.forcing, at.forcing.start)
+    found = rates(at.scene, at.resting, ground, at.u, at.v, at.z)
+    # Where forces are not unique, those of the independent contacts push the bodies alike.
+    pushed = d.all_gaps[at.resting].T @ found.contact_force
+    contact = np.linalg.lstsq(d.W.T, pushed, rcond=None)[0]
+    np.testing.assert_allclose(d.W.T @ contact, pushed, atol=TOLERANCE)
+    y = np.concatenate((at.u, at.v, at.z, contact, np.zeros(LEDGER)))
+    still = np.zeros(contact.size)
+    return y, np.concatenate((at.v, found.acceleration, found.z_rate, still, found.ledger))
 
 
-@pytest.mark.parametrize("squeezed", [False, True])
-def test_observed_values(squeezed: bool) -> None:
-    rng = np.random.default_rng(31)
-    for _ in range(40):
-        at = random_instant(rng, squeezed=squeezed)
-        d = _descriptor(at)
-        _, rate, observed = _consistent(at, d)
-        ground = ground_acceleration(at.forcing, at.forcing.start)
-        expected = rates(at.scene, at.resting, ground, at.u, at.v, at.z)
-        np.testing.assert_allclose(observed.a, expected.acceleration, atol=TOLERANCE)
-        np.testing.assert_allclose(
-            observed.acceleration[0], expected.acceleration + ground, atol=TOLERANCE
-        )
-        np.testing.assert_allclose(observed.z[1], expected.z_rate, atol=TOLERANCE)
-        np.testing.assert_allclose(rate[d.ledger :], expected.ledger, atol=TOLERANCE)
-        assert_contacts(observed, at, expected, squeezed)
-
-
-@pytest.mark.parametrize("squeezed", [False, True])
-def test_observed_rates_by_central_differences(squeezed: bool) -> None:
-    # Along the exact tangent, a second difference errs by h² y'' / 6 of values of order
-    # ten and rates up to 20/s: 1e-10 · 20³ · 10; rounding 1e-15 · 10 / h.
-    rng, h = np.random.default_rng(32), 1e-5
-    for _ in range(30):
-        at = random_instant(rng, squeezed=squeezed)
-        d = _descriptor(at)
-        y, rate, observed = _consistent(at, d)
-        sides = []
-        for tau in (-h, h):
-            moved, other = y + tau * rate, blank_observed(*at.model.counts)
-            # Positions need the second order: their own rates are differenced too.
-            moved[: at.u.size] += 0.5 * tau**2 * observed.a
-            problem = DescriptorProblem(d, at.forcing, NO_FRAME)
-            solve_contact_forces(tau, moved, problem)
-            observe_descriptor(tau, moved, problem, np.zeros(d.size), other)
-            sides.append(other)
-        for name in ("force", "acceleration", "contact_force", "z", "shear"):
-            low, high, slope = (getattr(s, name) for s in (*sides, observed))
-            if name == "acceleration" and at.clusters.count == 0:
-                continue
-            difference = (high[0] - low[0]) / (2.0 * h)
-            np.testing.assert_allclose(difference, slope[1], rtol=1e-6, atol=1e-5, err_msg=name)
+def _all_rows(
+    y: np.ndarray, rate: np.ndarray, out: np.ndarray, problem: DescriptorProblem, at: Instant
+) -> None:
+    """`full_residual` at the start of the segment."""
+    mode: Any = SimpleNamespace(system=at.system, bodies=at.bodies)
+    with by_python():
+        full_residual(0.0, y, rate, out, problem, mode)
 
 
 @pytest.mark.parametrize("squeezed", [False, True])
@@ -95,16 +65,16 @@ def test_the_residual_vanishes_on_the_motion(squeezed: bool, frame: np.ndarray) 
     for _ in range(30):
         at = random_instant(rng, squeezed=squeezed)
         d = _descriptor(at)
-        y, rate, _ = _consistent(at, d)
+        y, rate = _on_the_motion(at, d)
         count, t = at.u.size, at.forcing.start
-        problem = DescriptorProblem(d, at.forcing, frame)
+        problem = DescriptorProblem(d, at.forcing, frame, np.zeros(2))
         to_moving_frame(problem, 0.0, 1.0, y)
         if frame.size:
             _, s_rate, s_second = frame_motion(frame, t)
             rate[:count] += d.framed * s_rate
             rate[count : 2 * count] += d.framed * s_second
         out = np.full(d.size, np.nan)
-        residual(0.0, y, rate, out, problem)
+        _all_rows(y, rate, out, problem, at)
         np.testing.assert_allclose(out, 0.0, atol=TOLERANCE)
 
 
@@ -124,15 +94,17 @@ def test_jacobian_by_central_differences(frame: np.ndarray) -> None:
         if (np.abs(x_rate[hysteretic]) < 0.01).any() or (np.abs(at.z) < 0.01).any():
             continue
         J, sides = np.full((d.size, d.size), np.nan), np.empty((2, d.size))
-        problem = DescriptorProblem(d, at.forcing, frame)
+        # The ledger is counted of bodies that move together as one.
+        rows = d.ledger if d.opening.size else d.size
+        problem = DescriptorProblem(d, at.forcing, frame, np.zeros(2))
         jacobian(0.0, y, cj, J, problem)
         for i in range(d.size):
             step = np.zeros(d.size)
             step[i] = h
-            residual(0.0, y + step, rate + cj * step, sides[1], problem)
-            residual(0.0, y - step, rate - cj * step, sides[0], problem)
+            _all_rows(y + step, rate + cj * step, sides[1], problem, at)
+            _all_rows(y - step, rate - cj * step, sides[0], problem, at)
             np.testing.assert_allclose(
-                J[:, i], (sides[1] - sides[0]) / (2.0 * h), rtol=1e-5, atol=1e-4
+                J[:rows, i], (sides[1] - sides[0])[:rows] / (2.0 * h), rtol=1e-5, atol=1e-4
             )
 
 
@@ -146,6 +118,24 @@ def test_the_gaps_determine_the_dependent_bodies() -> None:
             assert np.unique(d.dependent).size == d.opening.size
             if d.opening.size:
                 assert abs(np.linalg.det(d.W[:, d.dependent])) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_the_loop_has_the_momentum_of_the_bodies_and_no_gaps() -> None:
+    rng = np.random.default_rng(36)
+    for squeezed in (False, True):
+        at = random_instant(rng, squeezed=squeezed)
+        d, state, u = _descriptor(at), np.empty(at.system.size), np.empty((2, at.u.size))
+        y, _ = _on_the_motion(at, d)
+        to_clusters(y, 1.0, at.system, at.bodies, state)
+        np.testing.assert_allclose(state[: at.y.size - LEDGER], at.y[:-LEDGER], atol=1e-14)
+        y[: 2 * at.u.size] += 1e-3 * rng.normal(size=2 * at.u.size)
+        to_clusters(y, 1.0, at.system, at.bodies, state)
+        bodies_motion(state, at.bodies, *u)
+        assert np.abs(d.opening + d.W @ u[0]).max(initial=0.0) < 1e-14
+        moves = at.clusters.of_body >= 0
+        for part in (0, 1):
+            own = y[part * at.u.size :][: at.u.size]
+            assert d.mass[moves] @ (u[part] - own)[moves] == pytest.approx(0.0, abs=1e-13)
 
 
 def test_constraint_errors() -> None:

@@ -18,7 +18,7 @@ from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.sundials import library
 from eventpound.solvers.sundials.memory import BANDED_FROM, CvodeMemory, MemoryLayout
-from eventpound.solvers.sundials.python_cvode import WrappedCvode
+from eventpound.solvers.sundials.wrapped import WrappedCvode
 from tests.solvers.scenes import pounding_pair
 
 if library.library() is None:
@@ -114,8 +114,7 @@ def test_a_failure_keeps_what_was_computed(way: str) -> None:
 
     def spoil(t: float) -> None:
         if t > 5.0:
-            system = chosen._given.system if way == "direct" else chosen._arguments[0]
-            system.stiffness[:] = np.nan
+            chosen._segment.system.stiffness[:] = np.nan
 
     loop.event_run.task = replace(task, progress=spoil)
     with pytest.raises(ComputationError, match="CVODE could not continue") as caught:

@@ -24,7 +24,7 @@ from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.reversals import first_reversal, may_reverse, take_directions
-from eventpound.solvers.sundials.python_cvode import WrappedCvode
+from eventpound.solvers.sundials.wrapped import WrappedCvode
 from eventpound.tolerances import HELD_BELOW, REVERSAL_WITHIN
 from tests.mechanics.dense import memory_of
 from tests.mechanics.scenes import clusters_of, reduced

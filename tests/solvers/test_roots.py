@@ -49,7 +49,7 @@ from tests.solvers.scenes import pounding_pair
 if library.library() is None:
     pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
 
-from eventpound.solvers.sundials import integrators
+from eventpound.solvers.sundials import integrators, wrapped
 from eventpound.solvers.sundials.compiled_cvode import DirectCvode
 from eventpound.solvers.sundials.loop import ROOT_RETURN, SAME_ROOT, steps_to_roots
 
@@ -307,7 +307,7 @@ def test_through_scikit_sundae_every_search_has_a_log_of_its_own(monkeypatch, so
     monkeypatch.setattr(library, "library", lambda: None)
     monkeypatch.setattr(library, "ida_library", lambda: None)
     logged: list[int] = []
-    original = integrators.Wrapped._step
+    original = wrapped.Wrapped._step
 
     def watched(self: Any, stop: float) -> Any:
         step = self._present.step
@@ -321,7 +321,7 @@ def test_through_scikit_sundae_every_search_has_a_log_of_its_own(monkeypatch, so
             patched.setattr(self, "_present", type("Present", (), {"step": staticmethod(counted)}))
             return original(self, stop)
 
-    monkeypatch.setattr(integrators.Wrapped, "_step", watched)
+    monkeypatch.setattr(wrapped.Wrapped, "_step", watched)
     bodies, wall = (Body("b", 1.0, 0.0, -1.0),), Contact("wall", BARRIER, "b", 0.5, 1.0)
     springs = (Spring("k", (GROUND, "b"), Linear(1.0)),)
     response = response_of(

@@ -12,11 +12,8 @@ import numpy as np
 import pytest
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.clusters import form_clusters_of_few
-from eventpound.mechanics.descriptor import Descriptor, descriptor_form
-from eventpound.mechanics.descriptor_motion import constraint_errors, onto_constraints
 from eventpound.mechanics.model import assemble
-from eventpound.scene import GROUND, Body, Contact, Linear, Scene, Spring
+from eventpound.scene import GROUND, Body, Linear, Scene, Spring
 from eventpound.simulation import response_of
 from eventpound.solvers import ida, solver_named
 from eventpound.solvers.base import Recording, Task
@@ -24,8 +21,7 @@ from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.sundials import library
-from eventpound.solvers.sundials.python_cvode import WrappedCvode
-from eventpound.solvers.sundials.python_ida import WrappedIda
+from eventpound.solvers.sundials.wrapped import WrappedCvode, WrappedIda
 from tests.reference.comparison import compare
 from tests.reference.problems import load
 from tests.solvers.accuracy import allowed
@@ -96,31 +92,6 @@ def test_ida_gives_the_same_both_ways(monkeypatch) -> None:
     assert theirs.energy is not None
     assert theirs.energy.closure == pytest.approx(0.0, abs=allowed(1.0, rtol))
     assert theirs.work.steps == pytest.approx(ours.work.steps, rel=0.3)
-
-
-def _resting_chain() -> Descriptor:
-    """Three bodies that lie on each other, the last with springs to both neighbours' grounds."""
-    bodies = tuple(Body(name, mass) for name, mass in (("a", 1.0), ("b", 2.5), ("c", 0.3)))
-    contacts = (Contact("ab", "a", "b", 0.1, 0.5), Contact("bc", "b", "c", 0.2, 0.5))
-    model = assemble(Scene(bodies, (Spring("k", (GROUND, "c"), Linear(2.0)),), (), contacts))
-    every = np.ones(2, bool)
-    ends = model.left, model.right, model.gap
-    clusters = form_clusters_of_few(*ends, every, every, model.mass, model.weights)
-    return descriptor_form(model, clusters, np.zeros(1, np.int64), ledger=0)
-
-
-def test_onto_constraints_closes_gaps_and_keeps_the_momentum() -> None:
-    d = _resting_chain()
-    y = np.random.default_rng(5).normal(size=d.size)
-    before = y.copy()
-    onto_constraints(d, y)
-    assert max(constraint_errors(d, y)) < 1e-14
-    for part in (slice(0, 3), slice(3, 6)):
-        assert d.mass @ y[part] == pytest.approx(d.mass @ before[part], rel=1e-14)
-    # What is closed already stays where it is.
-    again = y.copy()
-    onto_constraints(d, again)
-    np.testing.assert_allclose(again, y, rtol=1e-14, atol=1e-15)
 
 
 def test_drift_of_ida_is_a_part_of_the_tolerance(out_of_reach) -> None:

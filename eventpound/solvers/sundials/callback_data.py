@@ -1,9 +1,9 @@
-"""What the compiled callbacks and steps of a SUNDIALS object are handed.
+"""What the callbacks and steps of a SUNDIALS object are handed.
 
-A callback gets one address: that of the table of a group (`eventpound.numerics.by_address`),
-which stays where it is while the mode, the forcing and the moving frame in it change. Where
-SUNDIALS finds events, the `Roots` of its root functions (`eventpound.solvers.events.roots`) are
-part of it.
+A compiled callback gets one address: that of the table of a group
+(`eventpound.numerics.by_address`), which stays where it is while the mode, the forcing and the
+moving frame in it change. Where SUNDIALS finds events, the `Roots` of its root functions
+(`eventpound.solvers.events.roots`) are part of it.
 """
 
 from __future__ import annotations
@@ -14,10 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import types
 
+from eventpound.mechanics.ground_frame import to_frame
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_of
-from eventpound.mechanics.observables import Observed, blank_observed
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.mechanics.observables import Bodies, Observed, blank_observed, observe_motion
+from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.by_address import change_group, type_by_address, with_address
 from eventpound.numerics.compiled import callback, in_python, kernel
 from eventpound.solvers.events.event_bounds import Watched
@@ -36,18 +38,33 @@ _FALLING, _RISING = -1, 1
 class Roots(NamedTuple):
     """Root functions of a mode, n of them; with an address.
 
-    fresh (1,): whether they are still to be asked for the first time. forces: whether contact
-    forces or rates of x' are among them. watched: of the `Mode`. noise, lifted (n,), pairs (n, 2):
-    as `eventpound.solvers.events.roots` has them. observed: scratch, with an address.
+    fresh (1,): whether they are still to be asked for the first time. watched: of the `Mode`.
+    noise, lifted (n,), pairs (n, 2): as `eventpound.solvers.events.roots` has them. observed:
+    scratch, with an address.
     """
 
     fresh: Bools
-    forces: bool
     watched: Watched
     noise: Floats
     lifted: Floats
     pairs: Floats
     observed: Observed
+
+
+class SegmentData(NamedTuple):
+    """The segment that CVODE or IDA integrates.
+
+    calls (2,): of the right-hand side or residual, those for Jacobians included; of Jacobians.
+    system: of the mode, whose directions of links are the segment's own; it, `bodies` and `roots`
+    have addresses. frame: the moving frame.
+    """
+
+    calls: Ints
+    system: Reduced
+    bodies: Bodies
+    forcing: Forcing
+    frame: Floats
+    roots: Roots
 
 
 _CALLBACKS: dict[tuple[Any, Any], Any] = {}
@@ -83,7 +100,6 @@ def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int
     return with_address(
         Roots(
             np.zeros(1, np.bool_),
-            False,
             Watched(gaps, forces, False, least, most, low, high, turns, 0.0, at),
             np.zeros(0),
             np.zeros(0),
@@ -135,9 +151,8 @@ class RootFunctions:
         watched, noise = mode.watched, noise_of(mode.watched, self._length, self._time)
         self._mode, fresh, observed = mode, self.present.fresh, self.present.observed
         fresh[0] = True
-        forces = bool(watched.unlocked.any() or watched.turns.any())
         lifted, pairs = np.zeros(noise.size), np.zeros((noise.size, 2))
-        roots = Roots(fresh, forces, watched, noise, lifted, pairs, observed)
+        roots = Roots(fresh, watched, noise, lifted, pairs, observed)
         change_group(self.present, roots)
 
     def located(self) -> tuple[Bools, Bools, Bools]:
@@ -146,8 +161,11 @@ class RootFunctions:
 
 
 @kernel
-def evaluate(roots: Roots, out: Floats) -> None:
-    """The functions (2 n,) of what has been observed into `roots.observed`."""
+def put_roots(tau: float, y: Floats, segment: SegmentData, out: Floats) -> None:
+    """Fill `out` (2 n,) with the functions of a state in the frame, which is overwritten."""
+    system, forcing, roots = segment.system, segment.forcing, segment.roots
+    to_frame(segment.frame, forcing.start + tau, -1.0, system.iq, system.iv, y)
+    observe_motion(tau, y, np.empty(y.size), system, segment.bodies, forcing, roots.observed)
     pairs = out.reshape(roots.noise.size, 2)
     values_and_rates(roots.observed, roots.watched, pairs)
     if roots.fresh[0]:

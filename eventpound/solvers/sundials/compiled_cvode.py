@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.mechanics.ground_frame import to_frame
-from eventpound.mechanics.observables import Bodies, Observed, observe
-from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
 from eventpound.numerics.by_address import with_address
@@ -18,7 +17,7 @@ from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.reversals import take_directions
 from eventpound.solvers.events.step_check import Examination, examine, rate_at
-from eventpound.solvers.sundials.callback_data import Roots, address_of
+from eventpound.solvers.sundials.callback_data import Roots, SegmentData, address_of, put_roots
 from eventpound.solvers.sundials.integrators import Direct
 from eventpound.solvers.sundials.library import (
     ONE_STEP,
@@ -39,10 +38,10 @@ from eventpound.solvers.sundials.loop import (
     put_state,
     reversal_in,
     root_at,
+    shown,
     step_to,
 )
 from eventpound.solvers.sundials.memory import CvodeMemory, MemoryLayout, layout
-from eventpound.solvers.sundials.root_values import cluster_roots
 
 if library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.
@@ -52,22 +51,6 @@ REACHED, TURNED = 0, 1
 """Places of `CvodeHandles.reached`: where CVODE is, and where a link has reversed last (s)."""
 NEVER = -1.0
 """No time: no link has."""
-
-
-class CvodeData(NamedTuple):
-    """What CVODE's callbacks are handed, with an address.
-
-    calls (2,): of the right-hand side; Jacobians. system: of the mode, whose directions of
-    links are the segment's own; it, `bodies` and `roots` have addresses. frame: the
-    moving frame.
-    """
-
-    calls: Ints
-    system: Reduced
-    bodies: Bodies
-    forcing: Forcing
-    frame: Floats
-    roots: Roots
 
 
 class CvodeHandles(NamedTuple):
@@ -81,12 +64,12 @@ class CvodeHandles(NamedTuple):
     vector: int
     reached: Floats
     interpolated: int
-    given: CvodeData
+    given: SegmentData
     rtol: float
     spent: Ints
 
 
-def right_hand_side(tau: float, y: int, rate: int, given: CvodeData) -> int:
+def right_hand_side(tau: float, y: int, rate: int, given: SegmentData) -> int:
     """CVODE's callback, a `CVRhsFn`."""
     given.calls[0] += 1
     state = array_at(array_pointer(y), given.system.size, np.float64)
@@ -157,13 +140,8 @@ def _check(
 
 @kernel
 def _shown(of: tuple[CvodeHandles, Examination], tau: float) -> Observed:
-    """The motion at `tau` (s) of the last step, as it is observed."""
-    handles, e = of
-    system, y = e.dynamics.system, np.empty(e.dynamics.system.size)
-    put_state(_put_inner, handles, tau, e, y)
-    # Nothing in a line depends on rates: any will do.
-    observe(tau, y, e.rate[0], system, e.dynamics.bodies, e.forcing, e.observations[4])
-    return e.observations[4]
+    """`shown`."""
+    return shown(_put_inner, of, tau)
 
 
 @kernel
@@ -214,18 +192,10 @@ def _put_reached(handles: CvodeHandles, tau: float, k: int, y: Floats) -> None:
     copy_numbers(array_at(array_pointer(handles.vector), y.size, np.float64), y)
 
 
-@kernel
-def _roots_at(tau: float, y: Floats, given: CvodeData, out: Floats) -> None:
-    system, forcing = given.system, given.forcing
-    state = y.copy()
-    to_frame(given.frame, forcing.start + tau, -1.0, system.iq, system.iv, state)
-    cluster_roots(tau, state, system, given.bodies, forcing, given.roots, out)
-
-
-def root_functions(tau: float, y: int, out: int, given: CvodeData) -> int:
+def root_functions(tau: float, y: int, out: int, given: SegmentData) -> int:
     """CVODE's callback, a `CVRootFn`."""
     state = array_at(array_pointer(y), given.system.size, np.float64)
-    _roots_at(tau, state, given, array_at(out, 2 * given.roots.noise.size, np.float64))
+    put_roots(tau, state.copy(), given, array_at(out, 2 * given.roots.noise.size, np.float64))
     return 0
 
 
@@ -234,7 +204,7 @@ def _values(handles: CvodeHandles, tau: float) -> Roots:
     """Root functions at `tau` (s), where CVODE is."""
     given, roots = handles.given, handles.given.roots
     state = array_at(array_pointer(handles.vector), given.system.size, np.float64)
-    _roots_at(tau, state, given, roots.pairs.reshape(2 * roots.noise.size))
+    put_roots(tau, state.copy(), given, roots.pairs.reshape(2 * roots.noise.size))
     return roots
 
 
@@ -275,13 +245,12 @@ class DirectCvode(Direct):
         return CVMESSAGES[flag]
 
     def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
-        mode, forcing, frame, roots = self._mode, self._forcing, self._frame, self._present_roots
-        system = mode.directed
-        system.direction[:] = 0.0
-        self._hand(CvodeData(self._calls, system, mode.bodies, forcing, frame, roots))
-        served = id(mode), frame.shape[1] > 0
+        segment = self._segment
+        self._hand(segment)
+        served = id(self._mode), segment.frame.shape[1] > 0
         if served not in self._served:
-            self._served[served] = self._memory_for(layout(system, frame, self.rtol, atol))
+            plan = layout(segment.system, segment.frame, self.rtol, atol)
+            self._served[served] = self._memory_for(plan)
         memory, self._handles = self._served[served]
         # The first step begins anew.
         self._handles.reached[TURNED] = tau

@@ -9,12 +9,9 @@ import numpy as np
 from eventpound.mechanics.descriptor_motion import (
     DescriptorProblem,
     jacobian,
-    relative_to_ground,
-    residual,
-    to_moving_frame,
 )
 from eventpound.mechanics.observables import Observed
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.by_address import with_address
 from eventpound.numerics.compiled import kernel
@@ -22,14 +19,11 @@ from eventpound.numerics.compiled.recipe import EVERY_STEP
 from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import Examination
-from eventpound.solvers.sundials.callback_data import Roots, address_of
+from eventpound.solvers.sundials.callback_data import Roots, SegmentData, address_of, put_roots
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import (
-    Followed,
-    begin_descriptor,
     examine_descriptor,
-    from_clusters,
-    observe_interpolated,
+    full_residual,
     to_clusters,
 )
 from eventpound.solvers.sundials.integrators import Direct, InDescriptorForm
@@ -45,9 +39,8 @@ from eventpound.solvers.sundials.library import (
     ida_solve,
     matrix_data,
 )
-from eventpound.solvers.sundials.loop import Numbers, carry_on, polynomial, root_at, step_to
-from eventpound.solvers.sundials.memory import IdaMemory, Tolerances
-from eventpound.solvers.sundials.root_values import descriptor_roots
+from eventpound.solvers.sundials.loop import Numbers, carry_on, polynomial, root_at, shown, step_to
+from eventpound.solvers.sundials.memory import IdaMemory
 
 if ida_library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.
@@ -55,21 +48,18 @@ if ida_library() is None:
 
 
 class IdaData(NamedTuple):
-    """What IDA's callbacks are handed, with an address.
+    """What IDA's callbacks are handed, with an address, as `problem` and `mode` have."""
 
-    calls (2,): of the residual and of its Jacobian. problem, roots: with addresses.
-    """
-
-    calls: Ints
+    segment: SegmentData
     problem: DescriptorProblem
-    roots: Roots
+    mode: Dynamics
 
 
 class IdaHandles(NamedTuple):
-    """Addresses of an IDA object and its vectors; where times and drifts are put.
+    """Addresses of an IDA object and its vectors.
 
-    interpolated: a vector for unknowns. given: what its callbacks are handed. mode: the
-    loop's. reached (1,): where IDA is (s). followed: whose steps. time: the scene's own T (s).
+    interpolated: a vector for unknowns. given: what its callbacks are handed. reached (1,): where
+    IDA is (s).
     """
 
     memory: int
@@ -77,22 +67,20 @@ class IdaHandles(NamedTuple):
     rate_vector: int
     interpolated: int
     given: IdaData
-    mode: Dynamics
     reached: Floats
-    followed: Followed
-    time: float
 
 
 def residual_function(tau: float, y: int, rate: int, out: int, given: IdaData) -> int:
     """IDA's callback, an `IDAResFn`."""
-    given.calls[0] += 1
+    given.segment.calls[0] += 1
     problem, size = given.problem, given.problem.d.size
-    residual(
+    full_residual(
         tau,
         array_at(array_pointer(y), size, np.float64),
         array_at(array_pointer(rate), size, np.float64),
         array_at(array_pointer(out), size, np.float64),
         problem,
+        given.mode,
     )
     return 0
 
@@ -110,7 +98,7 @@ def jacobian_function(
     third: int,
 ) -> int:
     """IDA's callback, an `IDALsJacFn`; its matrix is stored column by column."""
-    given.calls[1] += 1
+    given.segment.calls[1] += 1
     problem, size = given.problem, given.problem.d.size
     columns = array_at(matrix_data(matrix), (size, size), np.float64)
     y_values = array_at(array_pointer(y), size, np.float64)
@@ -158,36 +146,14 @@ def _check(
     handles: IdaHandles, start: float, end: float, first: int, allowed: float, e: Examination
 ) -> tuple[int, float]:
     """`examine_descriptor`."""
-    problem = handles.given.problem
-    # A copy: the vector is IDA's own.
-    y = relative_to_ground(end, _unknowns(handles.vector, handles), problem)
-    return examine_descriptor(start, end, first, allowed, y, e, handles.followed)
+    problem, y = handles.given.problem, _unknowns(handles.vector, handles)
+    return examine_descriptor(start, end, first, allowed, y, problem, e)
 
 
 @kernel
 def _shown(of: tuple[IdaHandles, Examination], tau: float) -> Observed:
-    """The motion at `tau` (s) of the last step, as it is observed."""
-    handles, e = of
-    problem = handles.given.problem
-    ida_get_dky(handles.memory, tau, 0, handles.interpolated)
-    y = _unknowns(handles.interpolated, handles)
-    to_moving_frame(problem, tau, -1.0, y)
-    observe_interpolated(tau, y, problem, e.observations[4])
-    return e.observations[4]
-
-
-@kernel
-def begin(
-    handles: IdaHandles, tau: float, clusters: Floats, tolerances: Tolerances, scratch: Observed
-) -> float:
-    """`begin_descriptor` of the unknowns and their rates, from the loop's state.
-
-    `scratch` is overwritten.
-    """
-    problem, mode = handles.given.problem, handles.mode
-    y, rate = _unknowns(handles.vector, handles), _unknowns(handles.rate_vector, handles)
-    from_clusters(clusters, mode.system, mode.bodies, y)
-    return begin_descriptor(tau, y, rate, problem, tolerances, handles.time, scratch)
+    """`shown`."""
+    return shown(_put_inner, of, tau)
 
 
 @kernel
@@ -195,13 +161,13 @@ def derivatives(handles: IdaHandles, t: float) -> Floats:
     """`polynomial` of IDA; the state that it interpolates is overwritten."""
     order = np.zeros(1, np.int32)
     ida_last_order(handles.memory, order.ctypes.data)
-    return polynomial(_put_inner, handles, order[0], t, handles.mode.system.size)
+    return polynomial(_put_inner, handles, order[0], t, handles.given.segment.system.size)
 
 
 @kernel
 def _put_inner(handles: IdaHandles, tau: float, k: int, clusters: Floats) -> None:
     ida_get_dky(handles.memory, tau, k, handles.interpolated)
-    y, mode = _unknowns(handles.interpolated, handles), handles.mode
+    y, mode = _unknowns(handles.interpolated, handles), handles.given.mode
     # Offsets in clusters are constants, so a derivative has none.
     to_clusters(y, 1.0 if k == 0 else 0.0, mode.system, mode.bodies, clusters)
 
@@ -212,21 +178,26 @@ def _unknowns(vector: int, handles: IdaHandles) -> Floats:
     return array_at(array_pointer(vector), handles.given.problem.d.size, np.float64)
 
 
+@kernel
+def _put_roots(tau: float, y: Floats, given: IdaData, out: Floats) -> None:
+    mode, state = given.mode, np.empty(given.mode.system.size)
+    to_clusters(y, 1.0, mode.system, mode.bodies, state)
+    put_roots(tau, state, given.segment, out)
+
+
 def root_functions(tau: float, y: int, rate: int, out: int, given: IdaData) -> int:
     """IDA's callback, an `IDARootFn`."""
-    size, count = given.problem.d.size, given.roots.noise.size
-    state = relative_to_ground(tau, array_at(array_pointer(y), size, np.float64), given.problem)
-    functions = array_at(out, 2 * count, np.float64)
-    descriptor_roots(tau, state, given.problem, given.roots, functions)
+    functions = array_at(out, 2 * given.segment.roots.noise.size, np.float64)
+    _put_roots(tau, array_at(array_pointer(y), given.problem.d.size, np.float64), given, functions)
     return 0
 
 
 @kernel
 def _values(handles: IdaHandles, tau: float) -> Roots:
     """Root functions at `tau` (s), where IDA is."""
-    given, roots = handles.given, handles.given.roots
-    y = relative_to_ground(tau, _unknowns(handles.vector, handles), given.problem)
-    descriptor_roots(tau, y, given.problem, roots, roots.pairs.reshape(2 * roots.noise.size))
+    given, roots = handles.given, handles.given.segment.roots
+    out = roots.pairs.reshape(2 * roots.noise.size)
+    _put_roots(tau, _unknowns(handles.vector, handles), given, out)
     return roots
 
 
@@ -263,29 +234,18 @@ class DirectIda(InDescriptorForm, Direct):
 
     def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
         own = self._own
-        self._hand(IdaData(self._calls, self._problem, self._present_roots))
+        self._hand(IdaData(self._segment, self._problem, self._mode.dynamics))
         memory = self._memory = self._memory_for(own)
-        self._handles = with_address(
-            IdaHandles(
-                memory.address,
-                memory.vector,
-                memory.rate_vector,
-                memory.interpolated,
-                self._given,
-                self._mode.dynamics,
-                np.zeros(1),
-                self._followed,
-                self.scales.time,
-            )
-        )
-        tolerances = own.local_tolerances(self._frame)
-        memory.start(tau, begin(self._handles, tau, y, tolerances, self._scratch))
+        vectors = memory.vector, memory.rate_vector, memory.interpolated
+        handles = IdaHandles(memory.address, *vectors, self._given, np.zeros(1))
+        self._handles = with_address(handles)
+        memory.start(tau, self._first_step(tau, y, memory.unknowns, memory.rates))
         if self._roots is not None:
             callback = address_of(root_functions, self._given, 3)
             memory.find_roots(callback, self._roots.directions)
 
     def _memory_for(self, own: DescriptorMode) -> IdaMemory:
-        rtol, atol = own.local_tolerances(self._frame)
+        rtol, atol = own.local_tolerances(self._segment.frame)
         key = rtol, atol.tobytes(), own.algebraic.tobytes()
         if key not in self._memories:
             self._memories[key] = IdaMemory(

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.mechanics.ground_frame import to_frame
+from eventpound.mechanics.observables import Observed, observe
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.dense import Dense
@@ -67,8 +68,7 @@ def carry_on(
     check : callable
         Its examination: `eventpound.solvers.events.step_check.examine`.
     show : callable
-        The motion at a time of the step (s), as it is observed; asked for where nothing happened
-        in a step with an output time.
+        `shown`; asked for where nothing happened in a step with an output time.
     handles
         What these are handed.
     tau, first, excess, bounds, e
@@ -90,6 +90,19 @@ def carry_on(
             return flag, first, start, end, verdict, excess, steps
         # The rows of both ends take turns.
         start, first = end, 1 - first
+
+
+@kernel
+def shown(
+    put_inner: Callable[[Any, float, int, Floats], None], of: tuple[Any, Examination], tau: float
+) -> Observed:
+    """The motion at `tau` (s) of the last step, as it is observed; `of` are handles and `e`."""
+    handles, e = of
+    system, y = e.dynamics.system, np.empty(e.dynamics.system.size)
+    put_state(put_inner, handles, tau, e, y)
+    # Nothing in a line depends on rates: any will do.
+    observe(tau, y, e.rate[0], system, e.dynamics.bodies, e.forcing, e.observations[4])
+    return e.observations[4]
 
 
 @scalar_kernel

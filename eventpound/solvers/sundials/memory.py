@@ -239,6 +239,8 @@ class IdaMemory(_Memory):
     address, vector, rate_vector, interpolated : int
         The object, the vectors of its unknowns and their rates, and another to
         interpolate into.
+    unknowns, rates : ndarray, shape (size,)
+        What stands in the first two vectors.
     """
 
     prefix = "IDA"
@@ -257,7 +259,8 @@ class IdaMemory(_Memory):
         size = atol.size
         super().__init__(common, ida, ida.IDACreate, size, 5)
         self.vector, self.rate_vector, self.interpolated, tolerances, differential = self._vectors
-        self._values(self.vector, size)[:] = self._values(self.rate_vector, size)[:] = 0.0
+        self.unknowns, self.rates = (self._values(each, size) for each in self._vectors[:2])
+        self.unknowns[:] = self.rates[:] = 0.0
         self._values(tolerances, size)[:] = atol
         self._values(differential, size)[:] = np.where(algebraic, 0.0, 1.0)
         self._set_up(
