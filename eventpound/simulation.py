@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -50,19 +50,15 @@ def response_of(
     solver: str | Solver | None = None,
     rtol: float | str | None = None,
     *,
-    duration: float | str | None = None,
-    output_step: float | str | None = None,
-    energy: bool | None = None,
-    events: Sequence[str] | None = None,
     settings: Mapping[str, object] | None = None,
-    **of_task: Any,
+    progress: Reached | None = None,
+    max_steps: int | None = None,
+    **given: object,
 ) -> Response:
-    """Compute how a scene moves; `eventpound.simulate` without an estimate of the errors."""
+    """`eventpound.simulate` without an estimate of the errors; `given` are keys of ``[run]``."""
     check_case(case)
-    run, options = options_of(
-        case, duration=duration, output_step=output_step, energy=energy, events=events
-    )
-    ready = made_ready(case, run, options, solver, rtol, settings, **of_task)
+    run, options = options_of(case, **given)
+    ready = made_ready(case, run, options, solver, rtol, settings, progress, max_steps)
     return ready.run({}, ready.task)
 
 
