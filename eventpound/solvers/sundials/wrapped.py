@@ -45,8 +45,8 @@ _FAILED = -1
 class Wrapped(Duties):
     """What CVODE and IDA have in common through scikit-sundae.
 
-    Where its own root finder finds events, each start is one of a new object: scikit-sundae keeps
-    the log of roots on the function that it is given, for good.
+    Each start is one of a new object: scikit-sundae keeps the log of roots on the function that it
+    is given, for good, and the length of a first step belongs to an object.
 
     Attributes
     ----------
@@ -196,7 +196,6 @@ class WrappedCvode(Wrapped):
         super().__init__()
         self.rtol = rtol
         self.method = method
-        self._objects: dict[Any, Any] = {}
         self._turned = False
 
     def _state_of(self, y: Floats) -> Floats:
@@ -206,29 +205,23 @@ class WrappedCvode(Wrapped):
         self._calls[0] += 1
         rate_at(tau, y, rate, self._segment.system, self._segment.forcing, self._segment.frame)
 
-    def _object(self, atol: Floats) -> Any:
+    def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
         from sksundae.cvode import CVODE
 
         def functions(tau: float, y: Floats, out: Floats) -> None:
             self._functions(tau, y, out)
 
         plan = layout(self._mode.system, self._segment.frame, self.rtol, atol)
-        if plan.key not in self._objects or self.finds_events:
-            band = plan.band
-            solver = {"linsolver": "band", "lband": band, "uband": band} if band else {}
-            self._objects[plan.key] = CVODE(
-                self._rhs,
-                method=self.method,
-                rtol=plan.rtol,
-                atol=plan.atol,
-                max_num_steps=MOST_STEPS,
-                **solver,
-                **self._root_options(functions),
-            )
-        return self._objects[plan.key]
-
-    def _begin(self, tau: float, y: Floats, atol: Floats) -> None:
-        self._present = self._object(atol)
+        band = {"linsolver": "band", "lband": plan.band, "uband": plan.band} if plan.band else {}
+        self._present = CVODE(
+            self._rhs,
+            method=self.method,
+            rtol=plan.rtol,
+            atol=plan.atol,
+            max_num_steps=MOST_STEPS,
+            **band,
+            **self._root_options(functions),
+        )
         # The first step begins anew.
         self._turned = True
 
@@ -278,7 +271,6 @@ class WrappedIda(InDescriptorForm, Wrapped):
       dependent bodies stay in it, as Newton's iteration must not leave them out;
     * without a matrix for each leading coefficient that iteration leaves gaps and gap rates
       open by a part of a step's tolerance;
-    * the length of a first step belongs to an object: each start makes a new one;
     * a step may be shortened ten times, not forty.
     """
 
