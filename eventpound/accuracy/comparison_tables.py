@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.quantities import FINAL, PEAKS
 from eventpound.accuracy.work_precision import Judged
-from eventpound.results.cells import Cells, lines_of
-from eventpound.results.tables import table_csv
+from eventpound.results.tables import Cells, lines_of, table_csv
 
 if TYPE_CHECKING:
     import pandas as pd

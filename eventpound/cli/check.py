@@ -63,8 +63,8 @@ def _check(options: Options) -> int:
 
 def _tables(inputs: Mapping[str, Any]) -> Iterator[str]:
     """Bodies, what joins them, and modes, to be read."""
-    from eventpound.results.cells import lines_of
     from eventpound.results.input_tables import input_tables
+    from eventpound.results.tables import lines_of
 
     for table in input_tables(inputs):
         yield ""

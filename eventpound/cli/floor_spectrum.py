@@ -34,7 +34,7 @@ def add_floor_spectrum(commands: Commands) -> None:
 
 def _floor_spectrum(options: Options) -> int:
     from eventpound.case.run_options import Way, warn_left_out
-    from eventpound.report.spectrum_figure import floor_figure
+    from eventpound.report.record_figure import floor_figure
     from eventpound.report.style import on_paper
     from eventpound.results import check_writable
     from eventpound.results.tables import table_csv

@@ -41,7 +41,7 @@ def write_spectra(
     out : Path
         Where they go.
     """
-    from eventpound.report.spectrum_figure import spectrum_figure
+    from eventpound.report.record_figure import spectrum_figure
     from eventpound.report.style import png
     from eventpound.results import write_together
     from eventpound.results.tables import table_csv

@@ -188,7 +188,7 @@ def _of_study(
     from eventpound.report.design_study import study_cells, study_sheets, study_workbook
     from eventpound.report.design_tables import capacity_words
     from eventpound.report.many_appendix import study_sections
-    from eventpound.results.cells import lines_of
+    from eventpound.results.tables import lines_of
     from eventpound.results.trade import trade_of
     from eventpound.study.design import made_of_study, plan_asking
     from eventpound.study.table import manifest_there
@@ -219,7 +219,7 @@ def _lines(case: Case, made: DesignRuns) -> Iterator[str]:
     """What an engineer asks, to be read: a table a part, in units of the trade."""
     from eventpound.report.design_tables import capacity_words, screen_tables
     from eventpound.report.record_tables import record_names, scaling_words
-    from eventpound.results.cells import lines_of
+    from eventpound.results.tables import lines_of
     from eventpound.results.trade import trade_of
 
     trade, table = trade_of(case.scene, case.run.stated), made.table

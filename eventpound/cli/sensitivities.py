@@ -50,8 +50,7 @@ def _scene_of(path: Path) -> Case:
 
 def _sensitivities(options: Options) -> int:
     from eventpound.results import check_writable
-    from eventpound.results.cells import Cells, lines_of
-    from eventpound.results.tables import table_csv
+    from eventpound.results.tables import Cells, lines_of, table_csv
     from eventpound.study.sensitivities import PEAKS, sensitivities
 
     case, paper = _scene_of(options.case), options.paper()

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from eventpound.problems.collection import Collection, ProblemFolder
-from eventpound.results.cells import markdown_of
+from eventpound.results.tables import markdown_of
 
 _FEW = 12
 """Bodies up to which matrices are written out."""

@@ -25,8 +25,8 @@ from eventpound.report import html
 from eventpound.report.html import PAGE
 from eventpound.report.work_precision import timed, work_precision_figure, work_precision_png
 from eventpound.results import check_writable, write_together
-from eventpound.results.cells import Cells, cell_text
 from eventpound.results.manifest import machine, sha256, versions
+from eventpound.results.tables import Cells, cell_text
 from eventpound.scene import Scene
 from eventpound.solvers import name_of
 from eventpound.solvers.base import Solver

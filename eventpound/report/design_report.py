@@ -31,10 +31,10 @@ from eventpound.report.sheets import WIDTH, Block, Columns, Head, Picture, Sheet
 from eventpound.report.view import View
 from eventpound.response import Response
 from eventpound.results import gather
-from eventpound.results.cells import Cells
 from eventpound.results.input_tables import input_tables, rest_words
 from eventpound.results.inputs import inputs_of
 from eventpound.results.manifest import case_in_manifest, sha256, solved_by
+from eventpound.results.tables import Cells
 from eventpound.results.trade import Trade, three_digits, trade_of
 from eventpound.results.workbook import Row
 from eventpound.scene.at_rest import told_at_rest

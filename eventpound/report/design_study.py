@@ -14,8 +14,8 @@ from eventpound.report.design_report import Told, limits, model_blocks
 from eventpound.report.design_tables import NUMBERS, capacity_words
 from eventpound.report.sheets import Block, Head, Picture, Sheet, Words
 from eventpound.report.symbols import axis_label, display_unit, value_label
-from eventpound.results.cells import Cells, headed
 from eventpound.results.manifest import solved_by
+from eventpound.results.tables import Cells, headed
 from eventpound.results.trade import Trade
 from eventpound.results.workbook import Row
 from eventpound.study.design import FRACTILES, MOST_CLOSE

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from eventpound.results.cells import Cells, cell_text, headed
+from eventpound.results.tables import Cells, cell_text, headed
 from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact, weights_of
 from eventpound.scene.joints import joints_of

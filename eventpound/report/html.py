@@ -21,9 +21,9 @@ from matplotlib.figure import Figure
 from eventpound.case.case import Case
 from eventpound.report.model_figure import model_figure
 from eventpound.report.style import svg
-from eventpound.results.cells import Cells
 from eventpound.results.input_tables import input_lines, input_tables
 from eventpound.results.inputs import inputs_of
+from eventpound.results.tables import Cells
 
 PAGE = "report.html"
 """Name of the file."""

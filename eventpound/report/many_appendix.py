@@ -20,12 +20,12 @@ from eventpound.quantities.base import parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.report import html
 from eventpound.report.html import Part, folded, table_of
+from eventpound.report.record_figure import suite_spectra_figure
 from eventpound.report.record_tables import all_records, record_names
-from eventpound.report.spectrum_figure import suite_spectra_figure
 from eventpound.report.study_files import figures_of
 from eventpound.report.suite_plot import suite_figure
 from eventpound.report.symbols import dimension_of
-from eventpound.results.cells import Cells, cell_text, headed
+from eventpound.results.tables import Cells, cell_text, headed
 from eventpound.results.trade import trade_of
 from eventpound.study.large_scales import large_scales_of
 from eventpound.study.reading import StudyCase

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from eventpound.results.cells import Cells, cell_text, headed
+from eventpound.results.tables import Cells, cell_text, headed
 from eventpound.results.trade import Trade
 from eventpound.study.records import FAILED, SA, sa_of_suite
 from eventpound.units import Dimension

@@ -14,11 +14,11 @@ from eventpound.motion.base import moves
 from eventpound.motion.scaling import DAMPING
 from eventpound.quantities.listed import LISTED
 from eventpound.report import html
+from eventpound.report.record_figure import spectrum_figure
 from eventpound.report.run_figures import figures
-from eventpound.report.spectrum_figure import spectrum_figure
 from eventpound.results import StoredResults
-from eventpound.results.cells import Cells, cell_text, headed
 from eventpound.results.jsontext import read_json
+from eventpound.results.tables import Cells, cell_text, headed
 from eventpound.study.response_spectrum import response_spectrum
 
 _SAME = 1e-2

@@ -21,7 +21,7 @@ from matplotlib.textpath import TextPath
 
 from eventpound.report.html import Section, chapter, document, table_of
 from eventpound.report.style import literal, png, styled, svg
-from eventpound.results.cells import Cells
+from eventpound.results.tables import Cells
 
 _MM = 72.0 / 25.4
 """Points."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from eventpound.results.cells import Cells, headed
+from eventpound.results.tables import Cells, headed
 from eventpound.results.trade import HEAVY, Trade, Unit
 from eventpound.scene.point import Point
 from eventpound.units import Dimension

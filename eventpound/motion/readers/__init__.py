@@ -12,11 +12,11 @@ from eventpound.motion.readers.base import Reader as Reader
 from eventpound.motion.readers.base import RecordData as RecordData
 from eventpound.motion.readers.base import Source as Source
 from eventpound.motion.readers.base import UnstatedError as UnstatedError
-from eventpound.motion.readers.extents import of_length as of_length
-from eventpound.motion.readers.extents import until_like as until_like
-from eventpound.motion.readers.extents import while_like as while_like
 from eventpound.motion.readers.header import Header as Header
+from eventpound.motion.readers.header import of_length as of_length
 from eventpound.motion.readers.header import record_data as record_data
+from eventpound.motion.readers.header import until_like as until_like
+from eventpound.motion.readers.header import while_like as while_like
 from eventpound.motion.readers.labelled import Dialect as Dialect
 from eventpound.motion.readers.reading import components_of as components_of
 from eventpound.motion.readers.reading import read_components as read_components

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from eventpound.motion.readers.base import Source
 from eventpound.motion.readers.block import StatedCount, read_block
-from eventpound.motion.readers.extents import Extent, named_groups, word_pattern
+from eventpound.motion.readers.header import Extent, named_groups, word_pattern
 from eventpound.motion.readers.labelled import Dialect, Labelled
 from eventpound.motion.readers.numbers import NUMBER, to_count
 

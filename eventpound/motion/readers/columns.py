@@ -39,9 +39,14 @@ from eventpound.motion.readers.rows import (
     read_rows,
     runs_along_lines,
 )
-from eventpound.motion.readers.stated import refuse_other_count, stated_before
 from eventpound.motion.readers.time_column import even_step, increases
-from eventpound.motion.readers.titles import Content, Title, titles_of
+from eventpound.motion.readers.titles import (
+    Content,
+    Title,
+    refuse_other_count,
+    stated_before,
+    titles_of,
+)
 from eventpound.numerics.arrays import Floats
 
 _LEADING_CONSTANT = 10.0

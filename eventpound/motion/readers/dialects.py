@@ -8,7 +8,7 @@ import numpy as np
 
 from eventpound.motion.readers.base import Given, Source
 from eventpound.motion.readers.block import StatedCount, after_last, read_block
-from eventpound.motion.readers.extents import (
+from eventpound.motion.readers.header import (
     Extent,
     line_like,
     named_groups,

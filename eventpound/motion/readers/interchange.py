@@ -9,8 +9,7 @@ from itertools import islice, takewhile
 
 from eventpound.motion.readers.base import Given, Source
 from eventpound.motion.readers.block import StatedCount, numbers_of_block
-from eventpound.motion.readers.extents import Extent, named_groups, word_pattern
-from eventpound.motion.readers.header import Header
+from eventpound.motion.readers.header import Extent, Header, named_groups, word_pattern
 from eventpound.motion.readers.labelled import Dialect, Labelled, Trace, refuse_other_times
 from eventpound.motion.readers.numbers import (
     NUMBER,
@@ -19,7 +18,7 @@ from eventpound.motion.readers.numbers import (
     to_float,
 )
 from eventpound.motion.readers.rows import SEPARATOR
-from eventpound.motion.readers.stated import LARGEST_STEP, count_in, stated_before, step_in
+from eventpound.motion.readers.titles import LARGEST_STEP, count_in, stated_before, step_in
 
 # EarthScope and ObsPy, described in obspy.io.ascii: a line "TIMESERIES NET_STA_LOC_CHAN_Q,
 # 12 samples, 40 sps, 2003-05-29T02:13:22.043400, SLIST, INTEGER, Counts" before each series, whose

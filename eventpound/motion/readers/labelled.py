@@ -18,8 +18,15 @@ from typing import NamedTuple
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import SAME_STEP, Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import StatedCount, miscounted, numbers_of_block
-from eventpound.motion.readers.extents import Extent, Extents, named_groups, word_pattern
-from eventpound.motion.readers.header import Header, Peak, record_data
+from eventpound.motion.readers.header import (
+    Extent,
+    Extents,
+    Header,
+    Peak,
+    named_groups,
+    record_data,
+    word_pattern,
+)
 from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 from eventpound.motion.readers.rows import NumberRows, read_rows
 from eventpound.motion.readers.time_column import even_step

@@ -18,7 +18,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import Given, Source, UnstatedError
 from eventpound.motion.readers.block import END_OF_CHANNEL, StatedCount, numbers_of_block
-from eventpound.motion.readers.extents import Extent, Extents, line_like, named_groups, word_pattern
+from eventpound.motion.readers.header import Extent, Extents, line_like, named_groups, word_pattern
 from eventpound.motion.readers.labelled import Dialect, Labelled, Trace
 from eventpound.motion.readers.numbers import NUMBER, to_float
 from eventpound.motion.readers.time_column import even_step
