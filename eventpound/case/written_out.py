@@ -29,7 +29,7 @@ import math
 import re
 from bisect import bisect_left
 from collections.abc import Collection, Mapping, Sequence
-from itertools import accumulate, pairwise
+from itertools import accumulate
 from pathlib import Path
 from typing import NamedTuple
 
@@ -205,10 +205,8 @@ def frame_tables(
     if matrices:
         with table.noting(""):
             values = {key: _in_order(key, each, names) for key, each in matrices.items()}
-            parts = frame(name, **values, names=names or None, on=on)
+            parts = frame(name, **values, names=names or None, levels=heights or None, on=on)
     bodies = [body.name for body in parts.bodies] if parts else []
-    if heights and len(heights) != len(bodies) and parts:
-        table.reject("levels", f"a list of {len(bodies)}, one a degree of freedom")
     damping = dict[str, list[object]]()
     if not _is_matrix(table):
         damping = damping_tables(table, bodies, on, on in supports)
@@ -252,9 +250,9 @@ def _heights(table: Table) -> tuple[float, ...]:
     with table.noting("levels"):
         listed = given if isinstance(given, list) else []
         found = [quantity(each, Dimension.LENGTH) for each in listed]
-        if found and all(low < high for low, high in pairwise([0.0, *found])):
+        if found:
             return tuple(found)
-        table.reject("levels", "a list of heights above the ground (m) that grow")
+        table.reject("levels", "a list of heights above what it stands on (m)")
     return ()
 
 
@@ -392,10 +390,13 @@ def _contacts(table: Table, known: Mapping[str, Levels]) -> list[dict[str, objec
         if not levels or height - levels[-1] > SAME_HEIGHT:
             levels.append(height)
     keys = {key: value for key, value in table.data.items() if key not in (BETWEEN, AT)}
-    return [
-        {"between": [_end(left, height), _end(right, height)], **keys}
-        for height in (levels[-1:] if word == ROOF else levels)
-    ]
+    made = []
+    for height in levels[-1:] if word == ROOF else levels:
+        ends = [_end(left, height), _end(right, height)]
+        # As the contact would be called without a name, which a capacity needs.
+        name = "-".join("+".join([end] if isinstance(end, str) else end) for end in ends)
+        made.append({"between": ends, **keys, **({"name": name} if "capacity" in keys else {})})
+    return made
 
 
 def _end(levels: Levels, height: float) -> str | dict[str, float]:

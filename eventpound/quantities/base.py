@@ -118,6 +118,17 @@ def _with_owner(path: str, owner: str) -> str:
     return before + owner + after
 
 
+def least_governs(name: str) -> bool:
+    """Whether a quantity is the worse the less it is: its fractiles are what so many keep."""
+    return name.endswith((".slack_left", ".strength_left", ".stiffness_left", ".smallest_gap"))
+
+
+def over_capacity(name: str, values: Floats, capacity: float) -> Floats:
+    """A demand over its capacity; of what has to be left, what has to be over what is."""
+    with np.errstate(divide="ignore"):
+        return capacity / values if least_governs(name) else np.abs(values) / capacity
+
+
 def pi_unit(dimension: Dimension, scales: Scales, mass: float) -> float:
     """What a quantity is divided by to be a Π-term.
 

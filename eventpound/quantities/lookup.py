@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -178,13 +178,7 @@ def chosen(scene: Scene, wanted: Sequence[str], stated: Stated | None = None) ->
     names: dict[str, None] = {}
     problems = []
     for word in wanted:
-        stem = word.removeprefix(FREE)
-        free = word[: len(word) - len(stem)]
-        found = [
-            free + named.name
-            for named in all_of(scene)
-            if stem in (named.quantity.path, named.quantity.six, named.name)
-        ]
+        found = [named.name for named in asked_of(scene, word)]
         if not found:
             listed = "; `eventpound check CASE --quantities` lists them"
             meant = suggestion(word, names_of(scene)) or listed
@@ -195,6 +189,23 @@ def chosen(scene: Scene, wanted: Sequence[str], stated: Stated | None = None) ->
     if problems:
         raise InputError(problems)
     return list(names)
+
+
+def asked_of(scene: Scene, word: str) -> list[Named]:
+    """Quantities that a word of ``quantities`` means: a name, a path, a path of six, or `FREE`."""
+    stem = word.removeprefix(FREE)
+    found = [
+        named
+        for named in all_of(scene)
+        if stem in (named.quantity.path, named.quantity.six, named.name)
+    ]
+    if stem == word:
+        return found
+    called = "{} without contact".format
+    return [
+        Named(FREE + n.name, replace(n.quantity, called=called(n.quantity.called)), n.i)
+        for n in found
+    ]
 
 
 def unstated(name: str, stated: Stated) -> str:

@@ -27,8 +27,9 @@ def owners_of(scene: Scene, kind: str) -> Sequence[str]:
 
 
 def is_told(scene: Scene, kind: str, i: int) -> bool:
-    """Whether tables tell of it: a coupling of a frame means nothing by itself."""
-    return kind != "spring" or scene.springs[i].frame is None
+    """Whether tables tell of it: a coupling of a frame means nothing, but as a storey."""
+    spring = scene.springs[i] if kind == "spring" else None
+    return spring is None or spring.frame is None or spring.height is not None
 
 
 def _dashpots(scene: Scene) -> list[str]:

@@ -11,7 +11,7 @@ from eventpound.quantities.values import law_of, peak_size
 from eventpound.scene.at_rest import theta_at_rest
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
-from eventpound.scene.structures import distances, neighbours, structures_of
+from eventpound.scene.structures import distances, is_storey, neighbours, structures_of
 
 
 def has_height(scene: Scene, i: int) -> bool:
@@ -20,10 +20,10 @@ def has_height(scene: Scene, i: int) -> bool:
 
 
 def storeys_of_structure(scene: Scene, i: int) -> list[int]:
-    """Springs with a height of structure i."""
+    """Springs of structure i that are storeys."""
     group = set(structures_of(scene)[i])
-    springs = enumerate(scene.springs)
-    return [k for k, s in springs if s.height is not None and group.intersection(s.between)]
+    own = (k for k, spring in enumerate(scene.springs) if group.intersection(spring.between))
+    return [k for k in own if is_storey(scene, k)]
 
 
 def has_floors(scene: Scene, i: int) -> bool:

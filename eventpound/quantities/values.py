@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.base import SIX, Value, path_of_owner
+from eventpound.quantities.base import SIX, Value, over_capacity, path_of_owner
 from eventpound.quantities.runs import Runs
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.joints import joints_of
@@ -66,8 +66,10 @@ def slack_left(many: Runs, i: int) -> Floats:
 
 def demand_over_capacity(many: Runs, _: int) -> Floats:
     """The largest of all demands over their capacities; NaN where one of them is not known."""
-    found = ((many.values_of(name), capacity) for name, capacity in many.stated.capacities)
-    parts = [np.abs(values) / capacity for values, capacity in found if values is not None]
+    found = ((name, many.values_of(name), held) for name, held in many.stated.capacities)
+    parts = [
+        over_capacity(name, values, held) for name, values, held in found if values is not None
+    ]
     return np.asarray(np.max(parts, axis=0)) if parts else many.t * np.nan
 
 

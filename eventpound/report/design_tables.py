@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from eventpound.quantities.base import least_governs
 from eventpound.results.tables import Cells, cell_text, headed
 from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact, weights_of
 from eventpound.scene.joints import joints_of
 from eventpound.scene.scene import Scene
-from eventpound.study.demands import NEEDED, least_governs
+from eventpound.study.demands import NEEDED
 from eventpound.study.design import FRACTILES
 
 if TYPE_CHECKING:

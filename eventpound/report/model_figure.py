@@ -19,7 +19,15 @@ from matplotlib.patches import Rectangle
 
 from eventpound.numerics.arrays import Floats
 from eventpound.report.law_panel import draw_law, laws_shown
-from eventpound.report.model_layout import HIGH, LEVEL, WIDE, Box, Layout, layout_of
+from eventpound.report.model_layout import (
+    HIGH,
+    LEVEL,
+    WIDE,
+    Box,
+    Layout,
+    layout_of,
+    without_couplings,
+)
 from eventpound.report.model_links import WALL, LinkPath, links_drawn
 from eventpound.report.style import PALETTE, arrow, literal, new_figure, say, styled
 from eventpound.results.trade import Trade
@@ -122,7 +130,7 @@ def model_figure(
     within : tuple of float
         Width and height that the scene has at most (in).
     """
-    standing = grounded(scene)
+    standing = without_couplings(grounded(scene))
     layout = layout_of(standing)
     routes = links_drawn(standing, layout)
     boxes = layout.boxes.values()
@@ -189,7 +197,7 @@ def _feet(
 ) -> list[tuple[str, float, float]]:
     """Supports, each by its name at every place where something stands on it."""
     names = {support.name for support in scene.supports}
-    given, on_ground = _parts(scene), _parts(standing)
+    given, on_ground = _parts(without_couplings(scene)), _parts(standing)
     support_of = {
         id(new): name
         for (_, ends), (new, _) in zip(given, on_ground, strict=True)
@@ -235,6 +243,8 @@ def _link(axes: Axes, route: LinkPath, names: _Names) -> None:
         axes.plot(*part.T, color=color, linewidth=1.2, zorder=2)
     if isinstance(route.link, Spring) and isinstance(route.link.law, Slider):
         _bearing(axes, a, b, route.upright)
+    elif isinstance(route.link, Spring) and route.link.frame is not None:
+        _columns(axes, a, b)
     elif isinstance(route.link, Spring):
         axes.plot(*_zigzag(a, b).T, color=color, linewidth=1.2, solid_joinstyle="miter", zorder=2)
     else:
@@ -257,6 +267,13 @@ def _color(link: Spring | Dashpot) -> str:
     if isinstance(link, Dashpot):
         return "#777777"
     return _LAWS[_CALLED.get(link.law.word, link.law.word)]
+
+
+def _columns(axes: Axes, a: Floats, b: Floats) -> None:
+    """Columns of a frame between two of its floors."""
+    across = np.array([b[1] - a[1], a[0] - b[0]]) / np.hypot(*(b - a))
+    for side in (-0.6, 0.6):
+        axes.plot(*np.array([a + side * across, b + side * across]).T, color=_INK, linewidth=1.8)
 
 
 def _zigzag(a: Floats, b: Floats) -> Floats:

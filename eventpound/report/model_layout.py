@@ -11,15 +11,15 @@ Lengths are those of the picture; but for heights of storeys nothing is to scale
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from eventpound.report.towers import storey_heights
 from eventpound.scene.contact import weights_of
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Backfill, BilinearElastic, Series, Spring
-from eventpound.scene.structures import joined_groups
+from eventpound.scene.spring import GROUND, Backfill, BilinearElastic, Linear, Series, Spring
+from eventpound.scene.structures import distances, joined_groups, neighbours
 
 WIDE, HIGH = 1.7, 0.8
 """Of a body."""
@@ -91,10 +91,36 @@ def kinked(member: object) -> bool:
     return isinstance(law, BilinearElastic | Series | Backfill)
 
 
+def without_couplings(scene: Scene) -> Scene:
+    """The scene with one link of a frame from floor to floor, in the place of its couplings."""
+    frames: dict[str, list[Spring]] = {}
+    for spring in scene.springs:
+        if spring.frame is not None:
+            frames.setdefault(spring.frame, []).append(spring)
+    if not frames:
+        return scene
+    links, gone = list[Spring](), set[frozenset[str]]()
+    for name, couplings in frames.items():
+        gone |= {frozenset(spring.between) for spring in couplings}
+        heights = {spring.between: spring.height for spring in couplings}
+        # Couplings to what a frame stands on come first, and begin there.
+        upper = {high for _, high in heights}
+        base = dict.fromkeys(low for low, _ in heights if low not in upper)
+        floors = [body.name for body in scene.bodies if body.name in upper]
+        for ends in pairwise([*base, *floors]):
+            called = "" if links and links[-1].frame == name else name
+            links.append(Spring(called, ends, Linear(0.0), heights.get(ends), frame=name))
+    return replace(
+        scene,
+        springs=(*(s for s in scene.springs if s.frame is None), *links),
+        dashpots=tuple(d for d in scene.dashpots if frozenset(d.between) not in gone),
+    )
+
+
 def layout_of(scene: Scene) -> Layout:
     """Columns of bodies from the left, each from the ground up; carriers below what they carry."""
     standing = [spring for spring in scene.springs if not kinked(spring)]
-    beside = _neighbours(standing)
+    beside = neighbours(standing)
     meeting = [set(contact.ends) for contact in scene.contacts if not contact.at_point]
     chains = [_chain(beside, body.name) for body in scene.bodies]
     # Bodies that can touch stand side by side.
@@ -126,15 +152,6 @@ def layout_of(scene: Scene) -> Layout:
     return Layout(boxes, frozenset(lowest))
 
 
-def _neighbours(springs: Iterable[Spring]) -> dict[str, list[str]]:
-    """What springs join to each body and to the ground, each once and in their order."""
-    found: dict[str, dict[str, None]] = {}
-    for spring in springs:
-        for here, there in (spring.between, spring.between[::-1]):
-            found.setdefault(here, {})[there] = None
-    return {name: list(others) for name, others in found.items()}
-
-
 def _chain(beside: Mapping[str, Sequence[str]], base: str) -> list[str]:
     """Bodies above one another from a body on the ground, of two at least; empty without them."""
     chain, before = [base], GROUND
@@ -164,30 +181,17 @@ def _levels(
     }
     on_ground = [row_of[name] for name in beside.get(GROUND, ()) if name in row_of]
     free = {i for i, row in enumerate(rows) if not touching.intersection(row)}
-    far = _distances(on_ground, above, set(row_of.values()))
-    under = _distances([i for i in on_ground if i in free], above, free)
+    far = distances(on_ground, above)
+    under = distances(free.intersection(on_ground), {i: above[i] & free for i in free})
     found: dict[int, int] = {}
-    for i in sorted(range(len(rows)), key=lambda i: far.get(i, 0)):
+    for i in sorted(range(len(rows)), key=lambda i: far.get(i, -1)):
         if i in under:
-            found[i] = under[i]
+            found[i] = 1 + under[i]
         else:
-            below = [under[j] for j in above[i] if j in under]
+            below = [1 + under[j] for j in above[i] if j in under]
             below += [found[j] for j in above[i] & found.keys() if i in free]
-            found[i] = max([far.get(i, 1), *(1 + height for height in below)])
+            found[i] = max([1 + far.get(i, 0), *(1 + height for height in below)])
     return {name: found[i] for name, i in row_of.items()}
-
-
-def _distances(
-    start: Iterable[int], above: Mapping[int, Collection[int]], allowed: Collection[int]
-) -> dict[int, int]:
-    """Number of springs from the ground to each row, by way of those allowed."""
-    found: dict[int, int] = {}
-    edge, distance = set(start), 1
-    while edge:
-        found |= dict.fromkeys(edge, distance)
-        edge = {j for i in edge for j in above[i] if j in allowed} - found.keys()
-        distance += 1
-    return found
 
 
 def _in_order(

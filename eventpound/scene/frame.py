@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,6 +21,7 @@ from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.spring import GROUND, Linear, Spring
 from eventpound.scene.stability import motion_of_links, told
+from eventpound.units import Dimension, quantity
 
 MOST_BODIES = 200
 """Of a frame: a full matrix makes a spring between every two of them."""
@@ -46,6 +47,7 @@ def frame(
     damping: Any = None,
     *,
     names: Sequence[str] | None = None,
+    levels: Sequence[float | str] | None = None,
     on: str = GROUND,
 ) -> Frame:
     """A frame of another program by its matrices, condensed to degrees of freedom along the line.
@@ -62,6 +64,9 @@ def frame(
         C (N s/m), as K. Ratios instead are given by `rayleigh` or `modal_damping`.
     names : sequence of str, optional
         Of the degrees of freedom, which are bodies; by default the name and a number from 1.
+    levels : sequence of float, optional
+        Heights of the degrees of freedom above what it stands on (m), rising: each is a floor
+        then, and what is between two a storey with its drift.
     on : str
         What it stands on: the ground, a support, or a body such as a slab.
 
@@ -84,15 +89,32 @@ def frame(
             f"its own for each, up to {MOST_BODIES}; condense a larger frame"
         )
     _check_matrix("stiffness", K, ends)
+    heights = {} if levels is None else _storeys(levels, [on, *ends])
     bodies = tuple(Body(end, m) for end, m in zip(ends, _lumped(mass, ends), strict=True))
+    # A storey without a coupling is measured by a spring that does not resist.
+    links = dict(_links(K, ends, on))
+    links |= {pair: 0.0 for pair in heights if pair not in links}
     springs = tuple(
-        Spring("-".join(pair), pair, Linear(k), frame=name) for pair, k in _links(K, ends, on)
+        Spring("-".join(pair), pair, Linear(k), heights.get(pair), frame=name)
+        for pair, k in links.items()
     )
     if damping is None:
         return Frame(bodies, springs, ())
     C = _numbers("damping", damping)
     _check_matrix("damping", C, ends)
     return Frame(bodies, springs, tuple(Dashpot(pair, c) for pair, c in _links(C, ends, on)))
+
+
+def _storeys(levels: Sequence[float | str], ends: Sequence[str]) -> dict[tuple[str, str], float]:
+    """Heights of the storeys (m), by their ends."""
+    given = [0.0, *(quantity(level, Dimension.LENGTH) for level in levels)]
+    rises = [high - low for low, high in pairwise(given)]
+    if len(given) != len(ends) or not min(rises) > 0.0:
+        raise InputError(
+            f"levels: found {', '.join(f'{level:g}' for level in given[1:])}; accepted: "
+            f"{len(ends) - 1} heights above what it stands on (m), each above the one before"
+        )
+    return dict(zip(pairwise(ends), rises, strict=True))
 
 
 def _numbers(key: str, given: Any) -> Floats:

@@ -19,7 +19,7 @@ from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import local_periods, longest_period
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Backfill, BoucWen, Slider
-from eventpound.scene.structures import isolated, joined_groups, structures_of
+from eventpound.scene.structures import isolated, joined_groups, of_frames, structures_of
 from eventpound.scene.support import Support
 from eventpound.units import STANDARD_GRAVITY
 
@@ -236,7 +236,7 @@ def _damping_doubts(scene: Scene) -> Iterator[Doubt]:
     for spring in scene.springs:
         for end in set(spring.between) - {GROUND}:
             held[end] += stiffness_of(spring)
-    for body in scene.bodies:
+    for body in (body for body in scene.bodies if body.name not in of_frames(scene)):
         critical = ratio_coefficient(1.0, max(held[body.name], 0.0), body.mass)
         if damped[body.name] > critical > 0.0:
             yield (
@@ -260,7 +260,8 @@ def _isolation_doubts(scene: Scene) -> Iterator[Doubt]:
 
 
 def _period_doubts(scene: Scene, output_step: float | None) -> Iterator[Doubt]:
-    shortest = local_periods(scene)
+    frames = of_frames(scene)
+    shortest = {name: T for name, T in local_periods(scene).items() if name not in frames}
     for name, period in shortest.items():
         if period < PERIOD.least:
             yield (

@@ -88,6 +88,22 @@ def joined_groups(bodies: Sequence[str], joints: Iterable[tuple[str, str]]) -> l
     return found
 
 
+def is_storey(scene: Scene, i: int) -> bool:
+    """Whether spring i has a height and is a storey: no pier, alone below what bearings carry."""
+    spring, bodies = scene.springs[i], {body.name for body in scene.bodies}
+    if spring.height is None or spring.frame is not None:
+        return spring.height is not None
+    own = bodies.intersection(spring.between)
+    beside = [s for k, s in enumerate(scene.springs) if k != i and own.intersection(s.between)]
+    carries = any(bodies.intersection(s.between) - own for s in beside if s.frame is None)
+    return any(s.height is not None for s in beside) or not carries
+
+
+def of_frames(scene: Scene) -> set[str]:
+    """Bodies of frames: how a floor swings while all others are held is no mode that matters."""
+    return {end for spring in scene.springs if spring.frame is not None for end in spring.between}
+
+
 def neighbours(springs: Iterable[Spring]) -> dict[str, list[str]]:
     """What springs join to each end of one, each once and in their order."""
     found: dict[str, dict[str, None]] = {}

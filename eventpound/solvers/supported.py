@@ -120,14 +120,20 @@ def link_force_on(
     others : collection of str, optional
         What the other ends have to be among.
     """
-    pulls = [(s.between, force[:, i]) for i, s in enumerate(scene.springs)]
-    for d in scene.dashpots:
-        pulls.append((d.between, d.coefficient * (rate[d.between[1]] - rate[d.between[0]])))
     total = np.zeros(force.shape[0])
-    for between, pull in pulls:
-        if others is None or {*between} <= {*ends, *others}:
-            # What pulls the first end to the right pulls the second to the left.
-            total += ((between[0] in ends) - (between[1] in ends)) * pull
+
+    def sign(between: tuple[str, str]) -> int:
+        # What pulls the first end to the right pulls the second to the left.
+        counts = others is None or {*between} <= {*ends, *others}
+        return ((between[0] in ends) - (between[1] in ends)) * counts
+
+    for i, spring in enumerate(scene.springs):
+        if way := sign(spring.between):
+            total += way * force[:, i]
+    for dashpot in scene.dashpots:
+        if way := sign(dashpot.between):
+            first, second = dashpot.between
+            total += way * (dashpot.coefficient * (rate[second] - rate[first]))
     return total
 
 

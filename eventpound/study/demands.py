@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from eventpound.case.run_options import Stated
 from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.listed import LISTED
-from eventpound.quantities.lookup import Named, all_of, find, unstated
+from eventpound.quantities.lookup import Named, all_of, asked_of, unstated
 from eventpound.quantities.owners import owners_of
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, BoucWen, Hysteretic, Slider
+from eventpound.scene.structures import is_storey
 
 _CONTACT, _SPRING = "contacts.<contact>.", "springs.<spring>."
 NEEDED = _CONTACT + "separation_needed"
@@ -38,8 +39,7 @@ def _of_law(*kinds: type) -> Callable[[Scene, int], bool]:
     """Whether a spring has such a law, and is no storey."""
 
     def has(scene: Scene, i: int) -> bool:
-        spring = scene.springs[i]
-        return isinstance(spring.law, kinds) and spring.height is None
+        return isinstance(scene.springs[i].law, kinds) and not is_storey(scene, i)
 
     return has
 
@@ -49,7 +49,7 @@ def _elastic(compression: bool, extension: bool) -> Callable[[Scene, int], bool]
 
     def has(scene: Scene, i: int) -> bool:
         spring = scene.springs[i]
-        if isinstance(spring.law, Hysteretic) or spring.height is not None:
+        if isinstance(spring.law, Hysteretic) or is_storey(scene, i):
             return False
         own = reduced(spring.law)
         return (own.compression > 0.0, own.extension > 0.0) == (compression, extension)
@@ -95,8 +95,8 @@ KINDS = (
         "Piers and other yielding springs",
         _paths(
             "spring",
-            f"{_FORCED} ductility abs_max_elongation residual_elongation strength_lost "
-            "stiffness_lost dissipated_energy",
+            f"{_FORCED} ductility drift_ratio abs_max_elongation residual_elongation "
+            "stability_coefficient strength_lost stiffness_lost dissipated_energy",
         ),
         _of_law(BoucWen),
     ),
@@ -110,7 +110,7 @@ KINDS = (
     ),
     ElementKind(
         "Bearings and other elastic springs",
-        _paths("spring", f"abs_max_elongation {_FORCED}"),
+        _paths("spring", f"abs_max_elongation {_FORCED} drift_ratio stability_coefficient"),
         _elastic(compression=True, extension=True),
     ),
     ElementKind(
@@ -135,7 +135,7 @@ KINDS = (
             f"drift_ratio abs_max_elongation {_FORCED} ductility residual_elongation "
             "stability_coefficient strength_lost stiffness_lost",
         ),
-        lambda scene, i: scene.springs[i].height is not None,
+        is_storey,
     ),
     ElementKind(
         "Bodies",
@@ -143,7 +143,8 @@ KINDS = (
     ),
 )
 """Kinds of elements, in the order of a report."""
-_OTHERS = ElementKind("Others with a capacity", ())
+_OTHERS = ElementKind("Asked for in the case", ())
+"""By its capacities, and by ``quantities`` of ``[run]``."""
 DEMANDS = tuple(dict.fromkeys(path for kind in KINDS for path in kind.demands))
 _LISTED = [q for q in LISTED if q.path in DEMANDS]
 
@@ -154,11 +155,6 @@ class Demand:
 
     kind: ElementKind
     named: Named
-
-
-def least_governs(name: str) -> bool:
-    """Whether a quantity is the worse the less it is: its fractiles are what so many keep."""
-    return name.endswith(".slack_left")
 
 
 def demands_of(scene: Scene, stated: Stated) -> list[Demand]:
@@ -180,8 +176,9 @@ def demands_of(scene: Scene, stated: Stated) -> list[Demand]:
 
     found = sorted(found, key=place)
     named = {demand.named.name for demand in found}
-    others = (find(scene, name) for name in capacities if name not in named)
-    return found + [Demand(_OTHERS, other) for other in others if other is not None]
+    words = [word for word in (*capacities, *stated.quantities) if word not in named]
+    others = {other.name: other for word in words for other in asked_of(scene, word)}
+    return found + [Demand(_OTHERS, other) for name, other in others.items() if name not in named]
 
 
 def _says_something(scene: Scene, named: Named) -> bool:

@@ -22,13 +22,13 @@ from eventpound.case.case import Case
 from eventpound.case.loading import CASE_FILE
 from eventpound.case.run_options import DEFAULTS, Stated
 from eventpound.errors import ComputationError, InputError
-from eventpound.quantities.base import TakenFrom
+from eventpound.quantities.base import TakenFrom, least_governs, over_capacity
 from eventpound.quantities.owners import owners_of
 from eventpound.quantities.storeys import storeys_of_structure
 from eventpound.response import Response
 from eventpound.scene.scene import Scene
 from eventpound.simulation import response_of
-from eventpound.study.demands import STOREY_DRIFT, Demand, demands_of, least_governs, words_of
+from eventpound.study.demands import STOREY_DRIFT, Demand, demands_of, words_of
 from eventpound.study.engine import engine_of
 from eventpound.study.large_scales import warn_of_scales
 from eventpound.study.plan import RECORD, Plan
@@ -256,6 +256,8 @@ def _rows(
         if len(sizes):
             least = least_governs(named.name)
             (*parts, held) = _fractiles(sizes, (*FRACTILES, stated.fractile), least)
+            if named.quantity.kind is int:
+                parts = np.ceil(parts).tolist()
             row |= {f"{p:g} %": value for p, value in zip(FRACTILES, parts, strict=True)}
             governs = sizes.idxmin() if least else sizes.idxmax()
             row |= {"largest": float(sizes[governs])}
@@ -281,7 +283,7 @@ def _held(demand: Demand, stated: Stated, size: float, failed: int = 0) -> dict[
     capacity = dict(stated.capacities).get(demand.named.name)
     if capacity is None:
         return {}
-    ratio = size / capacity
+    ratio = float(over_capacity(demand.named.name, np.array(size), capacity))
     passes = "not known" if failed or ratio != ratio else "yes"
     verdict = "no" if ratio > 1.0 else passes
     return {"capacity": capacity, "demand/capacity": ratio, "passes": verdict}

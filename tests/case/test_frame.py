@@ -234,11 +234,12 @@ def test_contacts_of_two_buildings_follow_from_their_heights(tmp_path: Path) -> 
         contact("A1+A2-B1", Point(at_4), "B1"),
         contact("A2-B2", "A2", "B2"),
     )
-    roof = case_of(tmp_path, BUILDINGS + JOINT + 'at = "roof"\n').scene.contacts
-    assert roof == (contact("A2-B2", "A2", "B2"),)
+    roof = case_of(tmp_path, BUILDINGS + JOINT + 'at = "roof"\ncapacity = { gap = 0.1 }\n')
+    assert roof.scene.contacts == (contact("A2-B2", "A2", "B2"),)
+    assert roof.run.stated.capacities == (("contacts.A2-B2.separation_needed", 0.1),)
     lower = BUILDINGS.replace("[4.0, 2.0]", "2.0")
-    roof = case_of(tmp_path, lower + JOINT + 'at = "roof"\n').scene.contacts
-    assert roof == (contact("A1+A2-B2", Point(at_4), "B2"),)
+    roof = case_of(tmp_path, lower + JOINT + 'at = "roof"\n')
+    assert roof.scene.contacts == (contact("A1+A2-B2", Point(at_4), "B2"),)
 
 
 def test_a_frame_with_levels_is_a_building(tmp_path: Path) -> None:
@@ -260,8 +261,8 @@ def test_a_frame_with_levels_is_a_building(tmp_path: Path) -> None:
         (lambda t: t + 'units = { mass = "kN" }\n', "(T): units.mass: found '1 kN'"),
         (lambda t: t + 'units = { force = "kN" }\n', "(T): units.force: unknown key"),
         (lambda t: t + 'names = ["a", "b"]\n', "(T): names: found 2 for 3 rows of stiffness"),
-        (lambda t: t + "levels = [3, 2, 4]\n", "(T): levels: found [3, 2, 4]; accepted: a list"),
-        (lambda t: t + "levels = [3, 4]\n", "(T): levels: found [3, 4]; accepted: a list of 3"),
+        (lambda t: t + "levels = [3, 2, 4]\n", "(T): levels: found 3, 2, 4; accepted: 3 heights"),
+        (lambda t: t + "levels = 3\n", "(T): levels: found 3; accepted: a list of heights"),
         (lambda t: t + 'on = "raft"\n', "between: found ['raft', 'T1']; accepted: two different"),
         (lambda t: t + "height = 3\n", "(T): height: unknown key"),
         (lambda t: BUILDINGS + JOINT.replace('"B"', '"D"'), "accepted: two buildings with heights"),

@@ -167,6 +167,41 @@ def test_a_column_of_a_frame_is_struck_between_its_floors() -> None:
     assert response.recording.u == pytest.approx(u, abs=1e-9 * np.abs(u).max())
 
 
+def test_storeys_of_a_frame_drift_as_by_scipy() -> None:
+    # The second and the third floor are not coupled: their storey is measured all the same.
+    bent = K + 2.0 * abs(K[1, 2]) * np.eye(N)
+    bent[1, 2] = bent[2, 1] = 0.0
+    levels, heights = [3.0, 7.0, 10.0, 13.0, 17.0], np.array([3.0, 4.0, 3.0, 3.0, 4.0])
+    parts = frame("T", bent, [MASS] * N, C, levels=levels)
+    stiffness = {spring.name: spring.law for spring in parts.springs}
+    assert stiffness["T2-T3"] == Linear(0.0)
+    scene = Scene(parts.bodies, parts.springs, parts.dashpots, motion=PULSE)
+    response = simulate(scene, rtol=1e-11, duration=2.0)
+
+    def rate(t: float, y: np.ndarray) -> np.ndarray:
+        a = PEAK * math.cos(2.0 * math.pi / PERIOD * t) if t < PERIOD else 0.0
+        return np.append(y[N:], -(bent @ y[:N] + C @ y[N:]) / MASS - a)
+
+    drifts, y = [], np.zeros(2 * N)
+    for start, end in ((0.0, PERIOD), (PERIOD, 2.0)):
+        done = solve_ivp(rate, (start, end), y, "DOP853", rtol=1e-12, atol=1e-14, dense_output=True)
+        drifts.append(done.sol(np.linspace(start, np.nextafter(end, 0.0), 20_001))[:N])
+        y = done.y[:, -1]
+    u = np.hstack(drifts)
+    largest = np.abs(np.diff(u, axis=0, prepend=0.0)).max(axis=1) / heights
+    found = [
+        response.quantity(f"springs.{name}.drift_ratio")
+        for name in ("ground-T1", "T1-T2", "T2-T3", "T3-T4", "T4-T5")
+    ]
+    assert found == pytest.approx(largest, rel=1e-6)
+    assert response.quantity("structures.T1.storey_drift_ratio") == max(found)
+    roof = np.abs(u[-1]).max()
+    assert response.quantity("structures.T1.roof_drift") == pytest.approx(roof, rel=1e-6)
+    # A coupling between other floors is no storey, and none has a force of its own.
+    told = {name for name in names_of(scene) if name.startswith("springs.")}
+    assert not {name for name in told if "T1-T3" in name or "force" in name}
+
+
 @pytest.mark.parametrize(("solver", "order"), [("moreau", 1.0), ("penalty", 2.0)])
 def test_steppers_come_to_it(solver: str, order: float) -> None:
     # Without contact: errors of two steps, of which the second is half as long.
@@ -250,6 +285,8 @@ def bent(part: float) -> np.ndarray:
         ({"damping": -0.1 * C + 0.2 * np.diag(C.diagonal())}, "damping: found a matrix that is"),
         ({"names": ["a", "b"]}, "names: found 2 for 5 rows of stiffness"),
         ({"names": ["a"] * N}, "names: found 1 for 5 rows"),
+        ({"levels": [3.0, 2.0, 4.0, 5.0, 6.0]}, "levels: found 3, 2, 4, 5, 6; accepted: 5 heights"),
+        ({"levels": [3.0]}, "levels: found 3; accepted: 5 heights above"),
     ],
     ids=lambda given: ",".join(given) if isinstance(given, dict) else "",
 )

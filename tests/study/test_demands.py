@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -191,6 +192,45 @@ def test_a_demand_is_held_at_the_fractile_that_is_stated(tmp_path: Path) -> None
     assert table.loc["seats.end.max_opening", "passes"] == "yes"
     ratios = np.maximum(runs["springs.frame.ductility"] / 3.0, runs["seats.end.max_opening"])
     assert runs["demand_over_capacity"].to_numpy() == pytest.approx(ratios.to_numpy(), rel=1e-12)
+
+
+def test_what_has_to_be_left_is_held_from_below(tmp_path: Path) -> None:
+    more = '[[spring]]\nname = "cable"\nbetween = ["ground", "deck"]\nlaw = "bilinear-elastic"\n'
+    more += "compression = 0\nextension = 1e3\noffset = 10\n"
+    name = "springs.cable.slack_left"
+    table = suite_with(tmp_path, "{ ductility = 1e6 }", f'{more}[capacity]\n"{name}" = 9.99\n')
+    runs = simulate_suite(load_case(tmp_path))
+    left = sorted(runs[name])
+    # What 84 % keep: at 0.16 of three distances.
+    held = left[0] + 0.48 * (left[1] - left[0])
+    assert table.loc[name, "demand/capacity"] == pytest.approx(9.99 / held, rel=1e-9)
+    assert table.loc[name, "passes"] == "no"
+    assert runs["demand_over_capacity"].to_numpy() == pytest.approx(9.99 / runs[name], rel=1e-12)
+
+
+def test_quantities_of_the_case_stand_in_its_report(tmp_path: Path) -> None:
+    words = '["velocity.<body>.abs_max", "free.peaks.deck.abs_max", "impacts"]'
+    table = suite_with(tmp_path, "{ ductility = 9 }", f"[run]\nquantities = {words}\n")
+    asked = table[table["kind"] == "Asked for in the case"]
+    runs = simulate_suite(load_case(tmp_path))
+    names = ["velocity.deck.abs_max", "free.peaks.deck.abs_max", "impacts"]
+    assert asked.index.tolist() == names
+    assert asked["largest"].to_numpy() == pytest.approx([runs[n].max() for n in names], rel=1e-12)
+    assert asked["demand"].iloc[1] == "peak displacement without contact"
+    # Counts are whole.
+    fractiles = np.percentile(runs["impacts"], [50.0, 84.0])
+    assert (fractiles % 1.0).any(), runs["impacts"]
+    assert asked.loc["impacts", ["50 %", "84 %"]].tolist() == np.ceil(fractiles).tolist()
+
+
+def test_a_pier_with_a_height_is_no_storey() -> None:
+    scene = bridge()
+    pier = replace(scene.springs[0], height=7.0)
+    scene = replace(scene, springs=(pier, *scene.springs[1:]))
+    table = design_of_run(simulate(scene, "fast", duration=1.0)).set_index("quantity")
+    assert table.loc["springs.column.drift_ratio", "kind"] == "Piers and other yielding springs"
+    assert "Storeys" not in set(table["kind"])
+    assert not [name for name in table.index if name.startswith("structures.")]
 
 
 def test_where_a_record_failed_nobody_knows_whether_all_would_pass(tmp_path: Path) -> None:
