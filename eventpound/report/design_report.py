@@ -56,7 +56,7 @@ _PANELS = (
 _MOST_PANELS, _MOST_LISTED, _MOST_WARNINGS = 3, 4, 4
 _ROOM = ((2, 7, 2), (1, 5, 2), (1, 4, 1), (1, 3, 1))
 """Largest elements of a kind for each demand; parts in a table of the model; modes of structures:
-the first with which the sheet holds its sketch at `_LEAST` of its size at least."""
+the first with which one sheet holds them, the sketch at `_LEAST` of its size at least."""
 _LEAST = 0.8
 _SKETCH = WIDTH / 25.4, 3.6
 """Inches of the sketch."""
@@ -191,17 +191,18 @@ def _value(text: str) -> str | float:
 
 
 def design_sheets(told: Told) -> list[Sheet]:
-    """The two sheets of a report."""
-    sketch = _sketch(told)
-    firsts = (list(_first(told, sketch, *room)) for room in _ROOM)
-    first = next(firsts)
-    while share_of(first) < _LEAST and (shorter := next(firsts, None)) is not None:
-        first = shorter
-    return [first, list(_second(told))]
+    """The two sheets of a report, or three where one cannot hold the numbers and the model."""
+    sketch, second = _sketch(told), list(_second(told))
+    for most, parts, structures in _ROOM:
+        model = list(_model(told, sketch, parts, structures))
+        first = [*_first(told, most), *model]
+        if share_of(first) >= _LEAST:
+            return [first, second]
+    return [list(_first(told, _ROOM[0][0])), list(model_blocks(told)), second]
 
 
-def _first(told: Told, sketch: Picture, most: int, parts: int, structures: int) -> Iterator[Block]:
-    """What is needed, and of what model, with at most so many lines of each."""
+def _first(told: Told, most: int) -> Iterator[Block]:
+    """What is needed, with at most so many elements of each kind."""
     yield Head(told.case.title, title=True)
     yield Words(tuple(_asked(told)))
     yield Head("Design numbers")
@@ -209,8 +210,6 @@ def _first(told: Told, sketch: Picture, most: int, parts: int, structures: int) 
     # Of a run they are narrow.
     beside = Columns(tuple((table,) for table in numbers))
     yield from (beside,) if told.runs is None else numbers
-    yield Head("Model")
-    yield from _model(told, sketch, parts, structures)
 
 
 def _sketch(told: Told) -> Picture:
@@ -226,6 +225,7 @@ def model_blocks(told: Told) -> Iterator[Block]:
 
 def _model(told: Told, sketch: Picture, parts: int, structures: int) -> Iterator[Block]:
     """The sketch and the tables of the parts; a tall sketch stands beside tables."""
+    yield Head("Model")
     given = input_tables(_inputs(told.case, structures), told.trade.chosen)
     nothing = min(told.trade.nothing(dimension.unit) for dimension in TOLD)
     tables = [_short(table, nothing, parts) for table in given]

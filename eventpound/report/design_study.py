@@ -122,7 +122,7 @@ def _first(study: Plan, design: pd.DataFrame, trade: Trade) -> Iterator[Block]:
 def _second(study: Plan, design: pd.DataFrame, warnings: Sequence[str]) -> Iterator[Block]:
     base = study.bases[0]
     told = Told(base.at_first().case, design, None, None, "")
-    yield Head("Model of the first run")
+    yield Words(("The model is that of the first run.",))
     yield from model_blocks(told)
     if base.records:
         yield Head("Records")

@@ -65,7 +65,8 @@ def draw_shocks(axes: Axes, view: View) -> None:
             literal(f"{number} {name}"),
             (at, 1.0),
             xycoords=axes.get_xaxis_transform(),
-            xytext=(2.0, -2.0),
+            # Names of short shocks stand below those before them.
+            xytext=(2.0, -2.0 - 7.0 * ((number - 1) % 2)),
             textcoords="offset points",
             va="top",
             fontsize=6,

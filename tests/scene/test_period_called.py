@@ -93,10 +93,29 @@ def test_a_record_has_its_ordinate_at_the_period_of_the_scene(tmp_path: Path, at
     assert sa(motion, period(1e3, 80e3)) == pytest.approx(0.4, rel=1e-9)
 
 
-def test_a_suite_has_it_and_says_at_which_period(tmp_path: Path) -> None:
-    case = load_case(written(tmp_path, 'suite = "?.txt"'))
-    table = simulate_suite(case, intensities=True)
+SLOWER = """
+[[spring]]
+between = ["ground", "beside"]
+law = "linear"
+stiffness = 20e3
+"""
+
+
+@pytest.mark.parametrize(
+    ("at", "more"),
+    [('"T1"', ""), ('"T1 of deck"\npsa_damping = 0.1', SLOWER), ("0.3", SLOWER)],
+    ids=["scene", "body", "number"],
+)
+def test_a_suite_tells_the_ordinate_that_was_asked_for(tmp_path: Path, at: str, more: str) -> None:
+    file = written(tmp_path, 'suite = "?.txt"', at, more) / "case.toml"
+    if more:
+        file.write_text(file.read_text().replace("0 }]", '0 }, { name = "beside", mass = 1e3 }]'))
+    table = simulate_suite(load_case(tmp_path), intensities=True)
     assert table["Sa_T1"].to_numpy() / 9.80665 == pytest.approx([0.4, 0.4], rel=1e-9)
+
+
+def test_a_suite_says_at_which_period(tmp_path: Path) -> None:
+    case = load_case(written(tmp_path, 'suite = "?.txt"'))
     assert case.suite is not None
     assert "a PSA of 0.4 g at T1 = 0.7025 s" in case.suite.options.scaling
 
