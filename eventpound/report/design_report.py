@@ -58,8 +58,8 @@ _ROOM = ((2, 7, 2), (1, 5, 2), (1, 4, 1), (1, 3, 1))
 """Largest elements of a kind for each demand; parts in a table of the model; modes of structures:
 the first with which one sheet holds them, the sketch at `_LEAST` of its size at least."""
 _LEAST = 0.8
-_SKETCH = WIDTH / 25.4, 3.6
-"""Inches of the sketch."""
+_HIGH, _ALONE = 3.6, 5.4
+"""Heights of the sketch (in), beside numbers and on a sheet of the model alone."""
 _MOST_OF_SHOCKS = 14
 """Demands that are told by shock."""
 _MOTION, _DEMAND = 95.0, 58.0
@@ -123,11 +123,6 @@ class Told:
     def trade(self) -> Trade:
         """Units in which it is told."""
         return trade_of(self.scene, self.case.run.stated)
-
-    @property
-    def scaling(self) -> str:
-        """What is done to the size of every record; empty where nothing is."""
-        return scaling_words(self.case, self.trade)
 
     @property
     def names(self) -> Mapping[str, str]:
@@ -198,7 +193,7 @@ def design_sheets(told: Told) -> list[Sheet]:
         first = [*_first(told, most), *model]
         if share_of(first) >= _LEAST:
             return [first, second]
-    return [list(_first(told, _ROOM[0][0])), list(model_blocks(told)), second]
+    return [list(_first(told, _ROOM[0][0])), list(model_blocks(told, _ALONE)), second]
 
 
 def _first(told: Told, most: int) -> Iterator[Block]:
@@ -212,15 +207,15 @@ def _first(told: Told, most: int) -> Iterator[Block]:
     yield from (beside,) if told.runs is None else numbers
 
 
-def _sketch(told: Told) -> Picture:
-    figure = model_figure(told.scene, trade=told.trade, within=_SKETCH)
-    return Picture(figure, _SKETCH[1] * 25.4)
+def _sketch(told: Told, high: float = _HIGH) -> Picture:
+    figure = model_figure(told.scene, trade=told.trade, within=(WIDTH / 25.4, high))
+    return Picture(figure, high * 25.4)
 
 
-def model_blocks(told: Told) -> Iterator[Block]:
-    """The sketch and the tables of the parts, with room for most of them."""
+def model_blocks(told: Told, high: float = _HIGH) -> Iterator[Block]:
+    """The sketch, so high at most (in), and the tables of the parts, with room for most of them."""
     _, parts, structures = _ROOM[0]
-    yield from _model(told, _sketch(told), 3 * parts, structures)
+    yield from _model(told, _sketch(told, high), 3 * parts, structures)
 
 
 def _model(told: Told, sketch: Picture, parts: int, structures: int) -> Iterator[Block]:
@@ -296,7 +291,7 @@ def _asked(told: Told) -> Iterator[str]:
     if suite is None or runs is None:
         yield f"Under {_motion(told)}."
     else:
-        scaling = told.scaling.partition(" (")[0] or "every record as it is"
+        scaling = scaling_words(told.case, told.trade).partition(" (")[0] or "every record as it is"
         yield f"Under {int((runs[FAILED] == '').sum())} records; {scaling}."
     for i in lacking_contacts(told.scene, design)[:_MOST_LISTED]:
         contact = told.scene.contacts[i]

@@ -274,7 +274,10 @@ def _at_joints(scene: Scene, table: pd.DataFrame, rows: Mapping[str, _Row]) -> l
     """What joints need, then rows of each contact, of that first which lacks most of its gap."""
     if not scene.contacts:
         return []
-    order = [scene.contacts[i] for i in lacking_contacts(scene, table)]
+    worst = lacking_contacts(scene, table)
+    # Of each joint one first, however many floors strike at one of them.
+    firsts = [next(i for i in worst if i in joint) for joint in joints_of(scene)]
+    order = [scene.contacts[i] for i in sorted(worst, key=lambda i: i not in firsts)]
     needed = [_of(NEEDED, contact) for contact in order]
     joints = sorted(_of_joints(scene, rows), key=lambda row: needed.index(row["quantity"]))
     found = joints[:_MOST_JOINTS]

@@ -27,22 +27,12 @@ from eventpound.report.suite_plot import suite_figure
 from eventpound.report.symbols import dimension_of
 from eventpound.results.tables import Cells, cell_text, headed
 from eventpound.results.trade import trade_of
-from eventpound.study.large_scales import large_scales_of
 from eventpound.study.reading import StudyCase
 from eventpound.study.records import SA, sa_of_suite
 from eventpound.study.stated import stated
 from eventpound.study.table import MESSAGE, SUCCESS
-from eventpound.units import STANDARD_GRAVITY
 
 _PARTS = (16.0, 50.0, 84.0)
-
-
-def struck(done: pd.DataFrame) -> dict[str, str]:
-    """In how many runs there were impacts; nothing where that is not known."""
-    if "impacts" not in done or done.empty:
-        return {}
-    some, most = int((done["impacts"] > 0).sum()), int(done["impacts"].max())
-    return {"impacts": f"in {some} of {len(done)} runs, {most} at most"}
 
 
 def fractiles(
@@ -118,7 +108,7 @@ def study_sections(
     summary |= {"parts": "; ".join(parts)} if parts else {}
     first = study.bases[0].at_first().case
     return [
-        ("Summary", [html.list_of(summary | struck(done))]),
+        ("Summary", [html.list_of(summary)]),
         ("Axes", [_axes(study.columns, table)]),
         ("Figures", [html.figure_of(figure, said) for _, figure, said in figures_of(case, table)]),
         ("Quantities", [fractiles(done, numbers, "at", place)]),
@@ -189,7 +179,6 @@ def suite_sections(
     names, trade = record_names(table), trade_of(case.scene, case.run.stated)
     records = all_records(case, table, trade)
     return [
-        ("Summary", [_summary(case, table, done)]),
         ("Model", html.model_of(case) if case.scene.bodies else ()),
         ("Ground motions", _motions(case, done)),
         ("Response", _response(case, done)),
@@ -197,29 +186,6 @@ def suite_sections(
         ("Records", [html.folded(f"{len(table)} records", html.table_of(records))]),
         ("Origin", [html.origin_of(manifest)]),
     ]
-
-
-def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> html.Part:
-    """How many records there are, their sizes, and the largest response with its record."""
-    lines = {"records": f"{len(done)} of {len(table)}"}
-    if failed := len(table) - len(done):
-        lines["failed"] = f"{failed}; why is in the table of records"
-    if case.scaling:
-        lines["scaling"] = case.scaling
-    if large := large_scales_of(case):
-        lines["warning"] = large
-    if done.empty:
-        return html.list_of(lines)
-    for name, size, unit in (("PGA", STANDARD_GRAVITY, "g"), ("L_e", 0.01, "cm")):
-        values = done[name] / size
-        lines[name] = f"{values.min():.4g} to {values.max():.4g} {unit}"
-    peaks = {body.name: f"peaks.{body.name}.abs_max" for body in case.scene.bodies}
-    largest = [(done[name].max(), body, name) for body, name in peaks.items() if name in done]
-    if largest:
-        size, body, name = max(largest)
-        record = record_names(table)[done["record"][done[name].idxmax()]]
-        lines["largest"] = f"|u| = {size:.6g} m of {body} under {record}"
-    return html.list_of(lines | struck(done))
 
 
 def _motions(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:

@@ -31,10 +31,6 @@ def _paths(owner: str, words: str) -> tuple[str, ...]:
     return tuple(f"{owner}s.<{owner}>.{word}" for word in words.split())
 
 
-def _any(_scene: Scene, _i: int) -> bool:
-    return True
-
-
 def _of_law(*kinds: type) -> Callable[[Scene, int], bool]:
     """Whether a spring has such a law, and is no storey."""
 
@@ -73,7 +69,7 @@ class ElementKind:
 
     name: str
     demands: tuple[str, ...]
-    has: Callable[[Scene, int], bool] = _any
+    has: Callable[[Scene, int], bool] = lambda scene, i: True
 
 
 KINDS = (
