@@ -14,9 +14,9 @@ from eventpound.contact.cascade import WINDOW, is_endless, is_plastic
 from eventpound.contact.event_rows import EventRow, kind_of_impact, new_group, write_event
 from eventpound.contact.modes import IMPACT, duty
 from eventpound.contact.state import Instant, Now
-from eventpound.mechanics.clusters import Clusters, close_one, form_clusters, is_support
+from eventpound.mechanics.clusters import Clusters, close_one, form_clusters
 from eventpound.mechanics.contact_problem import Joints
-from eventpound.mechanics.followers import answers
+from eventpound.mechanics.followers import answers, is_support
 from eventpound.mechanics.impact import impact_law, inverse_mass, newton, push_apart
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
@@ -151,8 +151,11 @@ def _put_followers(clusters: Clusters, offset: Floats, mass: Floats, x: Floats) 
     for b in range(mass.size):
         c = clusters.of_body[b]
         if c >= 0:
-            moment[c] += mass[b] * (x[b] - offset[b])
+            moment[c] += 0.0 if is_support(b, mass) else mass[b] * (x[b] - offset[b])
             bodies[c] += 1
+    for b in range(mass.size):
+        if clusters.of_body[b] >= 0 and is_support(b, mass):
+            moment[clusters.of_body[b]] = x[b] - offset[b]
     answers(compliance, moment, placed)
     for c in range(count):
         for d in range(count):

@@ -13,18 +13,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters, form_clusters, is_support
+from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.contact_problem import (
     Joints,
-    answer,
     of_members,
     parts,
     solve_contacts,
 )
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
-from eventpound.mechanics.followers import felt_mass
+from eventpound.mechanics.followers import felt_mass, is_support
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import (
@@ -178,13 +177,17 @@ def _pressed(touching: Touching, pressed: Bools, undecided: Bools) -> Pressed:
 
 @kernel
 def _parts_two(joints: Joints, j: int) -> bool:
-    """Whether a force parts the two clusters of a contact, and what follows one is not both's."""
-    left, right, largest, size = joints.left[j], joints.right[j], 0.0, 0.0
-    for c in range(joints.inverse_mass.size):
-        largest = max(largest, abs(answer(joints.compliance, c, left, right)))
-        for end in (left, right):
-            size = max(size, abs(joints.compliance[c, end]) if end >= 0 else 0.0)
-    return largest > DEPENDENT * size
+    """Whether a force, or what is given, parts two clusters; what follows one is not both's."""
+    # Columns of what is given have another unit.
+    largest, size, n = np.zeros(2), np.zeros(2), joints.inverse_mass.size
+    for c in range(n):
+        kind = 1 if joints.inverse_mass[c] == 0.0 else 0
+        one, other = joints.left[j], joints.right[j]
+        apart = difference(joints.compliance[:, c], one, other)
+        largest[kind] = max(largest[kind], abs(apart))
+        for end in (one, other):
+            size[kind] = max(size[kind], abs(joints.compliance[end, c]) if end >= 0 else 0.0)
+    return largest[0] > DEPENDENT * size[0] or largest[1] > DEPENDENT * size[1]
 
 
 @kernel

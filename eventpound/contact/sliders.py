@@ -39,14 +39,18 @@ from eventpound.contact.rest import (
     system_of,
 )
 from eventpound.contact.state import Instant
-from eventpound.mechanics.clusters import Clusters, form_clusters, is_support
+from eventpound.mechanics.clusters import Clusters, form_clusters
+from eventpound.mechanics.contact_problem import Joints, delassus_matrix
+from eventpound.mechanics.followers import is_support
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers, put_numbers
-from eventpound.numerics.box import least_in_box, unless_rounding
+from eventpound.numerics.box import least_in_box
+from eventpound.numerics.box_by_matrix import unless_rounding
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
+from eventpound.numerics.small_systems import dot
 from eventpound.tolerances import TAKEN_OVER
 
 
@@ -147,7 +151,7 @@ def _forces(members: Ints, touching: Touching, sliders: Ints, at: Instant) -> tu
     told by the way in which these are about to part.
     """
     own = at.gap.size - sliders.size
-    acceleration, noise = _accelerations(touching)
+    acceleration, noise = _accelerations(touching, at.compliance)
     low, high = np.zeros(members.size), np.full(members.size, np.inf)
     start = np.zeros(members.size)
     for i in range(members.size):
@@ -158,12 +162,14 @@ def _forces(members: Ints, touching: Touching, sliders: Ints, at: Instant) -> tu
             # What slips along its branch is pulled by that force.
             start[i] = low[i] * at.branch[link]
     ends = touching.left[members], touching.right[members]
-    return least_in_box(ends, touching.mass, acceleration, noise, (low, high), start)
+    joints = Joints(touching.left, touching.right, 1.0 / touching.mass, at.compliance)
+    G = delassus_matrix(joints, members if at.compliance.size > 0 else members[:0])
+    return least_in_box(ends, touching.mass, acceleration, noise, (low, high), start, G)
 
 
 @kernel
-def _accelerations(touching: Touching) -> tuple[Floats, Floats]:
-    """Accelerations of the bodies without contacts (m/s²), (i, N), and their rounding, (N,).
+def _accelerations(touching: Touching, compliance: Floats) -> tuple[Floats, Floats]:
+    """Accelerations of coordinates without contacts (m/s²), (i, N), and their rounding, (N,).
 
     Behind the first row stand the Taylor coefficients of those of supports, where not all vanish:
     they may be less than the rounding of a sum, and still tell who gives way.
@@ -183,6 +189,9 @@ def _accelerations(touching: Touching) -> tuple[Floats, Floats]:
         for b in range(supports):
             rows[count, b] = unless_rounding(found[k, b], noise[k, b])
             moves |= rows[count, b] != 0.0
+        for p in range(supports, compliance.shape[0]):
+            # Only points go along with a support where nothing rests.
+            rows[count, p] = dot(compliance[p, :supports], rows[count, :supports])
         if k == 0:
             rows[0, :supports] = rows[count, :supports]
         count += moves
@@ -227,14 +236,13 @@ def locked_beside_sliders(
     resting: Bools,
     sliders: int,
     mass: Floats,
+    weights: Floats,
     clusters: Clusters,
 ) -> Bools:
     """Resting contacts (R,) that cannot open: the last ones, of sliders, give way either way."""
     own, members = resting.copy(), clusters.resting
     own[own.size - sliders :] = False
-    # No scene with sliders has points.
-    no_points = np.zeros((0, mass.size))
-    alone = form_clusters(left, right, opening, own, own, mass, no_points)
+    alone = form_clusters(left, right, opening, own, own, mass, weights)
     locked = np.zeros_like(resting)
     put_numbers(alone.locked, alone.resting, locked)
     result = np.zeros(members.size, np.bool_)

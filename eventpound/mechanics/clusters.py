@@ -21,9 +21,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.followers import Grouped, Rests, examine_rests, follow
+from eventpound.mechanics.followers import Grouped, Rests, examine_rests, follow, is_support
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
+from eventpound.numerics.compiled import in_python, kernel
 from eventpound.numerics.graph import grouped, on_directed_cycles, root
 
 
@@ -158,7 +158,7 @@ def _joined(
         carrying = _forest(tail, head, pressed[members], bodies + 1)
     elif rests > 0:
         ends, carry = (left[members], right[members]), pressed[members]
-        examine_rests(Rests(*ends, carry, carrying, locked, unique, force_map), weights)
+        examine_rests(Rests(*ends, carry, carrying, locked, unique, force_map), mass, weights)
     of_body, offset, count, elimination = _spread(
         members[carrying], first_node[carrying], second_node[carrying], gap, bodies
     )
@@ -195,17 +195,6 @@ def _unique(
             cluster[i] = of_body[end] if end < of_body.size else -1
             several[cluster[i]] |= not carrying[i]
     return ~several[cluster]
-
-
-@scalar_kernel
-def is_support(b: int, mass: Floats) -> bool:
-    """Whether a body moves as it is told to, whatever acts on it: its mass is inf.
-
-    So is that of a cluster which holds one.
-
-    Only the first bodies (`eventpound.mechanics.supported`) are supports, and not all are.
-    """
-    return mass[b] == np.inf
 
 
 def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> None:

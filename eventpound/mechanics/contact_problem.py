@@ -85,13 +85,14 @@ def _coupled_parts(joints: Joints) -> Ints:
 
 
 @scalar_kernel
-def answer(compliance: Floats, node: int, left: int, right: int) -> float:
+def answer(joints: Joints, node: int, left: int, right: int) -> float:
     """Acceleration of a coordinate under the force 1 of a contact that pushes its ends apart."""
     total = 0.0
-    if right >= 0:
-        total += compliance[node, right]
-    if left >= 0:
-        total -= compliance[node, left]
+    # None moves what is given, whose column tells how others go along.
+    if right >= 0 and joints.inverse_mass[right] > 0.0:
+        total += joints.compliance[node, right]
+    if left >= 0 and joints.inverse_mass[left] > 0.0:
+        total -= joints.compliance[node, left]
     return total
 
 
@@ -103,9 +104,9 @@ def coupling(joints: Joints, i: int, j: int) -> float:
     if joints.compliance.size > 0:
         # g = δ + u_right - u_left: positive where a body is on the same side of both.
         if right[i] >= 0:
-            total += answer(joints.compliance, right[i], left[j], right[j])
+            total += answer(joints, right[i], left[j], right[j])
         if left[i] >= 0:
-            total -= answer(joints.compliance, left[i], left[j], right[j])
+            total -= answer(joints, left[i], left[j], right[j])
         return total
     if right[i] >= 0:
         if right[i] == right[j]:

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.elements import (
     link_force,
@@ -21,6 +20,7 @@ from eventpound.mechanics.elements import (
     z_rate,
     z_slopes,
 )
+from eventpound.mechanics.followers import is_support
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration

@@ -10,7 +10,10 @@ has a large mass a light one is eliminated, as long as its coefficient is not sm
 Of N everybody wants the *compliance* ``A = N (Nᵀ M N)⁻¹ Nᵀ`` alone: clusters accelerate by
 ``q'' = A f - r a_g``, with ``r = A M 1``, which is 1 but where points lean on the ground; the
 contact problem has ``Wᵀ A W``; and ``A M q`` puts coordinates on their constraints, moving them the
-least, weighted by mass. ``A f`` keeps ``Wᵀ q`` and ``Wᵀ q'`` but for the rounding of the sums of an
+least, weighted by mass. What is given, as the motion of supports, is eliminated nowhere, and no
+force moves it: its columns of A, which would be zero, hold ``D = N_g - A M N_g`` instead, by which
+others go along. So f has the accelerations of what is given in the places of forces on it, and
+``r = A M 1 + D 1``. ``A f`` keeps ``Wᵀ q`` and ``Wᵀ q'`` but for the rounding of the sums of an
 integrator, some ``ε n^½`` of the motion after n steps; an event begins anew.
 
 Contact forces follow from what they put on the bodies, those with the least sum of squares.
@@ -45,6 +48,17 @@ class Rests(NamedTuple):
     locked: Bools
     unique: Bools
     force_map: Floats
+
+
+@scalar_kernel
+def is_support(b: int, mass: Floats) -> bool:
+    """Whether a body moves as it is told to, whatever acts on it: its mass is inf.
+
+    So is that of a cluster which holds one.
+
+    Only the first bodies (`eventpound.mechanics.supported`) are supports, and not all are.
+    """
+    return mass[b] == np.inf
 
 
 @kernel
@@ -85,13 +99,14 @@ def answers(compliance: Floats, force: Floats, values: Floats) -> None:
 @scalar_kernel
 def felt_mass(c: int, mass: Floats, compliance: Floats) -> float:
     """What a force at a cluster has to move (kg); `compliance` is empty without points."""
-    return 1.0 / compliance[c, c] if compliance.shape[0] > 0 else float(mass[c])
+    coupled = compliance.shape[0] > 0 and not is_support(c, mass)
+    return 1.0 / compliance[c, c] if coupled else float(mass[c])
 
 
 @deferred_kernel
-def examine_rests(rests: Rests, weights: Floats) -> None:
+def examine_rests(rests: Rests, mass: Floats, weights: Floats) -> None:
     """Fill in which contacts carry, are locked and have unique forces, and their forces."""
-    rows = _rows(rests, weights)
+    rows = _rows(rests, mass, weights)
     R, first = rows.shape[0], weights.shape[1] - weights.shape[0]
     basis, parts, order = np.zeros(rows.shape), np.zeros((R, R)), np.zeros(R, np.int64)
     count = 0
@@ -135,8 +150,8 @@ def examine_rests(rests: Rests, weights: Floats) -> None:
 
 
 @kernel
-def _rows(rests: Rests, weights: Floats) -> Floats:
-    """Directions of the gaps in the bodies alone, shape (R, bodies)."""
+def _rows(rests: Rests, mass: Floats, weights: Floats) -> Floats:
+    """Directions of the gaps in the bodies that forces move, shape (R, bodies)."""
     first = weights.shape[1] - weights.shape[0]
     rows = np.zeros((rests.left.size, first))
     for i in range(rests.left.size):
@@ -146,6 +161,8 @@ def _rows(rests: Rests, weights: Floats) -> Floats:
                     rows[i, b] += sign * weights[end - first, b]
             elif end >= 0:
                 rows[i, end] += sign
+    for b in range(first):
+        rows[:, b] *= not is_support(b, mass)
     return rows
 
 
@@ -259,7 +276,7 @@ def _ties(groups: int, weights: Floats, at: Grouped) -> Floats:
 def _eliminate(ties: Floats, mass: Floats) -> Ints:
     """Solve each equation for a group, and put that into the others; the row of each group, or -1.
 
-    Groups without mass first, which must not be left.
+    Groups without mass first, which must not be left; none that is given.
     """
     groups = mass.size
     row_of, done = np.full(groups, -1, np.int64), np.zeros(ties.shape[0], np.bool_)
@@ -267,9 +284,9 @@ def _eliminate(ties: Floats, mass: Floats) -> Ints:
         for e in range(done.size):
             largest, best = 0.0, -1
             for c in range(groups):
-                largest = max(largest, abs(ties[e, c]))
+                largest = max(largest, 0.0 if is_support(c, mass) else abs(ties[e, c]))
             for c in range(groups):
-                able = abs(ties[e, c]) > PIVOT * largest
+                able = abs(ties[e, c]) > PIVOT * largest and not is_support(c, mass)
                 if able and (best < 0 or mass[c] < mass[best]):
                     best = c
             if done[e] or largest <= DEPENDENT or (turn == 0 and mass[best] > 0.0):
@@ -310,22 +327,34 @@ def _number(ties: Floats, row_of: Ints) -> Ints:
 
 @kernel
 def _put_compliance(N: Floats, mass: Floats, out: Grouped) -> None:
-    """A and r of n groups with such masses (kg), N of shape (n, those left)."""
+    """A, with D in it, and r of n groups with such masses (kg), N of shape (n, those left)."""
     moving, free = N.shape
     # Nᵀ M N is symmetric: its lower triangle is all that is wanted.
-    K = np.zeros((free, free))
+    K, right, own = np.zeros((free, free)), N.T.copy(), mass.copy()
     for c in range(moving):
+        own[c] = 0.0 if is_support(c, mass) else mass[c]
         for a in range(free):
             for b in range(a + 1):
-                K[a, b] += mass[c] * N[c, a] * N[c, b]
-    answer = solve_definite(K, N.T.copy())
+                K[a, b] += own[c] * N[c, a] * N[c, b]
+    for g in range(free):
+        if is_support(g, mass):
+            K[g], K[:, g], K[g, g], right[g] = 0.0, 0.0, 1.0, 0.0
+    answer = solve_definite(K, right)
     out.compliance[:] = 0.0
     for c in range(moving):
         out.carried[c] = 0.0
         for d in range(moving):
             for a in range(free):
                 out.compliance[c, d] += N[c, a] * answer[a, d]
-            out.carried[c] += out.compliance[c, d] * mass[d]
+            out.carried[c] += out.compliance[c, d] * own[d]
+    for g in range(free):
+        for c in range(moving if is_support(g, mass) else 0):
+            along = N[c, g]
+            for d in range(moving):
+                along -= out.compliance[c, d] * own[d] * N[d, g]
+            out.compliance[c, g] = along
+            out.carried[c] += along
+    for c in range(moving):
         # What leans on no ground is carried by it whole.
         if abs(out.carried[c] - 1.0) <= TIE_ROUNDING * moving:
             out.carried[c] = 1.0

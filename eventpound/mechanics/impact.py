@@ -66,7 +66,7 @@ def impact_law(
         impulse[j] = x[i]
         if joints.compliance.size > 0:
             for b in range(v.size):
-                change[b] += answer(joints.compliance, b, left[j], right[j]) * x[i]
+                change[b] += answer(joints, b, left[j], right[j]) * x[i]
             continue
         if left[j] >= 0:
             change[left[j]] -= x[i] / mass[left[j]]

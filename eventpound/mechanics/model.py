@@ -285,6 +285,8 @@ def assemble(scene: Scene) -> Model:
     def coordinate(end: End) -> int:
         if isinstance(end, str):
             return index[end]
+        if all(index[name] < 0 for name, _ in weights_of(end)):
+            return -1
         return points.setdefault(weights_of(end), len(scene.bodies) + len(points))
 
     at = [(coordinate(c.left), coordinate(c.right)) for c in scene.contacts]

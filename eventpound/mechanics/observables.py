@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters, is_support
+from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.elements import contact_code, link_force
-from eventpound.mechanics.followers import answers, place_points
+from eventpound.mechanics.followers import answers, is_support, place_points
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing, Reduced, rate_on_ground
@@ -25,6 +25,7 @@ from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
+from eventpound.numerics.small_systems import dot
 from eventpound.tolerances import EPS
 
 
@@ -289,6 +290,9 @@ def _answer_coupled(bodies: Bodies, out: Observed) -> None:
         for b in range(bodies.mass.size):
             if bodies.of_body[b] >= 0:
                 force[bodies.of_body[b]] += out.pull[row, b]
+        for b in range(bodies.mass.size):
+            if bodies.of_body[b] >= 0 and is_support(b, bodies.mass):
+                force[bodies.of_body[b]] = out.pull[row, b]
         answers(bodies.compliance, force, found)
         for b in range(bodies.mass.size):
             c = bodies.of_body[b]
@@ -316,9 +320,7 @@ def _contact_forces(bodies: Bodies, out: Observed) -> None:
                 residual[row, b] = bodies.mass[b] * out.acceleration[row, b] - out.pull[row, b]
         if bodies.force_map.size > 0:
             for i in range(bodies.resting.size):
-                total = 0.0
-                for b in range(bodies.mass.size):
-                    total += bodies.force_map[i, b] * residual[row, b]
+                total = dot(bodies.force_map[i], residual[row])
                 out.contact_force[row, bodies.resting[i]] = total
             continue
         # Leaves first: what a body lacks its only contact left gives, and the body behind bears it.

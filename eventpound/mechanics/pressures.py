@@ -34,18 +34,20 @@ def press_locked(gap: Floats, force: Floats, unique: Bools, model: Model) -> Non
     shared, every = np.flatnonzero(~unique), contact_rows(model)
     resting = (force[:, shared] != 0.0).any(axis=1)
     shut = (gap[:, shared] == 0.0) & resting[:, None]
-    for group in np.unique(shut, axis=0):
+    # What is given balances any force.
+    every[:, : model.supports] = 0.0
+    for group in np.unique(shut[shut.any(axis=1)], axis=0):
         members = shared[group]
-        locked = members[_locked(members, model)]
+        locked = members[_locked(members, every, model)]
         if locked.size > 0:
             at = np.ix_((shut == group).all(axis=1), locked)
             force[at] = smallest_pressures(every[locked], force[at])
 
 
-def _locked(members: Ints, model: Model) -> Bools:
+def _locked(members: Ints, every: Floats, model: Model) -> Bools:
     """Which of these contacts at rest cannot open."""
     if model.weights.size > 0:
-        return in_python(held_closed)(contact_rows(model)[members])
+        return in_python(held_closed)(every[members])
     # All barriers are one node, which stands behind the bodies.
     tail, head = (side[members] % (model.bodies + 1) for side in (model.left, model.right))
     return in_python(on_directed_cycles)(tail, head, model.bodies + 1)

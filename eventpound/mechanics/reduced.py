@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters, is_support
+from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.elements import (
     contact_code,
@@ -28,10 +28,15 @@ from eventpound.mechanics.elements import (
     pull_per_z,
     z_rate,
 )
-from eventpound.mechanics.followers import answers
+from eventpound.mechanics.followers import answers, is_support
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
-from eventpound.mechanics.reduced_loads import add_load_coefficients, placed, support_of
+from eventpound.mechanics.reduced_loads import (
+    add_load_coefficients,
+    placed,
+    support_of,
+    taken,
+)
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED
@@ -371,7 +376,7 @@ def rate_on_ground(
             rate[iv[second]] -= force
     put_in = 0.0
     if forcing.family == LOADED:
-        put_in = _add_loads(forcing.start + tau, y, rate, system, forcing)
+        put_in = _add_loads(forcing.start + tau, ground, y, rate, system, forcing)
     for c in range(system.mass.size):
         # A support is left out, whose mass is infinite: its work is an entry of its own.
         put_in -= system.own_mass[c] * y[iv[c]] * ground
@@ -400,21 +405,23 @@ def _answer_coupled(ground: float, system: Reduced, rate: Floats) -> None:
 
 
 @kernel
-def _add_loads(t: float, y: Floats, rate: Floats, system: Reduced, forcing: Forcing) -> float:
+def _add_loads(
+    t: float, ground: float, y: Floats, rate: Floats, system: Reduced, forcing: Forcing
+) -> float:
     """Add the loads at t (s) to the forces that stand in place of v'; returns their power (W).
 
-    In clusters with supports the acceleration in space of these takes that place. Each gives what
-    moves with it what that takes, less what links and loads do.
+    In clusters with supports the acceleration in space of these takes that place.
     """
     loads, power = np.zeros((2, 1, system.mass.size)), 0.0
     pushed, driven = loads[0, 0], loads[1, 0]
     add_load_coefficients(t, system, forcing, 1, loads[0], loads[1])
-    # First, as `rate` still holds what the links alone do to a cluster.
-    for a in range(system.link.size if system.ledger >= 0 else 0):
-        k, c = support_of(system.link[a], forcing.coefficients), system.ends[a, 0]
-        if k >= 0:
-            taken = system.own_mass[c] * driven[c] - rate[system.iv[c]] - pushed[c]
-            rate[system.ledger + WORK_OF_SUPPORTS + k] = taken * y[system.iv[c]]
+    if system.ledger >= 0:
+        # First, as `rate` still holds what the links alone do to a cluster.
+        given = taken(ground, rate[system.iv], pushed, driven, system)
+        for a in range(system.link.size):
+            k, c = support_of(system.link[a], forcing.coefficients), system.ends[a, 0]
+            if k >= 0:
+                rate[system.ledger + WORK_OF_SUPPORTS + k] = given[c] * y[system.iv[c]]
     for c in range(system.mass.size):
         power += y[system.iv[c]] * pushed[c]
         rate[system.iv[c]] += pushed[c]

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.mechanics.followers import answers, is_support
 from eventpound.motion.loads import (
     LOADED,
     body_of,
@@ -26,12 +27,18 @@ from eventpound.numerics.compiled import kernel
 def place_supports(t: float, system: Any, forcing: Any, y: Floats) -> None:
     """Put the clusters of supports where these are at the time t (s) into y (size,).
 
+    What follows them goes along by its part, so that it stays on its constraints.
     A support is the first body of its cluster, which has no offset; of several that one counts.
     """
     for a in range(system.link.size - 1, -1, -1):
         row, c = row_of_link(system.link[a], forcing.coefficients), system.ends[a, 0]
         if row > 0 and is_driven(row, forcing.coefficients):
-            y[system.iq[c]], y[system.iv[c]] = support_motion(row, forcing, t)
+            u, v = support_motion(row, forcing, t)
+            for d in range(system.carried.size):
+                part = system.compliance[d, c] if d != c else 0.0
+                y[system.iq[d]] += part * (u - y[system.iq[c]])
+                y[system.iv[d]] += part * (v - y[system.iv[c]])
+            y[system.iq[c]], y[system.iv[c]] = u, v
 
 
 @kernel
@@ -65,6 +72,36 @@ def add_load_coefficients(
                     driven[k, c] = work[k]
                 else:
                     force[k, c] += work[k]
+
+
+@kernel
+def taken(ground: float, force: Floats, pushed: Floats, driven: Floats, system: Any) -> Floats:
+    """What a support in each cluster gives (N), (C,): what that takes, less what acts on it.
+
+    Parameters
+    ----------
+    ground : float
+        Acceleration of the ground (m/s²).
+    force, pushed : ndarray, shape (C,)
+        Of links and of loads (N).
+    driven : ndarray, shape (C,)
+        Accelerations of supports in space (m/s²).
+    system : Reduced
+        The mode.
+    """
+    acceleration, found = driven.copy(), np.empty(system.carried.size)
+    for c in range(found.size):
+        if not is_support(c, system.mass):
+            acceleration[c] = force[c] + pushed[c]
+    answers(system.compliance, acceleration, found)
+    for c in range(found.size):
+        acceleration[c] = found[c] + (1.0 - system.carried[c]) * ground
+    result = system.own_mass * acceleration - force - pushed
+    for c in range(found.size):
+        for d in range(found.size):
+            if is_support(c, system.mass) and d != c:
+                result[c] += system.compliance[d, c] * result[d]
+    return result
 
 
 @kernel

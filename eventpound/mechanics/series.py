@@ -11,14 +11,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents
 from eventpound.mechanics.elements import link_force, pull_per_z, z_coefficient
-from eventpound.mechanics.followers import answers
+from eventpound.mechanics.followers import answers, is_support
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
-from eventpound.mechanics.reduced_loads import add_load_coefficients, place_supports, support_of
+from eventpound.mechanics.reduced_loads import (
+    add_load_coefficients,
+    place_supports,
+    support_of,
+    taken,
+)
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats
@@ -82,11 +86,11 @@ def _add_ledger(
 
 @deferred_kernel
 def _add_work(
-    k: int, system: Reduced, forcing: Forcing, Y: Floats, pushed: Floats, taken: Floats
+    k: int, system: Reduced, forcing: Forcing, Y: Floats, pushed: Floats, given: Floats
 ) -> None:
     """Add coefficient k of the rate of input, and k + 1 of the work of supports, to Y.
 
-    `pushed`, `taken` (order, C): coefficients of loads, and of what a support in a cluster gives.
+    `pushed`, `given` (order, C): coefficients of loads, and of what a support in a cluster gives.
     """
     ledger, iv = system.ledger, system.iv
     for c in range(system.mass.size):
@@ -98,7 +102,7 @@ def _add_work(
             place, c = ledger + WORK_OF_SUPPORTS + support, system.ends[a, 0]
             for j in range(k + 1):
                 # The caller divides the first three places of the ledger by k + 1, and not these.
-                Y[k + 1, place] += Y[j, iv[c]] * taken[k - j, c] / (k + 1)
+                Y[k + 1, place] += Y[j, iv[c]] * given[k - j, c] / (k + 1)
 
 
 class _Terms(NamedTuple):
@@ -201,7 +205,7 @@ def motion_series(
     terms = _blank_terms(order, system)
     force, coupled = np.empty(system.mass.size), np.empty(system.compliance.shape[0])
     loads = np.zeros((2, order if forcing.family == LOADED else 0, system.mass.size))
-    pushed, driven, taken = loads[0], loads[1], np.zeros(loads[0].shape)
+    pushed, driven, given = loads[0], loads[1], np.zeros(loads[0].shape)
     if forcing.family == LOADED and system.mass.size > 0:
         place_supports(forcing.start + tau, system, forcing, Y[0])
         add_load_coefficients(forcing.start + tau, system, forcing, order, pushed, driven)
@@ -209,11 +213,12 @@ def motion_series(
     for k in range(order):
         _set_forces(k, Y, system, terms, speed_noise, force)
         if forcing.family == LOADED:
+            if system.ledger >= 0:
+                given[k] = taken(ground[k], force, pushed[k], driven[k], system)
             for c in range(force.size):
-                # Before the loads are added to the forces of the links: what a support has to give
-                # is what its mass takes, less what links and loads do.
-                taken[k, c] = system.own_mass[c] * driven[k, c] - force[c] - pushed[k, c]
                 force[c] += pushed[k, c]
+                if coupled.size > 0 and is_support(c, system.mass):
+                    force[c] = driven[k, c]
         answers(system.compliance, force, coupled)
         for c in range(system.mass.size):
             Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
@@ -227,7 +232,7 @@ def motion_series(
             out = Y[k + 1, system.ledger : system.ledger + 3]
             _add_ledger(k, system, Y, ground, terms.x_rate, out)
             if forcing.family == LOADED:
-                _add_work(k, system, forcing, Y, pushed, taken)
+                _add_work(k, system, forcing, Y, pushed, given)
             for i in range(out.size):
                 out[i] /= k + 1
     return Y

@@ -17,69 +17,29 @@ all others one of zero, each to the rounding of what w is summed from.
 Joints whose w vanish, the passive ones, never close a cycle: they make clusters that move as one.
 So w is the difference of two of their accelerations, and changes with its own force by the sum of
 their inverse masses, or by nothing: G is neither inverted nor tested for its rank, whatever the
-ratio of the masses. Each pivot moves one force by a way that is no rounding, and Gauss's function
+ratio of the masses. Only where joints are at points, and are given by their G, is that done. Each
+pivot moves one force by a way that is no rounding, and Gauss's function
 falls; since forces are the best of their passive set then, no set comes twice.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.box_by_matrix import (
+    BoxJoints,
+    Pivoting,
+    along_coupled,
+    settle_coupled,
+    take_force,
+    unless_rounding,
+)
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.tolerances import LCP_ROUNDING
 
 _PATIENCE = 8
 """Pivots for each joint, after which rounding is taken to be twice as large."""
-
-
-class _Joints(NamedTuple):
-    """A problem of k joints between n - 1 bodies and the ground, which is the last.
-
-    left, right, low, high, start: shape (k,). mass (n,), acceleration (n, m) and the noise of its
-    first column (n,).
-    """
-
-    left: Ints
-    right: Ints
-    low: Floats
-    high: Floats
-    start: Floats
-    mass: Floats
-    acceleration: Floats
-    noise: Floats
-
-
-class _Pivoting(NamedTuple):
-    """Where it has come to.
-
-    x, w, doubt (k, m): forces, their rates, rounding of the forces. passive (k,). along (k,): how
-    forces move with the one that enters. Of each body (n,): root, the heaviest of its cluster;
-    above, the joint on the way there, and next, the body behind that; order, all from roots on;
-    weight, with all that hang on it. load, rate (n, 2): forces on these and accelerations of
-    clusters beside that of the root alone, each with its noise. What may stop the one that enters,
-    its own w, other forces at their bounds, itself at its own: slack, level (k + 2, m) before it
-    and noise of that, speed (k + 2,) at which it is taken, 0 where there is none, and bound.
-    """
-
-    x: Floats
-    w: Floats
-    doubt: Floats
-    passive: Bools
-    along: Floats
-    root: Ints
-    above: Ints
-    next: Ints
-    order: Ints
-    weight: Floats
-    load: Floats
-    rate: Floats
-    slack: Floats
-    level: Floats
-    speed: Floats
-    bound: Floats
 
 
 @kernel
@@ -90,6 +50,7 @@ def least_in_box(
     noise: Floats,
     box: tuple[Floats, Floats],
     start: Floats,
+    G: Floats,
 ) -> tuple[Floats, bool]:
     """The limit of x for ε to zero, shape (k,), and whether there is a least value.
 
@@ -109,16 +70,18 @@ def least_in_box(
         Lower and upper bounds (N); they may be infinite.
     start : ndarray, shape (k,)
         A corner of the box, on which forces stay that nothing moves.
+    G : ndarray, shape (k, k)
+        Where joints are at coordinates that follow others (1/kg), else empty.
     """
     k, m, n = start.size, acceleration.shape[0], mass.size + 1
     # The ground is the last body, of infinite mass and no acceleration.
     masses, given, level = np.full(n, np.inf), np.zeros((n, m)), np.zeros(n)
     masses[:-1], given[:-1], level[:-1] = mass, acceleration.T, noise
     left, right = np.where(ends[0] < 0, n - 1, ends[0]), np.where(ends[1] < 0, n - 1, ends[1])
-    joints = _Joints(left, right, box[0], box[1], start, masses, given, level)
+    joints = BoxJoints(left, right, box[0], box[1], start, masses, given, level, G)
     x = np.zeros((k, m))
     x[:, 0] = start
-    work = _Pivoting(
+    work = Pivoting(
         x=x,
         w=np.zeros((k, m)),
         doubt=np.zeros((k, m)),
@@ -141,7 +104,7 @@ def least_in_box(
 
 
 @scalar_kernel
-def _pivot(joints: _Joints, work: _Pivoting) -> bool:
+def _pivot(joints: BoxJoints, work: Pivoting) -> bool:
     """`least_in_box`, its limit in the first column of x at last."""
     pivots, rounding = 0, LCP_ROUNDING
     while True:
@@ -158,8 +121,11 @@ def _pivot(joints: _Joints, work: _Pivoting) -> bool:
 
 
 @scalar_kernel
-def _settle(joints: _Joints, rounding: float, work: _Pivoting) -> None:
+def _settle(joints: BoxJoints, rounding: float, work: Pivoting) -> None:
     """Give passive joints the forces with which their w vanish; set the w of all."""
+    if joints.G.size > 0:
+        settle_coupled(joints, rounding, work)
+        return
     _plant(joints, work)
     for c in range(work.x.shape[1]):
         _set_loads(joints, c, rounding, work)
@@ -178,7 +144,7 @@ def _settle(joints: _Joints, rounding: float, work: _Pivoting) -> None:
 
 
 @scalar_kernel
-def _plant(joints: _Joints, work: _Pivoting) -> None:
+def _plant(joints: BoxJoints, work: Pivoting) -> None:
     """Find the clusters that passive joints make, each from its heaviest body on.
 
     What the joints of a light body carry is not left of a difference of heavy ones then.
@@ -207,7 +173,7 @@ def _plant(joints: _Joints, work: _Pivoting) -> None:
 
 
 @scalar_kernel
-def _set_loads(joints: _Joints, c: int, rounding: float, work: _Pivoting) -> None:
+def _set_loads(joints: BoxJoints, c: int, rounding: float, work: Pivoting) -> None:
     """Set what acts on bodies beside what moves their roots, without passive joints."""
     load, rate, mass = work.load, work.rate, joints.mass
     for b in range(mass.size):
@@ -226,7 +192,7 @@ def _set_loads(joints: _Joints, c: int, rounding: float, work: _Pivoting) -> Non
 
 
 @scalar_kernel
-def _load(joints: _Joints, i: int, force: float, noise: float, work: _Pivoting) -> None:
+def _load(joints: BoxJoints, i: int, force: float, noise: float, work: Pivoting) -> None:
     """Add the force of a joint to the loads."""
     for b, sign in ((joints.left[i], -1.0), (joints.right[i], 1.0)):
         work.load[b, 0] += sign * force
@@ -234,7 +200,7 @@ def _load(joints: _Joints, i: int, force: float, noise: float, work: _Pivoting) 
 
 
 @scalar_kernel
-def _share(mass: Floats, work: _Pivoting) -> None:
+def _share(mass: Floats, work: Pivoting) -> None:
     """Add up weights and loads towards the roots, and set the rates of those that can move."""
     load, rate, weight = work.load, work.rate, work.weight
     for b in range(mass.size):
@@ -251,7 +217,7 @@ def _share(mass: Floats, work: _Pivoting) -> None:
 
 
 @scalar_kernel
-def _carried(b: int, joints: _Joints, work: _Pivoting) -> float:
+def _carried(b: int, joints: BoxJoints, work: Pivoting) -> float:
     """Force of the joint above a body."""
     # m a of all that hangs on the joint, less what else pulls at it.
     force = work.weight[b] * work.rate[work.root[b], 0] - work.load[b, 0]
@@ -259,24 +225,15 @@ def _carried(b: int, joints: _Joints, work: _Pivoting) -> float:
 
 
 @scalar_kernel
-def _set_force(joints: _Joints, b: int, c: int, rounding: float, work: _Pivoting) -> None:
+def _set_force(joints: BoxJoints, b: int, c: int, rounding: float, work: Pivoting) -> None:
     """Give the joint above a body what it carries, its bound where it is there to rounding."""
     i, force = work.above[b], _carried(b, joints, work)
     noise = work.weight[b] * work.rate[work.root[b], 1] + work.load[b, 1] + rounding * abs(force)
-    # Bounds, and `start`, are of the first coefficient alone.
-    if c > 0:
-        work.x[i, c], work.doubt[i, c] = unless_rounding(force, noise), noise
-        return
-    noise += rounding * abs(joints.start[i])
-    # What it carries comes on top of what the accelerations have in them.
-    force += joints.start[i]
-    for bound in (joints.low[i], joints.high[i]):
-        force = bound if abs(force - bound) <= noise else force
-    work.x[i, 0], work.doubt[i, 0] = force, noise
+    take_force(joints, i, c, force, noise, rounding, work)
 
 
 @scalar_kernel
-def _first_wrong(joints: _Joints, work: _Pivoting) -> int:
+def _first_wrong(joints: BoxJoints, work: Pivoting) -> int:
     """The first force on a bound whose w tells it to leave that, or -1."""
     for i in range(work.passive.size):
         way = -1.0 if work.x[i, 0] <= joints.low[i] else 1.0
@@ -288,7 +245,7 @@ def _first_wrong(joints: _Joints, work: _Pivoting) -> int:
 
 
 @scalar_kernel
-def _enter(joints: _Joints, j: int, rounding: float, work: _Pivoting) -> bool:
+def _enter(joints: BoxJoints, j: int, rounding: float, work: Pivoting) -> bool:
     """Move x_j off its bound until its w vanishes, or it comes to its other bound.
 
     Passive joints keep their w of zero on the way, and leave where they come to a bound. False
@@ -318,12 +275,15 @@ def _enter(joints: _Joints, j: int, rounding: float, work: _Pivoting) -> bool:
         if blocking == j:
             return True
         work.passive[blocking] = False
-        _plant(joints, work)
+        if joints.G.size == 0:
+            _plant(joints, work)
 
 
 @scalar_kernel
-def _set_along(joints: _Joints, j: int, way: float, work: _Pivoting) -> float:
+def _set_along(joints: BoxJoints, j: int, way: float, work: Pivoting) -> float:
     """Set how forces move with x_j, which moves by `way`; by how much its w grows with it."""
+    if joints.G.size > 0:
+        return along_coupled(joints, j, way, work)
     along = work.along
     for b in range(work.root.size):
         for s in range(2):
@@ -343,7 +303,7 @@ def _set_along(joints: _Joints, j: int, way: float, work: _Pivoting) -> float:
 
 @scalar_kernel
 def _set_stops(
-    joints: _Joints, j: int, way: float, curvature: float, rounding: float, work: _Pivoting
+    joints: BoxJoints, j: int, way: float, curvature: float, rounding: float, work: Pivoting
 ) -> None:
     """Set what may stop x_j, whose w changes by `curvature` on its way."""
     x, along, k = work.x, work.along, work.along.size
@@ -364,7 +324,7 @@ def _set_stops(
 
 
 @scalar_kernel
-def _first(work: _Pivoting) -> int:
+def _first(work: Pivoting) -> int:
     """The first stop, by the coefficients of their steps one after the other; or -1.
 
     Stops that come later lose their speed.
@@ -384,12 +344,6 @@ def _first(work: _Pivoting) -> int:
         if speed[i] > 0.0:
             return i
     return -1
-
-
-@scalar_kernel
-def unless_rounding(value: float, noise: float) -> float:
-    """A value, zero where it is within its noise."""
-    return value if abs(value) > noise else 0.0
 
 
 @scalar_kernel

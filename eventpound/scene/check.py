@@ -28,7 +28,6 @@ from eventpound.scene.spring import (
     Law,
     Linear,
     Series,
-    Slider,
     Spring,
 )
 from eventpound.scene.stability import unstable
@@ -203,9 +202,6 @@ def _spring_problems(scene: Scene) -> Iterator[Problem]:
     for element, spring in zip(elements, scene.springs, strict=True):
         yield from _end_problems(element, spring.between, scene, GROUND)
         yield from _law_problems(element, spring.law)
-        if isinstance(spring.law, Slider) and any(c.at_point for c in scene.contacts):
-            accepted = "slider only in a scene without contacts at points between bodies"
-            yield element.problem("law", spring.law.word.value, accepted)
         yield from element.numbers(spring)
         if spring.weight is not None:
             yield from _weight_problems(element, spring)
@@ -367,16 +363,18 @@ def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
 
 def _point_problems(element: _Element, contact: Contact, scene: Scene) -> Iterator[Problem]:
     """What is wrong with a contact at a point between bodies."""
-    known = {body.name for body in scene.bodies}
-    some = _some([body.name for body in scene.bodies])
+    known, held = {b.name for b in scene.bodies}, [support.name for support in scene.supports]
+    names = [body.name for body in scene.bodies]
     for end in (contact.left, contact.right):
         if isinstance(end, str):
-            if end not in (known | {BARRIER}):
-                yield element.problem("between", end, f"one of {some}, {BARRIER}, or a point")
+            if end not in (known | {BARRIER, *held}):
+                some = _some(names, [BARRIER, *held])
+                yield element.problem("between", end, f"one of {some}, or a point")
             continue
         for name, weight in end.weights:
-            if name not in (known | {GROUND}):
-                accepted = f"points between bodies and the ground: {some}, {GROUND}"
+            if name not in (known | {GROUND, *held}):
+                some = _some(names, [GROUND, *held])
+                accepted = f"points between bodies and the ground: {some}"
                 yield element.problem("between", name, accepted)
             elif not 0.0 < weight <= 1.0 + WHOLE:
                 accepted = "positive weights, 1 in sum"
@@ -391,9 +389,6 @@ def _point_problems(element: _Element, contact: Contact, scene: Scene) -> Iterat
     if contact.law is not None:
         accepted = f"{NEWTON} alone for a contact at a point between bodies"
         yield element.problem("law", contact.law.kind, accepted)
-    if scene.supports:
-        accepted = "none in a scene with supports"
-        yield element.problem("between", "a point between bodies", accepted)
 
 
 def _restitution(element: _Element, contact: Contact) -> Iterator[Problem]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 
-from eventpound.scene.contact import BARRIER
+from eventpound.scene.contact import BARRIER, End
+from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 
@@ -29,14 +30,17 @@ def grounded(scene: Scene, names: Collection[str] | None = None) -> Scene:
         springs=tuple(replace(s, between=ends_on_ground(s.between, gone)) for s in scene.springs),
         dashpots=tuple(replace(d, between=ends_on_ground(d.between, gone)) for d in scene.dashpots),
         contacts=tuple(
-            replace(
-                c,
-                left=BARRIER if c.left in gone else c.left,
-                right=BARRIER if c.right in gone else c.right,
-            )
+            replace(c, left=_at_barrier(c.left, gone), right=_at_barrier(c.right, gone))
             for c in scene.contacts
         ),
     )
+
+
+def _at_barrier(end: End, supports: Collection[str]) -> End:
+    """An end of a contact with a barrier, of a point with the ground, in the place of supports."""
+    if isinstance(end, str):
+        return BARRIER if end in supports else end
+    return Point(tuple((GROUND if b in supports else b, weight) for b, weight in end.weights))
 
 
 def ends_on_ground(between: tuple[str, str], supports: Collection[str]) -> tuple[str, str]:

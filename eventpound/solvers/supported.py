@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
-from itertools import permutations
+from itertools import permutations, product
 
 import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.supported import lowered, moving_supports, support_motion
 from eventpound.numerics.arrays import Floats
-from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.contact import BARRIER, Contact, weights_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Energy, History, Recording, SupportHistory, Task
@@ -92,8 +92,7 @@ def forces_on_supports(scene: Scene, history: History, rates: Floats) -> Floats:
     for k, support in enumerate(scene.supports):
         total[:, k] = link_force_on({support.name}, scene, history.force, rate)
         for j, contact in enumerate(scene.contacts):
-            # No support is at an end of a contact at a point.
-            side = (contact.right == support.name) - (contact.left == support.name)
+            side = sum(part for end, part in contact.direction if end == support.name)
             total[:, k] += side * history.contact_force[:, j]
     return total
 
@@ -192,13 +191,14 @@ def _shut(recording: Recording, scene: Scene, rows: slice) -> list[Contact]:
 
 def _row(left: str, right: str, shut: list[Contact], fixed: Collection[str]) -> list[str]:
     """Contacts by which bodies are in a row from a support, or the barrier, to one on its right."""
-    pairs = [c.ends for c in shut]
-    onward = _reached(left, pairs, fixed)
-    back = _reached(right, [(b, a) for a, b in pairs], fixed)
-    return [c.name for c in shut if c.ends[0] in onward and c.ends[1] in back]
+    ends = [tuple({name for name, _ in weights_of(end)} for end in (c.left, c.right)) for c in shut]
+    pairs = {pair for of_left, of_right in ends for pair in product(of_left, of_right)}
+    onward = _reached(left, pairs, {GROUND, *fixed})
+    back = _reached(right, {(b, a) for a, b in pairs}, {GROUND, *fixed})
+    return [c.name for c, (a, b) in zip(shut, ends, strict=True) if a & onward and b & back]
 
 
-def _reached(start: str, pairs: Collection[tuple[str, ...]], fixed: Collection[str]) -> set[str]:
+def _reached(start: str, pairs: Collection[tuple[str, str]], fixed: Collection[str]) -> set[str]:
     """What pairs lead to from one end, over bodies alone, and that end."""
     reached = {start}
     for _ in pairs:

@@ -16,6 +16,7 @@ from eventpound.results.input_tables import input_tables
 from eventpound.results.inputs import inputs_of
 from eventpound.scene import BARRIER, GROUND, Contact, ContactLaw, Point, Support
 from eventpound.scene.check import check_scene
+from eventpound.scene.grounded import grounded
 from eventpound.simulation import check_solver, response_of
 
 UPPER = {"B1": 0.4, "B2": 0.6}
@@ -74,11 +75,16 @@ def test_refused(left: object, right: object, message: str) -> None:
     assert message in problems(left, right)
 
 
-def test_laws_and_supports_are_refused() -> None:
+def test_laws_are_refused_and_supports_are_bodies() -> None:
     assert "accepted: newton alone" in problems(law="linear", stiffness=1e3, restitution=None)
     scene = case_with().scene
-    with pytest.raises(InputError, match="accepted: none in a scene with supports"):
-        check_scene(replace(scene, supports=(Support("pier", 0.5),)))
+    between = Contact("c", "A", {"pier": 0.5, "B1": 0.5}, 0.01, 0.5)
+    with pytest.raises(InputError, match="points between bodies and the ground: A, B1, B2, ground"):
+        check_scene(replace(scene, contacts=(between,)))
+    held = replace(scene, contacts=(between,), supports=(Support("pier", 0.5),))
+    check_scene(held)
+    (alone,) = grounded(held).contacts
+    assert alone.right == Point((("ground", 0.5), ("B1", 0.5)))
     soft = Contact("c", "A", UPPER, 0.01, 0.5, ContactLaw("linear", 1e3))
     with pytest.raises(InputError, match="newton alone"):
         check_scene(replace(scene, contacts=(soft,)))

@@ -33,11 +33,12 @@ class _Box(NamedTuple):
     high: np.ndarray
     start: np.ndarray
 
-    def least(self) -> tuple[np.ndarray, bool]:
+    def least(self, *, by_matrix: bool = False) -> tuple[np.ndarray, bool]:
         """What is tested."""
+        G = self.W.T / self.mass @ self.W if by_matrix else np.zeros((0, 0))
         ends, none = (self.ends[0], self.ends[1]), np.zeros(self.mass.size)
         box = self.low, self.high
-        x, found = least_in_box(ends, self.mass, self.a, none, box, self.start)
+        x, found = least_in_box(ends, self.mass, self.a, none, box, self.start, G)
         return x, bool(found)
 
 
@@ -106,13 +107,17 @@ def _could_fall(box: _Box, x: np.ndarray) -> tuple[float, float]:
     return float(fall), allowed
 
 
+@pytest.mark.parametrize("by_matrix", [False, True])
 @pytest.mark.parametrize("digits", [False, True])
-def test_no_other_forces_are_less(*, digits: bool) -> None:
+def test_no_other_forces_are_less(*, digits: bool, by_matrix: bool) -> None:
     rng = np.random.default_rng(9)
     seen = none = 0
     for _ in range(400):
         box = _some(rng, digits=digits)
-        x, found = box.least()
+        if by_matrix and np.ptp(np.log10(box.mass[np.isfinite(box.mass)])) > 3.0:
+            # By a matrix digits are lost to the ratio of the masses.
+            continue
+        x, found = box.least(by_matrix=by_matrix)
         assert ((x >= box.low) & (x <= box.high)).all()
         if not found:
             none += 1

@@ -1,4 +1,4 @@
-"""Bodies with sliders and contacts by SciPy with events.
+"""Bodies with sliders and contacts, also at points between bodies, by SciPy with events.
 
 What an instant leaves open is tried in every pattern of slip, stick, rest and opening: in the right
 one slips go along their friction's pull, gaps open, and some forces within their bounds hold the
@@ -13,9 +13,9 @@ from itertools import product
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import linprog
+from scipy.optimize import linprog, nnls
 
-from eventpound.scene import Linear, Scene, Slider
+from eventpound.scene import Linear, Point, Scene, Slider
 
 TOLERANCE = 1e-12
 NOISE = 1e-11
@@ -23,6 +23,10 @@ NOISE = 1e-11
 then tells where it goes."""
 STILL = 1e-10
 """Part of L/T below which what passed zero stands still."""
+LAST = 1e-5
+"""Part of L/T below which an impact is plastic: a flight after it would be within the noise."""
+PASSED = 1e-8
+"""Part of L by which no gap may be below zero."""
 MOST_EVENTS = 400
 MOST_STEPS = 1500
 """A run has more: SciPy does not see what begins and ends within one."""
@@ -49,11 +53,12 @@ class Program:
         self.mass = np.array([body.mass for body in scene.bodies])
         names += [support.name for support in scene.supports]
 
-        def row(ends: tuple[str, str]) -> np.ndarray:
+        def row(ends: tuple[str | Point, str | Point]) -> np.ndarray:
             found = np.zeros(len(names))
-            for end_name, sign in zip(ends, (-1.0, 1.0), strict=True):
-                if end_name in names:
-                    found[names.index(end_name)] += sign
+            for end, sign in zip(ends, (-1.0, 1.0), strict=True):
+                for name, weight in end.weights if isinstance(end, Point) else ((end, 1.0),):
+                    if name in names:
+                        found[names.index(name)] += sign * weight
             return found
 
         self.stiffness, self.damping = np.zeros((2, len(names), len(names)))
@@ -122,7 +127,9 @@ class Program:
         """
         D = self.held()
         a, found = self.balanced(t, u, v)
-        apart = float(np.abs(D @ a).max()) / (np.abs(a).max() + (self.F / self.mass.min()).max())
+        apart = float(np.abs(D @ a).max()) / (
+            np.abs(a).max() + (self.F / self.mass.min()).max(initial=0.0)
+        )
         room = self._room(D[:, : self.n], found, self.free(t, u, v))
         return room if apart < 0.01 * NOISE else min(room, -apart)
 
@@ -160,6 +167,27 @@ class Program:
             default=np.inf,
         )
         return float(min(fixed, shared, 1e300)) / unit
+
+    def strike(self, t: float, u: np.ndarray, v: np.ndarray, closing: set[int]) -> np.ndarray:
+        """Velocities after the impacts of contacts that close or are closed, one problem by one."""
+        W = self.W[:, : self.n]
+        gaps = self.gap + self.W @ self.with_supports(t, u, "displacement")
+        shut = [j for j in range(gaps.size)
+                if j in closing or self.rest[j] or gaps[j] <= STILL * self.speed]  # fmt: skip
+        for _ in range(20):
+            rates = self.W @ self.with_supports(t, v, "velocity")
+            taken = [j for j in shut if rates[j] <= STILL * self.speed]
+            if not any(rates[j] < -STILL * self.speed for j in taken):
+                return v
+            A = W[taken] / np.sqrt(self.mass)
+            bounces = rates[taken] < -LAST * self.speed
+            q = (1.0 + self.restitution[taken] * bounces) * rates[taken]
+            b = np.linalg.lstsq(A, q, 1e-9)[0]
+            impulses = nnls(A.T, -b)[0]
+            if np.abs(A @ b - q).max() > 1e-9 * np.abs(q).max():
+                raise ArithmeticError("impacts of contacts that depend on each other")
+            v = v + W[taken].T @ impulses / self.mass
+        raise ArithmeticError("impacts without end")
 
     def decide(self, t: float, u: np.ndarray, v: np.ndarray) -> None:
         """Who sticks and slips, rests and opens."""
@@ -230,20 +258,18 @@ def solved(scene: Scene, end: float, length: float, time: float,
             u, v = np.split(run.y[:, -1], 2)
             moved = p.B @ (p.with_supports(t, u, "displacement") - before)
             answer.path += np.abs(moved) * (p.slip != 0)
-            struck = False
+            gaps = p.gap + p.W @ p.with_supports(t, u, "displacement")
+            if (gaps[~p.rest] < -PASSED * length).any():
+                raise ArithmeticError("an impact within a step was not seen")
+            struck, closing = False, set()
             for (kind, i), times in zip(owners, run.t_events, strict=True):
                 if times.size and kind == "contact":
-                    w = p.W[i, :n]
-                    closing = float(p.W[i] @ p.with_supports(t, v, "velocity"))
-                    impulse = -(1.0 + p.restitution[i]) * closing
-                    v = v + impulse / float(w @ (w / p.mass)) * w / p.mass
-                    if p.rest.any():
-                        raise ArithmeticError("an impact where contacts rest")
+                    closing.add(i)
                     answer.impacts.append(t)
-                    struck = True
                 elif times.size:
                     answer.turns.append(t)
-                    struck = True
+                struck |= times.size > 0
+            v = p.strike(t, u, v, closing) if closing else v
             if len(answer.impacts) + len(answer.turns) > MOST_EVENTS:
                 raise ArithmeticError("events accumulate")
             if struck:

@@ -136,7 +136,7 @@ def test_nothing_is_taken_from_the_reduced_equations() -> None:
         "eventpound.mechanics.reduced": {"Forcing"},
         "eventpound.mechanics.observables": set(),
         "eventpound.mechanics.series": set(),
-        "eventpound.mechanics.clusters": {"Clusters", "is_support"},
+        "eventpound.mechanics.clusters": {"Clusters"},
     }
     assert len(OWN) == 2
     for path in OWN:

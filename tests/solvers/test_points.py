@@ -18,6 +18,7 @@ from eventpound.case.solver_options import SolverOptions
 from eventpound.mechanics.model import assemble
 from eventpound.motion import NoMotion, Ricker
 from eventpound.motion.constant import Constant
+from eventpound.motion.pulses import Sine
 from eventpound.numerics.compiled import PLAIN
 from eventpound.scene import (
     BARRIER,
@@ -30,8 +31,11 @@ from eventpound.scene import (
     Linear,
     Point,
     Scene,
+    Slider,
     Spring,
+    Support,
 )
+from eventpound.scene.check import check_scene
 from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
@@ -40,6 +44,7 @@ from eventpound.study.many import simulate_many
 from tests.properties.restored import restored
 from tests.properties.transforms import mirrored, scaled
 from tests.solvers.random_scenes import pointed_scene, random_scene
+from tests.solvers.slider_oracle import solved
 from tests.solvers.ways import WAYS, directly_and_by
 
 SOLVERS = ("cvode", "ida", "fast")
@@ -160,6 +165,74 @@ def test_random_scenes(seed: int) -> None:
         np.testing.assert_allclose(
             ours.max_force, theirs.max_force, atol=1e-5 * theirs.max_force.max()
         )
+
+
+def plain_scene(seed: int, supports: int, *, slides: bool = False) -> tuple[Scene, float]:
+    """Two to four bodies on linear springs, and sliders if it slides.
+
+    Contacts are at points on them, the ground and supports.
+    """
+    rng = np.random.default_rng([seed, supports, 58])
+    names = [f"b{i}" for i in range(int(rng.integers(2, 5)))]
+    held = [f"p{k}" for k in range(supports)]
+    motions = [Sine(rng.uniform(0.5, 1.5), rng.uniform(2.0, 9.0)) for _ in held]
+    laws = [Linear(rng.uniform(0.5, 3.0)) for _ in names]
+    if slides:
+        laws += [Slider(rng.uniform(0.05, 0.5), rng.uniform(0.5, 2.0)) for _ in names[1:]]
+    springs = [
+        Spring(f"k{i}", (str(rng.choice([GROUND, *held])), name), law)
+        for i, (name, law) in enumerate(zip(names + names[1:], laws, strict=False))
+    ]
+    contacts = []
+    for i in range(int(rng.integers(1, 4))):
+        striking, *on = rng.permutation([*names, *held, GROUND]).tolist()[:3]
+        w = float(rng.uniform(0.15, 0.85))
+        ends = (BARRIER if striking == GROUND else striking, Point({on[0]: w, on[1]: 1.0 - w}))
+        if {striking, *on} & {*names}:
+            gap = float(rng.choice([0.0, rng.uniform(0.05, 0.5)], p=(0.3, 0.7)))
+            e = float(rng.choice([0.0, 0.5], p=(0.8, 0.2)))
+            contacts.append(Contact(f"c{i}", *(ends if rng.random() < 0.5 else ends[::-1]), gap, e))
+    scene = Scene(
+        bodies=tuple(Body(name, rng.uniform(0.5, 3.0)) for name in names),
+        springs=tuple(springs),
+        dashpots=tuple(Dashpot((GROUND, name), rng.uniform(0.05, 0.3)) for name in names),
+        contacts=tuple(contacts),
+        motion=Sine(rng.uniform(0.3, 1.5), rng.uniform(3.0, 12.0)),
+        supports=tuple(Support(n, motion=m) for n, m in zip(held, motions, strict=True)),
+        forces=tuple(Force(name, Constant(0.4 * rng.normal()), True) for name in names),
+    )
+    return scene, float(rng.uniform(8.0, 15.0))
+
+
+@pytest.mark.parametrize("slides", [False, True])
+@pytest.mark.parametrize("supports", [0, 1, 2])
+def test_random_scene_moves_as_in_another_program(supports: int, *, slides: bool) -> None:
+    """That shares nothing with the package: it tries who rests, and has SciPy solve impacts."""
+    scene, end = plain_scene(0, supports, slides=slides)
+    check_scene(scene)
+    first = run(scene, end, 1e-11, energy=True)
+    size = float(np.abs(first.history.u).max())
+    moved = (scene.motion, *(support.motion for support in scene.supports))
+    corners = {piece.end for motion in moved if motion for piece in motion.pieces()}
+    answer = solved(scene, end, size, 1.0, tuple(sorted(corners)))
+    for solver in SOLVERS:
+        found = first if solver == "cvode" else run(scene, end, 1e-11, solver, energy=True)
+        np.testing.assert_allclose(found.u, answer.u, rtol=0.0, atol=1e-7 * size, err_msg=solver)
+        assert found.energy is not None
+        assert abs(found.energy.closure) < 1e-7, solver
+
+
+def test_a_point_on_the_ground_alone_is_a_barrier() -> None:
+    """It is no coordinate, whose number those behind it would have to skip."""
+    ends = ({GROUND: 1.0}, BARRIER)
+    models = [
+        assemble(
+            replace(towers(), contacts=(Contact("c", end, "B1", 0.01, 0.5), *towers().contacts))
+        )
+        for end in ends
+    ]
+    for name in ("left", "right", "weights", "mass"):
+        np.testing.assert_array_equal(*(getattr(model, name) for model in models))
 
 
 def test_many_at_once_are_those_one_by_one() -> None:

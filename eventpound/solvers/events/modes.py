@@ -142,7 +142,7 @@ class ModeTable:
         if model.sliders.size > 0 and not clusters.tree:
             locked = in_python(locked_beside_sliders)
             clusters = clusters._replace(
-                locked=locked(*rests, model.sliders.size, model.mass, clusters)
+                locked=locked(*rests, model.sliders.size, model.mass, model.weights, clusters)
             )
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False

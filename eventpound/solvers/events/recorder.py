@@ -294,16 +294,15 @@ def impact_terms(
     given = np.zeros(model.supports)
     if not isinstance(motion, LoadedMotion):
         return lost, given
+    opens = model.rates(np.eye(model.bodies))
     for event in events:
-        if model.elements.kind[event.contact] != NO_LAW:
+        if model.elements.kind[event.contact] != NO_LAW or event.impulse <= 0.0:
             continue
-        for end, sign in ((model.left[event.contact], 1.0), (model.right[event.contact], -1.0)):
-            if 0 <= end < model.supports and event.impulse > 0.0:
-                (_, v), (_, v_0) = (
-                    travelled(m, np.array(event.t))
-                    for m in (motion.loads[end].signal, motion.ground)
-                )
-                given[end] += sign * event.impulse * float(v - v_0)
+        for s in np.flatnonzero(opens[: model.supports, event.contact]):
+            (_, v), (_, v_0) = (
+                travelled(m, np.array(event.t)) for m in (motion.loads[s].signal, motion.ground)
+            )
+            given[s] -= opens[s, event.contact] * event.impulse * float(v - v_0)
     return lost, given
 
 

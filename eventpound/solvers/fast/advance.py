@@ -9,7 +9,7 @@ from eventpound.contact.kinks import (
     lacks_branch,
     pass_kinks,
 )
-from eventpound.mechanics.clusters import is_support
+from eventpound.mechanics.followers import is_support
 from eventpound.mechanics.monitored import update_settled
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
@@ -17,7 +17,6 @@ from eventpound.motion.forcing import CurrentPiece, ground_acceleration, ground_
 from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.by_address import by_address
 from eventpound.solvers.fast.compiled import (
-    compiled,
     compiled_deferred,
     compiled_noinline,
 )
@@ -25,7 +24,7 @@ from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.extremes import distance_now, take_instant
 from eventpound.solvers.fast.followed import follows, put_on_branches
 from eventpound.solvers.fast.instant import instant_of, settle, start
-from eventpound.solvers.fast.record import has_room, save_record, write_row
+from eventpound.solvers.fast.record import goes_with, has_room, save_record, write_row
 from eventpound.solvers.fast.run import GOING_ON, SETTLED, FastRun, piece_of
 from eventpound.solvers.fast.sliding import any_slider
 from eventpound.solvers.fast.step import take_step
@@ -107,22 +106,15 @@ def _put_supports(piece: CurrentPiece, run: FastRun) -> None:
         size = limits.length + abs(u) + abs(v) * time
         strays = max(abs(du), abs(dv) * time) > LENGTH * size
         for b in range(mass.size):
-            if _goes_with(b, s, run):
-                state.v[b] += dv
-                state.u[b] += du if strays else 0.0
+            part = goes_with(b, s, run)
+            if part != 0.0:
+                state.v[b] += part * dv
+                state.u[b] += part * du if strays else 0.0
         for j in range(state.gap.size):
             if strays and state.gap[j] > 0.0 and not state.resting[j]:
-                side = 1.0 if _goes_with(contacts.right[j], s, run) else 0.0
-                side -= 1.0 if _goes_with(contacts.left[j], s, run) else 0.0
+                side = goes_with(contacts.right[j], s, run) - goes_with(contacts.left[j], s, run)
                 state.gap[j] = max(0.0, state.gap[j] + side * du)
                 state.gap_rate[j] += side * dv
-
-
-@compiled
-def _goes_with(b: int, s: int, run: FastRun) -> bool:
-    """Whether a body, -1 for none, is a support s or rests on it."""
-    of_body = run.series.of_body
-    return b == s or (b >= 0 and of_body[b] == of_body[s] >= 0 and not is_support(b, run.plan.mass))
 
 
 @compiled_deferred.but(ahead=True)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.clusters import is_support
-from eventpound.mechanics.followers import place_points, row_answer
+from eventpound.mechanics.followers import is_support, place_points, row_answer
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.by_address import by_address
@@ -118,6 +117,9 @@ def _answer_coupled(run: FastRun) -> None:
         c = series.of_body[b]
         if c >= 0:
             series.force[c] += observed.body_force[b]
+    for b in range(observed.a.size):
+        if series.of_body[b] >= 0 and is_support(b, run.plan.mass):
+            series.force[series.of_body[b]] = observed.a[b]
     for b in range(observed.a.size):
         c = series.of_body[b]
         observed.a[b] = ground

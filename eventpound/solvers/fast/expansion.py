@@ -16,9 +16,8 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.kinks import still_rate
-from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import INVERSE, begin_curve, next_z, pull_per_z
-from eventpound.mechanics.followers import row_answer
+from eventpound.mechanics.followers import felt_mass, is_support, row_answer
 from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece, ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
@@ -82,8 +81,11 @@ def _add_loads(k: int, mass: Floats, series: FastSeries) -> None:
 
 
 @compiled_noinline
-def _answer_coupled(k: int, scale: float, clusters: int, series: FastSeries) -> None:
+def _answer_coupled(k: int, scale: float, clusters: int, mass: Floats, series: FastSeries) -> None:
     """Coefficient k + 2 of the displacements where clusters follow others, by `series.force`."""
+    for b in range(mass.size if series.load.shape[0] > 0 else 0):
+        if series.of_body[b] >= 0 and is_support(b, mass):
+            series.force[series.of_body[b]] = series.load[k, b]
     for c in range(clusters):
         answer = row_answer(c, clusters, series.compliance, series.force)
         series.X[c, k + 2] = (answer - series.carried[c] * series.ground[k]) * scale
@@ -140,7 +142,7 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
             _add_loads(k, plan.mass, series)
         scale = INVERSE[k + 1] * INVERSE[k + 2]
         if coupled:
-            _answer_coupled(k, scale, clusters, series)
+            _answer_coupled(k, scale, clusters, plan.mass, series)
         else:
             for c in range(clusters):
                 X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
@@ -193,7 +195,8 @@ def _last_of_others(order: int, power: float, over: float, run: FastRun) -> floa
     last = power * max(abs(ground[order - 1]), over * abs(ground[order - 2]))
     for b in range(plan.mass.size if series.load.shape[0] > 0 else 0):
         of_load = max(abs(series.load[order - 1, b]), over * abs(series.load[order - 2, b]))
-        last = max(last, power * of_load / plan.mass[b])
+        # A point has no mass of its own.
+        last = max(last, power * of_load / felt_mass(b, plan.mass, series.free))
     for i in range(run.state.progress[0].active):
         a = series.active[i]
         of_link = max(abs(series.F[a, order - 2]), over * abs(series.F[a, order - 3]))

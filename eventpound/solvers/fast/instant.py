@@ -101,7 +101,7 @@ def _form(run: FastRun) -> tuple[int, int]:
     unique, locked = clusters.unique, clusters.locked
     if any_slider(run):
         sliders = run.plan.links.sliders.size
-        locked = locked_beside_sliders(*rests, sliders, mass, clusters)
+        locked = locked_beside_sliders(*rests, sliders, mass, contacts.weights, clusters)
     for i in range(clusters.resting.size):
         j = clusters.resting[i]
         state.unlocked[j] = not (locked[i] or clusters.redundant[i])

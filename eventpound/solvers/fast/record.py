@@ -13,8 +13,8 @@ import numpy as np
 from eventpound.contact.cascade import is_fleeting, is_over
 from eventpound.contact.event_rows import end_cascade, events_wanted
 from eventpound.contact.state import Now
-from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.elements import pull_per_z
+from eventpound.mechanics.followers import is_support
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.monitored import copy_extremes
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
@@ -173,6 +173,19 @@ def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
                 state.ledger[2] += weight * pull_per_z(a, memory) * observed.z[h] * x_rate
 
 
+@compiled
+def goes_with(b: int, s: int, run: FastRun) -> float:
+    """By how much a body, -1 for none, goes with a support s: wholly where it is or rests on it."""
+    of_body, series = run.series.of_body, run.series
+    if b == s:
+        return 1.0
+    if b < 0 or of_body[b] < 0 or of_body[s] < 0 or is_support(b, run.plan.mass):
+        return 0.0
+    if series.free.shape[0] > 0:
+        return float(series.compliance[of_body[b], of_body[s]])
+    return 1.0 if of_body[b] == of_body[s] else 0.0
+
+
 @compiled_noinline
 def _add_loaded(t: float, weight: float, piece: CurrentPiece, run: FastRun) -> None:
     """Add `weight` (s) times the powers at the time t (s) that is `observed` (W) to the ledger.
@@ -180,15 +193,16 @@ def _add_loaded(t: float, weight: float, piece: CurrentPiece, run: FastRun) -> N
     Of forces; and of supports, each of which gives what moves with it what that
     takes, less what links and forces give.
     """
-    plan, series, observed, ledger = run.plan, run.series, run.observed, run.state.ledger
+    plan, observed, ledger = run.plan, run.observed, run.state.ledger
     coefficients = piece.coefficients
     for row in range(1, rows_of(coefficients) + 1):
         b = body_of(row, coefficients)
         if not is_driven(row, coefficients):
             ledger[0] += weight * observed.v[b] * load_value(row, piece, t)
     for k in range(ledger.size - WORK_OF_SUPPORTS):
-        c, taken = series.of_body[k], -observed.body_force[k]
+        taken = -observed.body_force[k]
         for b in range(plan.mass.size):
-            if series.of_body[b] == c and not is_support(b, plan.mass):
-                taken += plan.mass[b] * observed.a[b] - observed.body_force[b]
+            part = goes_with(b, k, run)
+            if part != 0.0 and b != k:
+                taken += part * (plan.mass[b] * observed.a[b] - observed.body_force[b])
         ledger[WORK_OF_SUPPORTS + k] += weight * observed.v[k] * taken

@@ -95,7 +95,9 @@ def end_of_slip(order: int, h: float, limit: float, a: int, side: float, run: Fa
         level = 0.0
         for end in (head, tail):
             if end >= 0 and k == 1:
-                level += acceleration_level(end, limits, series) + let_go * series.inverse_mass[end]
+                answer = series.inverse_mass[end]
+                answer = series.compliance[end, end] if series.free.shape[0] > 0 else answer
+                level += acceleration_level(end, limits, series) + let_go * answer
             elif end >= 0:
                 level += (k + 1) * GAP_COEFFICIENT * abs(series.X[end, k + 1])
         if abs(c[k]) > level:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor_motion import (
     DescriptorProblem,
     constraint_errors,
@@ -16,6 +15,7 @@ from eventpound.mechanics.descriptor_motion import (
     residual,
     to_moving_frame,
 )
+from eventpound.mechanics.followers import is_support
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.observables import Bodies, Observed, observe_motion
 from eventpound.mechanics.reduced import Reduced
