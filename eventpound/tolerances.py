@@ -166,8 +166,6 @@ FLAT_TURN = 1e-2
 exactly as its peaks, does not turn; a force or acceleration does not below the whole of it."""
 FLAT_WITHIN = 10.0 * ATTAINED_ANEW**0.5
 """Part of T over which a peak is flat to the rounding of extremes, tenfold."""
-SLOW_TURN = 1e-3
-"""Part of L/T² below which a turn is not looked at more closely."""
 
 # Parts of the tolerance of a run, and tolerances at which a way of computing changes.
 SERIES_SHARE = 1e-3

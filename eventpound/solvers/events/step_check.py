@@ -129,20 +129,6 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
 
 
 @kernel
-def audit(
-    y: Floats, rate: Floats, observed: Observed, z_allowed: float, e: Examination
-) -> tuple[int, float]:
-    """Whether a state and its rate are numbers, and its |z| within their bounds; as `examine`."""
-    excess = -1.0
-    for h in range(e.z_bound.size):
-        excess = max(excess, abs(observed.z[0, h]) - e.z_bound[h])
-    for i in range(y.size):
-        if not np.isfinite(y[i]) or not np.isfinite(rate[i]):
-            return NOT_FINITE, excess
-    return (BEYOND_BOUND if excess > z_allowed else CLEAR), excess
-
-
-@kernel
 def examine(
     tau_0: float, tau_1: float, first: int, z_allowed: float, e: Examination
 ) -> tuple[int, float]:
@@ -171,9 +157,14 @@ def examine(
     after = e.observations[last]
     y, rate = e.y[last], e.rate[last]
     observe_motion(tau_1, y, rate, mode.system, mode.bodies, e.forcing, after)
-    verdict, excess = audit(y, rate, after, z_allowed, e)
-    if verdict != CLEAR:
-        return verdict, excess
+    excess = -1.0
+    for h in range(e.z_bound.size):
+        excess = max(excess, abs(after.z[0, h]) - e.z_bound[h])
+    for i in range(y.size):
+        if not np.isfinite(y[i]) or not np.isfinite(rate[i]):
+            return NOT_FINITE, excess
+    if excess > z_allowed:
+        return BEYOND_BOUND, excess
     if e.frame.shape[1] == 0:
         before = e.observations[first]
         marked = inspect_step(before, after, tau_1 - tau_0, mode.watched, e.record.running, e.marks)
