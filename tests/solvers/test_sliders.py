@@ -30,7 +30,6 @@ from eventpound.scene import (
     Dashpot,
     Force,
     Linear,
-    Point,
     Scene,
     Slider,
     Spring,
@@ -670,15 +669,6 @@ def test_a_solver_that_does_not_know_sliders_says_so_in_one_message(solver: str)
         simulate(Scene((deck,), (bearing,), motion=Sine(1.0, 1.0)), solver=solver, duration=1.0)
     said = f"[solver]: {solver} does not know the laws of springs 'bearing' (slider)"
     assert str(caught.value) == f"{said}; accepted: cvode, ida, fast"
-
-
-def test_sliders_beside_contacts_at_points_are_refused() -> None:
-    deck, bearing = on_ground(Slider(0.1, 1.0))
-    other = Body("other", 1.0, displacement=1.0)
-    contact = Contact("edge", Point({"deck": 0.5, GROUND: 0.5}), "other", 1.0)
-    scene = Scene((deck, other), (bearing,), contacts=(contact,), motion=Sine(1.0, 1.0))
-    with pytest.raises(InputError, match="found 'slider'; accepted: slider only in a scene"):
-        simulate(scene, duration=1.0)
 
 
 @pytest.mark.parametrize("cut", [0.4, 1.8], ids=["while it slips", "while it sticks"])
