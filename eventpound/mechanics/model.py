@@ -309,8 +309,10 @@ def assemble(scene: Scene) -> Model:
         column([getattr(b, key) for b in scene.bodies] + no_mass)
         for key in ("mass", "displacement", "velocity")
     )
+    first = len(scene.bodies)
     for values in (u0, v0):
-        values[len(scene.bodies) :] = weights @ values
+        # In the order of `followers.place_points`: a gap has the bits of later steps at the start.
+        values[first:] = np.cumsum(weights[:, :first] * values[:first], axis=1)[:, -1]
     link_ends = np.array(ends, np.int64).reshape(-1, 2)
     start = differences(u0, *link_ends.T)
     left, right = np.array(at, np.int64).reshape(-1, 2).T.copy()

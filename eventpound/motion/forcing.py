@@ -23,6 +23,7 @@ from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
+from eventpound.tolerances import SAME_SAMPLE
 
 _SINUSOIDS = int(Family.SINUSOIDS)
 _GAUSSIAN = int(Family.GAUSSIAN)
@@ -148,10 +149,10 @@ def next_sample(coefficients: Floats, t: float, stop: float) -> float:
     origin, dt = coefficients[0], coefficients[1]
     i = math.floor((t - origin) / dt) + 1
     # The quotient may be rounded down to the sample at which t is, or just before it.
-    while sample_time(origin, dt, i) <= t + 1e-9 * dt:
+    while sample_time(origin, dt, i) <= t + SAME_SAMPLE * dt:
         i += 1
     following: float = sample_time(origin, dt, i)
-    return following if following < stop - 1e-9 * dt else stop
+    return following if following < stop - SAME_SAMPLE * dt else stop
 
 
 @scalar_kernel

@@ -11,8 +11,11 @@ from scipy.optimize import nnls
 from eventpound.contact.impacts import put_as_one
 from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.contact_problem import Joints
+from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.impact import impact_law
+from eventpound.mechanics.model import assemble
 from eventpound.numerics.compiled import in_python
+from eventpound.scene import Body, Contact, Scene
 from tests.numerics.problems import NO_POINTS, joints
 
 EPS = np.finfo(float).eps
@@ -219,3 +222,16 @@ def test_points_of_whole_bodies_are_the_bodies() -> None:
     assert form_clusters(
         left, right, np.zeros(4), np.zeros(4, bool), np.zeros(4, bool), mass, NO_POINTS
     ).compliance.size == 0  # fmt: skip
+
+
+def test_points_start_where_later_steps_place_them_to_the_last_bit() -> None:
+    rng = np.random.default_rng(3)
+    for _ in range(50):
+        u = rng.normal(size=12)
+        bodies = [Body(f"b{i}", 1.0, displacement=each) for i, each in enumerate(u)]
+        parts = rng.random(11)
+        at = {f"b{i}": float(each) for i, each in enumerate(parts / parts.sum())}
+        model = assemble(Scene(bodies, contacts=[Contact("c", at, "b11", 100.0, 0.5)]))
+        again = model.u0.copy()
+        in_python(place_points)(model.weights, again)
+        np.testing.assert_array_equal(model.u0, again)
