@@ -141,6 +141,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     (f"{_EVENTS}.short_series", "the series that carry the motion after events", _LOOP),
     (LOCATION, "location of events and extremes in a step", _LOOP),
     ("eventpound.solvers.sundials.loop", "the loop over the steps of SUNDIALS", _LOOP - {LOCAL}),
+    (f"{_MECHANICS}.observables", "forces, powers and friction that a state has", _LOOP),
 )
 """Module, what it does, and the formulations that run through it."""
 SHARED_AT_POINTS = {
@@ -156,7 +157,6 @@ SHARED_WITH_LAWS = {
 SHARED_WITH_SLIDERS = {
     "eventpound.contact.sliders": "which sliders stick, and which way others slip",
     "eventpound.numerics.box": "the forces of what may stick or rest",
-    "eventpound.mechanics.observables": "the friction of those that stick",
 }
 """What those of a scene with sliders share besides."""
 SHARED_WITH_LOADS = {
@@ -169,7 +169,6 @@ SHARED_WITH_LOADS = {
 
 SHARED_BY_METHODS = {
     f"{_MECHANICS}.reduced": "the equations of motion",
-    f"{_MECHANICS}.observables": "forces and accelerations of a state",
     f"{_EVENTS}.reversals": "reversals at which steps end",
     "eventpound.solvers.sundials.compiled_cvode": "how a step of CVODE is taken",
 }

@@ -72,7 +72,6 @@ NEITHER = {
     # Types, arrays, names and the means by which kernels are compiled and called.
     "mechanics.descriptor",
     "mechanics.ground_frame",
-    "mechanics.observables",
     "mechanics.pressures",
     "mechanics.reduced",
     "mechanics.reduced_loads",
