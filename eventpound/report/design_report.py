@@ -292,7 +292,9 @@ def _asked(told: Told) -> Iterator[str]:
         yield f"Under {_motion(told)}."
     else:
         scaling = scaling_words(told.case, told.trade).partition(" (")[0] or "every record as it is"
-        yield f"Under {int((runs[FAILED] == '').sum())} records; {scaling}."
+        done = int((runs[FAILED] == "").sum())
+        failed = f" of {len(runs)}" if done < len(runs) else ""
+        yield f"Under {done}{failed} records; {scaling}."
     for i in lacking_contacts(told.scene, design)[:_MOST_LISTED]:
         contact = told.scene.contacts[i]
         yield f"Contact {contact_words(contact, design, told.trade)}."
