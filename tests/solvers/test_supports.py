@@ -407,7 +407,7 @@ def test_a_spring_that_yields_on_a_heavy_body() -> None:
         for solver in ("fast", "ida")
     )
     assert len(one) == len(other) > 0
-    assert np.abs(np.subtract(one, other)).max() <= 1e-6
+    assert np.abs(np.subtract(one, other)).max() <= 1e-9
 
 
 @pytest.mark.parametrize("end", [BARRIER, "pier"])

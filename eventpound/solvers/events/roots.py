@@ -111,14 +111,15 @@ def on_the_root(pairs: Floats, noise: Floats, start: float, tau: float, reach: f
         Start of the step and time of the root (s).
     reach : float
         Width of the bracket (s). A value that is not zero within it, and the time in which it
-        falls by its noise, is left where it is.
+        falls twice by its noise, is left where it is.
     """
     first = tau
     for i in range(noise.size):
         value, rate = pairs[i]
         if value < 0.0 and rate < 0.0:
             back = (value - noise[i]) / rate
-            if back <= reach - noise[i] / rate:
+            # One noise is what it was lifted by, the other its rounding, as beside a mass of 1e7.
+            if back <= reach - 2.0 * noise[i] / rate:
                 first = min(first, tau - back)
     return first if first > start else tau
 
