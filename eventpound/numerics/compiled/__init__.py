@@ -132,6 +132,12 @@ def _timed(compile_for: Callable[[Any], Any], function: Callable[..., Any]) -> A
     return timed
 
 
+def foresee(function: Callable[..., Any], *given: Any) -> None:
+    """Have a deferred kernel, to which a run will come, compiled on another core from now on."""
+    if hasattr(function, "foresee"):
+        function.foresee(tuple(map(numba.typeof, given)))
+
+
 class PlainInPython:
     """A kernel to compiled code; Python runs another function in its place.
 

@@ -59,6 +59,18 @@ class DeferredEntry(Entry):
     ahead = False
 
     @cached_property
+    def _foreseen(self) -> set[tuple[Any, ...]]:
+        return set()
+
+    def foresee(self, arguments: tuple[Any, ...]) -> None:
+        """Have another process make what is not kept yet, for arguments of these types."""
+        if self.ahead and arguments not in self._foreseen:
+            self._foreseen.add(arguments)
+            if not self.kept(arguments):
+                function = self.py_func
+                compile_beside(Wanted(function.__module__, function.__qualname__, arguments))
+
+    @cached_property
     def part(self) -> KernelPart:
         """The same function as other compiled functions call it."""
         return _DeferredPart(self)
@@ -103,8 +115,7 @@ class _DeferredPart(KernelPart):
         library = PartLibrary(self.targetctx.codegen(), name)
         module = library.create_ir_module(name)
         wanted = Wanted(self.py_func.__module__, self.py_func.__qualname__, arguments)
-        if self._entry.ahead and not self._entry.kept(arguments):
-            compile_beside(wanted)
+        self._entry.foresee(arguments)
         # Types have long names, which say the same again and again.
         asked = zlib.compress(pickle.dumps(wanted))
         _write_call(self.targetctx.declare_function(module, described), module, mark, asked)

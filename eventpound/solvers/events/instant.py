@@ -56,7 +56,7 @@ NOT_FINITE, UNENDING = 30, 32
 
 
 @deferred_kernel.but(ahead=True)
-def _short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
+def short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
     rules, state, record, located = run.rules, run.state, run.record, run.located
     now, progress = state.now[0], state.progress[0]
@@ -208,7 +208,7 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         elif progress.short_steps >= LONGEST_CASCADE:
             return UNENDING
         else:
-            ended = _short_step(run, mode, piece)
+            ended = short_step(run, mode, piece)
             if progress.phase == SHORT_STEP:
                 make_ready(run, mode, piece)
     if ended == OVER:

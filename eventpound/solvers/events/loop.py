@@ -16,10 +16,11 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python
+from eventpound.numerics.compiled import foresee, in_python
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work
 from eventpound.solvers.events.event_run import EventRun
+from eventpound.solvers.events.instant import short_step
 from eventpound.solvers.events.instant_loop import (
     put_present_instant,
     search_step,
@@ -232,6 +233,7 @@ class EventLoop:
             piece, moving = run.piece(given, stop), self.moving and given.family is Family.SAMPLES
             frame = moving_frame(given) if moving else NO_FRAME
             run.mark_located(*(np.zeros(1, np.bool_) for _ in range(3)))
+            foresee(short_step, run.arrays, run.mode.dynamics, piece)
             settle_instant(run, piece)
             while run.t < stop:
                 if self._follow(piece, frame):
