@@ -135,7 +135,7 @@ def _pages_of(made: DesignRuns, options: Options, out: Path) -> dict[str, bytes]
     sections = [report.all_numbers(told), *appendix]
     tables = report.sheets_of_workbook(told)
     files = _pages(case.title, report.design_sheets(told), sections, tables)
-    title = ": ".join(filter(None, [case.title, told.names.get(record, "")]))
+    title = ": ".join(filter(None, [case.title, report.what_governs(told)]))
     view = View(gather(response, case), response.scene)
     return files | {ZOOM_PAGE: zoom_page(view, title, told.trade)}
 

@@ -242,20 +242,23 @@ def _inputs(case: Case, most: int) -> dict[str, Any]:
     return inputs | ({"dashpots": []} if structures else {})
 
 
+def what_governs(told: Told) -> str:
+    """The record of a suite whose motion is drawn, with its factor or those of its shocks."""
+    if told.runs is None or told.response is None:
+        return ""
+    (factor,) = told.runs.loc[told.runs["record"] == told.record, "scale"]
+    each = [f for _, f in getattr(told.response.scene.motion, "shocks", ())] or [factor]
+    times = ", ".join(f"{f:.3g}" for f in each)
+    return f"record {told.names[told.record]}, which governs, times {times}"
+
+
 def _second(told: Told) -> Iterator[Block]:
     """Under what, when, and how sure."""
     assert told.response is not None
     scene, peaks = told.scene, told.response.peaks["abs_max"]
-    scene_of_run = told.response.scene
     worst = scene.contacts[lacking_contacts(scene, told.design)[0]] if scene.contacts else None
-    under = ""
-    if told.runs is not None:
-        (factor,) = told.runs.loc[told.runs["record"] == told.record, "scale"]
-        each = [f for _, f in getattr(scene_of_run.motion, "shocks", ())] or [factor]
-        times = ", ".join(f"{f:.3g}" for f in each)
-        under = f" under record {told.names[told.record]}, which governs, times {times}"
     view = View(gather(told.response, told.case), told.response.scene)
-    yield Head(f"Motion{under}")
+    yield Head(" under ".join(filter(None, ["Motion", what_governs(told)])))
     motion = governing_figure(view, worst, str(peaks.idxmax()), told.trade)
     yield Picture(motion, _MOTION)
     if shocks := told.response.shock_rows:

@@ -255,6 +255,7 @@ def test_the_page_that_zooms_is_whole_in_itself(suite: Path, tmp_path: Path) -> 
     assert {loop["name"] for loop in data["loops"]} == {"column A", "column B"}
     assert all(len(line["y"]) == len(data["t"]) for p in data["panels"] for line in p["lines"])
     assert text.count("<tr data-event=") == len(data["events"]) > 0
+    assert re.search(r"<h1>.*: record .*, which governs, times [\d.]+</h1>", text)
     if CHROMIUM is None:
         pytest.skip("no Chromium here")
     red = {}
