@@ -31,7 +31,7 @@ def outputs(source: str, names: dict[str, Any]) -> list[dict[str, Any]]:
         found.append({"output_type": "stream", "name": "stdout", "text": lines(text)})
     if plt.get_fignums():
         file = io.BytesIO()
-        plt.savefig(file, format="png", dpi=80)
+        plt.savefig(file, format="png", dpi=80, bbox_inches="tight")
         plt.close("all")
         data = {"image/png": base64.b64encode(file.getvalue()).decode()}
         found.append({"output_type": "display_data", "data": data, "metadata": {}})
