@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cache
 from importlib.util import find_spec
 from math import sqrt
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,8 +20,9 @@ from eventpound.scene.grounded import grounded
 from eventpound.scene.spring import GROUND
 from eventpound.simulation import response_of
 from eventpound.solvers.base import Event, EventKind
+from tests.models import CASES
 
-FOLDER = Path(__file__).parent.parent / "cases"
+FOLDER = CASES
 ALL = sorted(file.parent.name for file in FOLDER.glob("*/case.toml"))
 # Studies and suites are many runs; tests/study and tests/report have them.
 NAMES = [

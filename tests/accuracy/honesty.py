@@ -35,8 +35,8 @@ from eventpound.score.difference import difference
 from eventpound.simulation import response_of
 from eventpound.solvers import knows_scene, solver_named
 from tests.hard.catalogue import LONG
+from tests.models import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 TRUE_RTOL = 1e-13
 TIMES, ROUNDING = 2.0, 1e-11
 """What an estimate may be exceeded by: the judge errs, too. And the part of a scale by which the

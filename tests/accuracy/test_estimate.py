@@ -29,8 +29,8 @@ from eventpound.scene import (
 )
 from eventpound.simulation import response_of
 from eventpound.solvers.fast import solver as fast
+from tests.models import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 WALL = Scene(
     (Body("b", 1.0, -1.0),),
     (Spring("s", (GROUND, "b"), Linear(1.0)),),

@@ -9,8 +9,9 @@ import pytest
 
 from eventpound.accuracy.foreign_history import read_foreign
 from eventpound.case import load_case
+from tests.models import CASES
 
-CASE = load_case(Path(__file__).parents[2] / "cases" / "elastic-barrier")
+CASE = load_case(CASES / "elastic-barrier")
 T = np.arange(200) / 512.0
 U, V = np.sin(T), np.cos(T)
 

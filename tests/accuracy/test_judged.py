@@ -14,6 +14,7 @@ from eventpound.errors import AccuracyWarning
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Scene, Spring
 from eventpound.simulation import response_of
+from tests.models import ROOT
 
 SCENE = Scene(
     (Body("deck", 1000.0),),
@@ -21,7 +22,6 @@ SCENE = Scene(
     contacts=(Contact("joint", "deck", BARRIER, 0.03, 0.6),),
     motion=Sine(2.0, 0.8),
 )
-ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(autouse=True, scope="module")

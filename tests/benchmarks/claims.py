@@ -24,8 +24,8 @@ from eventpound.study.engine import Batch
 from eventpound.study.reading import load_study
 from eventpound.study.running import run_study
 from eventpound.study.table import read_table
+from tests.models import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 CASE = """
 [excitation]
 {excitation}

@@ -13,7 +13,6 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -23,8 +22,9 @@ from eventpound.scene.contact_law import BY_WORD, Element
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
+from tests.models import CASES
 
-CASE = Path(__file__).parents[2] / "cases" / "pair"
+CASE = CASES / "pair"
 MULTIPLES = (1e1, 1e3, 1e5)
 RTOL = 1e-9
 REPEATS = 5

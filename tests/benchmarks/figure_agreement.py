@@ -12,7 +12,6 @@ from __future__ import annotations
 import sys
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -21,8 +20,8 @@ from eventpound.simulation import response_of
 from eventpound.study.plan import Plan
 from eventpound.study.reading import load_study
 from eventpound.study.variants import rows_of_base, scene_of_row
+from tests.models import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 REFERENCE, RTOL = "cvode", 1e-10
 LIMIT = 1e-6
 

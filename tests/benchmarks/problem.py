@@ -13,8 +13,8 @@ from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from tests.benchmarks.answers import Answer, answer_of
+from tests.models import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 FROZEN = Path(__file__).parent / "frozen"
 """Cases as they were when first measured, where those under cases/ have changed since."""
 TIGHTEST = 1e-13

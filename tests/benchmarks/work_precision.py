@@ -44,11 +44,12 @@ from eventpound.solvers import available, solver_named
 from tests.benchmarks import yardsticks
 from tests.benchmarks.own_lines import with_own_lines
 from tests.benchmarks.problem import Problem, folder_of
+from tests.models import DOCS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-DOCS = Path(__file__).parents[2] / "docs" / "measured"
+DOCS = DOCS / "measured"
 TABLE, PICTURE = "speed-against-error.csv", "speed-against-error-front.png"
 OTHERS = ("pair", "symmetric-triplet", "bridge-record", "row-of-eight")
 FRONT = {

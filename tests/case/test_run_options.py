@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from eventpound.case.run_options import Way, options
-from tests.study.test_run_options import CELLS, WAYS
+from tests.models import DOCS
+from tests.study.test_stated import CELLS, WAYS
 
-PAGE = Path(__file__).parents[2] / "docs" / "case-format.md"
+PAGE = DOCS / "case-format.md"
 _WAYS = dict(zip(WAYS, (Way.RUN, Way.SUITE, Way.STUDY, Way.RUN, Way.MANY), strict=True))
 
 

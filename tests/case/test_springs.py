@@ -24,9 +24,9 @@ from eventpound.scene import (
     Slider,
 )
 from eventpound.scene.modes import modes_of
+from tests.models import CASES
 
 Table = dict[str, object]
-CASES = Path(__file__).parents[2] / "cases"
 # A few roundings.
 CLOSE = 1e-14
 # Periods of 2 kg on 5 and on 100 N/m (s).

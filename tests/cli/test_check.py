@@ -14,8 +14,8 @@ from eventpound.cli import main
 from eventpound.errors import ComputationError
 from eventpound.solvers import available, solver_named
 from eventpound.solvers.base import Task
+from tests.models import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 CASE = """
 [excitation]
 kind = "cosine"
@@ -269,7 +269,7 @@ def test_a_dashpot_where_stiffness_times_mass_is_no_double(
 def test_a_solver_that_takes_no_forces_is_refused(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    text = (Path(__file__).parents[2] / "cases" / "bead-column" / "case.toml").read_text()
+    text = (CASES / "bead-column" / "case.toml").read_text()
     (tmp_path / "case.toml").write_text(text + '\n[solver]\nname = "moreau"\n')
     assert main([command, str(tmp_path)]) == 2
     found = capsys.readouterr().err

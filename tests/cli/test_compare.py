@@ -16,9 +16,9 @@ import eventpound
 from eventpound import InputError
 from eventpound.accuracy import compare
 from eventpound.cli import main
+from tests.models import ROOT
 from tests.plugged import plug_in
 
-ROOT = Path(__file__).parents[2]
 OTHER = ROOT / "tests" / "accuracy" / "other_program.py"
 COLUMNS = "t=time,u.deck=x,v.deck=speed"
 # The other program's motion, as a solver plugged in.

@@ -25,7 +25,8 @@ import tempfile
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.models import ROOT
+
 TUTORIALS = ROOT / "docs" / "tutorials"
 _STEP = re.compile(
     r"<!-- (?P<how>file|added to): (?P<file>\S+) -->\n```\w+\n(?P<text>.*?)```"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 from eventpound import (
     Backfill,
@@ -28,8 +27,9 @@ from eventpound.scene.check import check_scene
 from eventpound.scene.contact import End
 from eventpound.scene.spring import Law
 from eventpound.simulation import check_solver
+from tests.models import DOCS
 
-PAGE = Path(__file__).parents[2] / "docs" / "solvers.md"
+PAGE = DOCS / "solvers.md"
 BLOCK = re.compile(r"(?<=<!-- table of solvers -->\n).*?(?=<!-- end of the table -->)", re.DOTALL)
 
 _A, _B = Body("a", "1 t"), Body("b", "1 t")

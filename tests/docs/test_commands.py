@@ -34,7 +34,7 @@ ELSEWHERE = {
     "eventpound run tutorial": "tests/study/test_pi_spectrum.py",
     "eventpound check tutorial": "tests/study/test_pi_spectrum.py",
     "eventpound study spectrum cases/figure-05": "tests/study/test_spectra.py, with fewer runs",
-    "eventpound problems score": "tests/test_score.py",
+    "eventpound problems score": "tests/score/test_answer.py",
     "eventpound problems pack": "tests/problems",
     "eventpound study fragility CASE": "tests/study/test_fragility.py",
     "eventpound floor-spectrum CASE A1": "tests/quantities/test_floor.py",

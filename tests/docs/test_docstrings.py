@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import doctest
-from pathlib import Path
 
 import pytest
 
 import eventpound
+from tests.models import ROOT
 
-ROOT = Path(__file__).parents[2]
 COMPILED = ("simulate(", "simulate_many(", ".run(")
 """Calls in an example that need a kernel."""
 

@@ -11,11 +11,11 @@ import matplotlib.pyplot as plt
 import pytest
 
 from eventpound.cli import main
+from tests.models import ROOT
 
-ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 ELSEWHERE = {
-    "problems": "tests/test_score.py",
+    "problems": "tests/score/test_answer.py",
     "your-format": "tests/motion/readers/test_plugins.py",
     "your-solver": "tests/solvers/test_plugins.py",
 }

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-DOCS = Path(__file__).parents[2] / "docs"
+from tests.models import DOCS
+
 LONGEST = 40
 """Words."""
 EVIDENCE = {"changelog", "league", "problems", "promises"}

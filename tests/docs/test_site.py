@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from eventpound.cli import _parser
+from tests.models import ROOT
 
-ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 sys.path.insert(0, str(DOCS))
 

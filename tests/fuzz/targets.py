@@ -23,9 +23,9 @@ from eventpound.scene.check import check_scene
 from eventpound.simulation import check_solver, task_of
 from eventpound.study.reading import load_study
 from tests.fuzz.damage import damaged_case, damaged_record
+from tests.models import CASES
 from tests.motion.readers.writers import WRITERS, Written, motion
 
-CASES = Path(__file__).parents[2] / "cases"
 LONGEST = 5.0
 """Processor time after which reading counts as a hang (s)."""
 MEMORY = 6 * 2**30

@@ -15,8 +15,9 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
+from tests.models import CASES
 
-FOLDER = Path(__file__).parents[2] / "cases" / "hard"
+FOLDER = CASES / "hard"
 SAMPLES, STEP = 1_000_000, 0.001
 AMPLITUDES, PERIODS = (1.0, 0.7, 0.5), (1.6, np.sqrt(2.0), 0.31)
 """Sines (m/s^2, s) whose sum never repeats; the second is near the structure's period."""

@@ -13,9 +13,9 @@ from typing import Any
 
 import pytest
 
+from tests.models import ROOT
 from tests.reference.problems import load
 
-ROOT = Path(__file__).parents[2]
 PAGES = [
     page for page in sorted((ROOT / "docs").rglob("*.md")) if "generated" not in page.parts
 ] + [ROOT / "README.md"]

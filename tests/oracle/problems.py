@@ -11,17 +11,17 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 from eventpound.problems.collection import ANSWER, ProblemFolder, read_collection
 from eventpound.problems.files import to_json_lines
 from eventpound.results.jsontext import read_json
 from eventpound.scene import Scene
+from tests.models import CASES
 from tests.oracle.certificates import NEAR, SAME, SURE
 from tests.oracle.program import Answer, NoAnswerError, Number, ask
 
-SET = Path(__file__).parents[2] / "cases" / "problems"
+SET = CASES / "problems"
 
 
 def compare(problem: ProblemFolder, answer: dict[str, Any]) -> dict[str, object]:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import re
 from importlib.util import find_spec
-from pathlib import Path
 
 import pytest
 
 from tests.benchmarks.claims import CLAIMS
+from tests.models import ROOT
 
-ROOT = Path(__file__).parents[2]
 COMMAND = re.compile(r"`(python -m|eventpound (?:run|study|check|plot --model)|pytest) ([^ `]+)")
 STANDINGS = {"as there", "with a limit", "not modelled yet"}
 

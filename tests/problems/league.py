@@ -29,8 +29,9 @@ from eventpound.problems.collection import Collection, ProblemFolder, read_colle
 from eventpound.problems.entrants import Entrant, cards_of
 from eventpound.score.page import solved
 from eventpound.solvers import available
+from tests.models import CASES
 
-SET = Path(__file__).parents[2] / "cases" / "problems"
+SET = CASES / "problems"
 LIMIT, JOBS = 5.0, 2
 CONTACT_STEPS = 20
 """Steps that a contact element lasts, where that is stiffer than its default."""

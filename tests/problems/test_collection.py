@@ -10,7 +10,6 @@ import sys
 import zipfile
 from dataclasses import replace
 from decimal import Decimal
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,9 +21,10 @@ from eventpound.problems.files import LAW, archive, bare_numbers, problem_json
 from eventpound.results.jsontext import canonical
 from eventpound.results.manifest import sha256
 from eventpound.score.problem import Problem
+from tests.models import CASES
 from tests.reference.problems import load
 
-SET = read_collection(Path(__file__).parents[2] / "cases" / "problems")
+SET = read_collection(CASES / "problems")
 SOLVED = {
     p.name: text.split("problem ")[1][:3]
     for p in SET.problems

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import csv
-from pathlib import Path
 
 import pytest
 
 from eventpound import score
+from tests.models import DOCS
 from tests.problems.league import CAUSES, best_sentence, tables
 from tests.problems.test_collection import SET
-
-DOCS = Path(__file__).parents[2] / "docs"
 
 
 def card(name, *why, seconds=1.0):

@@ -22,9 +22,9 @@ from eventpound.motion.free import NoMotion
 from eventpound.response import Response
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.study.response_spectrum import response_spectrum
+from tests.models import CASES
 from tests.solvers.scenes import pounding_pair
 
-CASES = Path(__file__).parents[2] / "cases"
 PERIODS = [0.05, 0.13, 0.3, 0.7, 2.0, 6.0]
 SHAKEN = Record(np.random.default_rng(3).normal(0.0, 6.0, 150), 0.02)
 

@@ -19,6 +19,7 @@ from eventpound.motion import Harmonic, NoMotion
 from eventpound.response import Response
 from eventpound.scene import Backfill, Body, Linear, Scene, Slider, Spring
 from eventpound.scene.spring import GROUND, LawName
+from tests.models import ROOT
 from tests.solvers.backfill_oracle import solved
 from tests.solvers.test_backfill import BETWEEN_TWO, POUNDING, THROWN_BACK
 from tests.solvers.test_backfill import SOLVERS as OF_SOIL
@@ -33,7 +34,6 @@ from tests.solvers.test_sliders import (
     run,
 )
 
-ROOT = Path(__file__).parents[2]
 SLIDING = "deck-on-sliders"
 
 

@@ -22,11 +22,11 @@ from eventpound.report.record_tables import scaling_words
 from eventpound.report.sheets import as_html, as_pdf, share_of
 from eventpound.results.inputs import inputs_of
 from eventpound.results.trade import trade_of
-from tests.report.test_page import CHROMIUM, Balanced
+from tests.models import CASES
+from tests.report.test_html import CHROMIUM, Balanced
 from tests.results.test_workbook import read as read_workbook
 from tests.study.test_suite import time_series
 
-CASES = Path(__file__).parents[2] / "cases"
 APPENDIX = '<section class="appendix">'
 HEAD = """\
 title = "Three-span bridge on two piers"

@@ -34,8 +34,7 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.scene.spring import LawName
-
-CASES = Path(__file__).parents[2] / "cases"
+from tests.models import CASES
 
 
 def storeys(name: str, count: int) -> list[Spring]:

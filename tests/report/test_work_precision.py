@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,8 +17,7 @@ from eventpound.report.work_precision import (
     peak_measure,
     work_precision_figure,
 )
-
-CASES = Path(__file__).parents[2] / "cases"
+from tests.models import CASES
 
 
 @pytest.fixture(scope="module")

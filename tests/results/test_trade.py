@@ -15,9 +15,9 @@ from eventpound.cli import main
 from eventpound.report.design_report import Told, design_sheets
 from eventpound.report.sheets import as_html
 from eventpound.results.trade import Trade
+from tests.models import CASES
 from tests.study.test_suite import CASE, time_series
 
-CASES = Path(__file__).parents[2] / "cases"
 GRAVITY = 9.80665
 ACCEPTED = (
     "accepted: a list of texts, at most one unit each of force (N, kN, MN, kip), "

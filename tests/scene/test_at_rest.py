@@ -40,6 +40,7 @@ from eventpound.scene.spring import Law
 from eventpound.scene.statics import in_equilibrium
 from tests.equilibria.oracle import hysteresis, linkage, sides
 from tests.equilibria.scenes import Drawn
+from tests.models import CASES
 from tests.study.test_suite import time_series
 
 M, K, CABLE = 5e5, 2e7, 6e7
@@ -326,7 +327,7 @@ def test_a_record_is_scaled_and_a_run_ends_by_the_period_at_rest(
 
 
 def test_a_shipped_restrainer_counts_as_it_hangs() -> None:
-    case = load_case(Path(__file__).parents[2] / "cases" / "restrained-decks")
+    case = load_case(CASES / "restrained-decks")
     told = told_at_rest(case.scene)
     for spring, still in zip(case.scene.springs, at_rest(case.scene).springs, strict=True):
         assert (spring.name in told["counts"]) is (stiffness_of(still) > 0.0)

@@ -14,9 +14,9 @@ from eventpound import load_case, simulate
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.solvers import available, plugins, solver_named
+from tests.models import ROOT
 from tests.plugged import plug_in
 
-ROOT = Path(__file__).parents[2]
 BARE = """
 class Bare:
     name, summary, settings = "bare", "does nothing", {}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +13,7 @@ from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind
 from eventpound.solvers.from_samples import inferred_impacts, sampled_recording
-
-CASES = Path(__file__).parents[2] / "cases"
+from tests.models import CASES
 
 
 @pytest.fixture(scope="module", params=["pair", "bridge-pulse", "elastic-barrier"])

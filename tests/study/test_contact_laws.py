@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -12,8 +11,9 @@ from eventpound import load_case, simulate
 from eventpound.accuracy.compare import rigid
 from eventpound.study.reading import load_study
 from eventpound.study.table import compute, header
+from tests.models import CASES
 
-FOLDER = Path(__file__).parents[2] / "cases"
+FOLDER = CASES
 KEY = "residual.flexible"
 
 

@@ -27,7 +27,7 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.study.demands import DEMANDS
-from tests.quantities.test_separation import row
+from tests.scene.test_separation import row
 from tests.study.test_suite import CASE, time_series
 
 RECORDS = {"a": 0.02, "b": 0.2, "c": 0.5, "d": 0.8}

@@ -2,7 +2,6 @@
 
 import functools
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,8 +9,9 @@ import pytest
 from eventpound.study.plan import Chunk
 from eventpound.study.reading import load_study
 from eventpound.study.table import compute
+from tests.models import CASES
 
-FOLDER = Path(__file__).parents[2] / "cases"
+FOLDER = CASES
 NAMES = [
     file.parent.name
     for file in sorted(FOLDER.glob("*/case.toml"))

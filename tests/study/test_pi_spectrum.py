@@ -3,15 +3,14 @@
 import re
 from dataclasses import replace
 from importlib.util import find_spec
-from pathlib import Path
 
 import pytest
 
 from eventpound import load_case, simulate
 from eventpound.cli import main
 from eventpound.study.table import read_table
+from tests.models import ROOT
 
-ROOT = Path(__file__).parents[2]
 BLOCKS = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "pi-spectrum.md").read_text(), re.DOTALL)
 
 

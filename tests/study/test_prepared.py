@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,11 +16,11 @@ from eventpound.response import Response
 from eventpound.scene import Body, Contact, Dashpot, Linear, Series, Spring
 from eventpound.scene.parameters import number_places, with_values
 from tests.benchmarks import yardsticks
+from tests.models import CASES
 from tests.solvers.scenes import pounding_pair
 
 PAIR = pounding_pair()
 P1 = yardsticks.load()["P1"].task.scene
-CASES = Path(__file__).parents[2] / "cases"
 RIDE = Record(np.sin(np.arange(120.0)), 0.05)
 IN_SERIES = Series((Linear(30.0), Linear(50.0)))
 OTHER_PAIR = replace(

@@ -2,7 +2,6 @@
 
 import csv
 import io
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ from eventpound.report.symbols import axis_label
 from eventpound.study.reading import load_study
 from eventpound.study.table import compute, header
 from eventpound.study.variants import rows_of_base
+from tests.models import CASES
 from tests.study.conftest import ELASTOPLASTIC
 
 PAIR = """
@@ -245,7 +245,7 @@ def test_a_directory_without_a_case(tmp_path):
 
 def test_an_axis_of_a_delay(tmp_path):
     """With units, a label, and every quantity of the support from no delay on."""
-    case = (Path(__file__).parents[2] / "cases" / "passing-wave" / "case.toml").read_text()
+    case = (CASES / "passing-wave" / "case.toml").read_text()
     (tmp_path / "case.toml").write_text(
         case
         + """

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from eventpound import load_case, simulate
 from eventpound.case.case import member_case
 from eventpound.errors import InputError
 from tests.benchmarks.real_records import INDEX
+from tests.models import CASES
 
-CASE = Path(__file__).parents[2] / "cases" / "bridge-record"
+CASE = CASES / "bridge-record"
 pytestmark = pytest.mark.skipif(
     not INDEX.is_file(), reason="the folder of real records is not beside the checkout"
 )

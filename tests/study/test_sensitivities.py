@@ -30,9 +30,10 @@ from eventpound.basics.input_files import read_columns
 from eventpound.cli import main
 from eventpound.report.study_curves import tornado_figure
 from eventpound.scene.parameters import number_places, with_values
+from tests.models import CASES
 from tests.study.saltation import Array, LinearSystem, final_sensitivity
 
-BRIDGE = Path(__file__).parents[2] / "cases" / "bridge-el-centro"
+BRIDGE = CASES / "bridge-el-centro"
 
 
 def column(table: pd.DataFrame, quantity: str, name: str, keys: list[str]) -> Array:

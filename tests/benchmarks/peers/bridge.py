@@ -11,7 +11,6 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,8 +21,9 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene import ContactLaw
 from eventpound.simulation import response_of
 from eventpound.solvers.opensees import PACKAGE
+from tests.models import CASES
 
-CASE = Path(__file__).parents[3] / "cases" / "bridge-el-centro"
+CASE = CASES / "bridge-el-centro"
 STIFFNESSES = (1e8, 1e9, 1e10)
 STEPS = (1e-3, 1e-4)
 RTOL = 1e-6

@@ -14,9 +14,9 @@ import pytest
 from eventpound.errors import InputError
 from eventpound.motion import read_record
 from eventpound.motion.readers import format_names, registry
+from tests.models import ROOT
 from tests.plugged import plug_in
 
-ROOT = Path(__file__).parents[3]
 GROUP = "eventpound.readers"
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,8 +26,7 @@ from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers import available, solver_named
 from eventpound.solvers.base import EventKind
 from tests.benchmarks import opensees_laws
-
-CASES = Path(__file__).parents[3] / "cases"
+from tests.models import CASES
 
 
 def _missing() -> str:

@@ -27,8 +27,8 @@ from eventpound import (
 )
 from eventpound.case import Case
 from eventpound.solvers.base import ENDS_OF_REST, EventKind
+from tests.models import CASES
 
-CASES = Path(__file__).parents[1] / "cases"
 STEP = 2.0**-11
 """Whole steps of this length are exact numbers, as are sums of them (s)."""
 

@@ -16,9 +16,9 @@ import pytest
 from eventpound.cli import main
 from eventpound.report.record_tables import record_names
 from eventpound.results import read
+from tests.models import CASES
 from tests.study.test_suite import CASE, time_series
 
-CASES = Path(__file__).parents[2] / "cases"
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 VOID = {"meta", "input", "img", "br"}
 

@@ -29,9 +29,9 @@ from eventpound.errors import InputError
 from eventpound.results import export
 from eventpound.study.fragility import fragility_table
 from eventpound.study.reading import load_study
+from tests.models import ROOT
 from tests.study.test_suite import CASE, time_series
 
-ROOT = Path(__file__).parents[2]
 DASHPOT = """\
 [[dashpot]]
 between = ["ground", "deck"]

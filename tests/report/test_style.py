@@ -22,8 +22,7 @@ from eventpound.report.run_figures import figures
 from eventpound.report.style import Paper, on_paper, plain_logarithms
 from eventpound.report.view import View
 from eventpound.results import StoredResults, gather
-
-CASES = Path(__file__).parents[2] / "cases"
+from tests.models import CASES
 
 
 @pytest.fixture(scope="module")

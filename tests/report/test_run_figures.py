@@ -19,9 +19,8 @@ from eventpound.report.run_figures import figures, view_of_run
 from eventpound.report.towers import storeys_of, towers_of
 from eventpound.results import gather
 from eventpound.scene import GROUND, Body, Linear, Scene, Spring
+from tests.models import CASES
 from tests.solvers.scenes import pounding_pair
-
-CASES = Path(__file__).parents[2] / "cases"
 
 
 @pytest.fixture(scope="module")

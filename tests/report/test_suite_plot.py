@@ -25,9 +25,9 @@ from eventpound.report.similarity_contours import similarity_contours_figure
 from eventpound.report.suite_plot import named_lengths, plot_suite, suite_spectrum_figure
 from eventpound.report.view import View
 from eventpound.results import gather
+from tests.models import CASES
 
 BODIES = {"segment1": "stiff frame", "segment2": "flexible frame"}
-CASES = Path(__file__).parents[2] / "cases"
 
 
 @pytest.fixture(scope="module")

@@ -40,8 +40,8 @@ from eventpound import (
 from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
 from eventpound.scene.modes import modes_of
 from eventpound.solvers.from_samples import sampled_recording
+from tests.models import ROOT
 
-ROOT = Path(__file__).parents[1]
 CASE = ROOT / "cases" / "bilinear-barrier"
 
 

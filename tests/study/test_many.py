@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -40,6 +39,7 @@ from eventpound.study.axes import given_axes
 from eventpound.study.plan import base_of
 from eventpound.study.variants import axis_values, rows_with
 from tests.benchmarks import yardsticks
+from tests.models import CASES
 from tests.solvers.random_scenes import random_scene
 from tests.solvers.scenes import pounding_pair
 
@@ -282,7 +282,7 @@ def test_many_events_run_by_themselves():
 def test_a_run_with_more_instants_than_events_needs_no_second_one(monkeypatch):
     # The springs of the bridge yield and turn back 300 times and more, at 49 impacts.
     monkeypatch.setattr(sweep.Sweep, "alone", lambda _self, i: pytest.fail(f"variant {i} again"))
-    case = load_case(Path(__file__).parents[1] / "cases" / "bridge-el-centro")
+    case = load_case(CASES / "bridge-el-centro")
     gaps = np.array([0.0127, 0.0128])
     result = simulate_many(case, {"contact.joint.gap": gaps})
     alone = simulate(
@@ -412,6 +412,6 @@ def test_units_terms_and_the_same_without_contact():
 
 
 def test_a_suite_is_refused():
-    case = load_case(Path(__file__).parents[1] / "cases" / "figure-12")
+    case = load_case(CASES / "figure-12")
     with pytest.raises(InputError, match="holds a suite of records"):
         simulate_many(case, {"contact.joint.gap": [0.01]})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +13,9 @@ from eventpound.motion import Harmonic
 from eventpound.motion.scaling import psa_of
 from eventpound.quantities.rows import rows_at
 from eventpound.solvers import solver_named
+from tests.models import CASES
 
-BRIDGE = Path(__file__).parents[1] / "cases" / "bridge-el-centro"
+BRIDGE = CASES / "bridge-el-centro"
 SOLVERS = pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 M, K, GAP, E = 2.0, 50.0, 0.1, 0.5
 FREE = Scene(

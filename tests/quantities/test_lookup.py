@@ -23,9 +23,9 @@ from eventpound.response import Response
 from eventpound.results.run_files import summarise
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.units import Dimension
+from tests.models import ROOT
 from tests.solvers.scenes import pounding_pair
 
-ROOT = Path(__file__).parents[2]
 END = 6.0
 
 

@@ -38,8 +38,8 @@ from eventpound import (
 )
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.suite import Suite
+from tests.models import ROOT
 
-ROOT = Path(__file__).parents[1]
 SCENE = Scene(
     [Body("deck", 1.3e6)],
     [Spring("pier", ("ground", "deck"), Linear(1e7))],

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,8 +23,7 @@ from eventpound.score.difference import ScaledValue
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Extremes
-
-CASES = Path(__file__).parents[2] / "cases"
+from tests.models import CASES
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,6 @@ import ast
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,8 +20,9 @@ from eventpound.score.__main__ import main as judge_alone
 from eventpound.score.answer import turns
 from eventpound.score.found import crests_of
 from eventpound.score.levels import UNIT_OF_TIME
+from tests.models import CASES
 
-SET = read_collection(Path(__file__).parents[1] / "cases" / "problems")
+SET = read_collection(CASES / "problems")
 HIT = "19-graze-hit-1e-03"
 
 
