@@ -142,24 +142,3 @@ def test_nothing_heavy_is_imported(arguments: list[str]) -> None:
     imported = {line.rpartition("|")[2].strip() for line in run.stderr.splitlines()}
     assert "eventpound" in imported
     assert not {name.split(".")[0] for name in imported} & set(HEAVY)
-
-
-def test_the_layers_are_found_out() -> None:
-    """The test itself sees upward imports in any disguise."""
-    source = (
-        "from typing import TYPE_CHECKING\n"
-        "if TYPE_CHECKING:\n    from eventpound.cli import main\n"
-        "def f():\n    from ..solvers import base\n    import eventpound.report.plot\n"
-    )
-    package = ["eventpound", "motion"]
-    found = [t for node in _imports(ast.parse(source)) for t in _own_targets(node, package)]
-    assert found == ["eventpound.solvers.base", "eventpound.report.plot"]
-
-
-def test_a_circle_is_found_out() -> None:
-    package = ["eventpound", "motion"]
-    lazy = ast.parse("def f():\n    from eventpound.motion.b import g\n")
-    typed = ast.parse("if TYPE_CHECKING:\n    from eventpound.motion import a\n")
-    names = "eventpound.motion.a", "eventpound.motion.b"
-    assert _circle({names[0]: (package, lazy), names[1]: (package, ast.parse(""))}) == []
-    assert set(_circle({names[0]: (package, lazy), names[1]: (package, typed)})) == {*names}

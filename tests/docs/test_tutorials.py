@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -26,23 +25,3 @@ def test_followed(name: str, tmp_path: Path, request: pytest.FixtureRequest) -> 
     if request.config.option.quick:
         pytest.skip("takes a minute, and compiles in processes of its own")
     assert follow(name, tmp_path) == []
-
-
-def test_what_is_wrong_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tests.docs.follow.TUTORIALS", tmp_path)
-    page = """\
-<!-- file: a.json -->
-```json
-{"x": {"y": 0.02}}
-```
-2.0 cm.
-<!-- value: a.json | x.y | 2.0 cm -->
-<!-- value: a.json | x.y | 2.1 cm -->
-<!-- picture: a.png as b.png -->
-```sh
-false
-```
-"""
-    (tmp_path / "page.md").write_text(page, encoding="utf-8")
-    found = follow("page", tmp_path / "folder")
-    assert [re.split(r"[ ,:]", each)[0] for each in found] == ["x.y", "no", "false"]

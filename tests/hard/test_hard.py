@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,11 +10,10 @@ import pytest
 from eventpound.accuracy.estimate import estimate_errors
 from eventpound.simulation import response_of
 from eventpound.solvers.base import EventKind
-from tests.hard.baselines import BASELINES, Baseline, baseline
+from tests.hard.baselines import baseline
 from tests.hard.catalogue import LONG, REFUSED, SOLVERS, WARNED, Hard, catalogue
 from tests.hard.generated import GENERATED
-from tests.hard.outcome import OWN, Verdict, outcome, tally, unsaid, verdict, wrong_values
-from tests.hard.table import Row, line, row, write
+from tests.hard.outcome import OWN, outcome, tally, unsaid, verdict, wrong_values
 
 CATALOGUE = catalogue()
 SCALES = [hard for hard in CATALOGUE if hard.name.startswith("scale-")]
@@ -87,20 +84,6 @@ def test_few_are_refused() -> None:
     assert REFUSED.keys() <= {hard.name for hard in CATALOGUE}
     assert len(REFUSED) <= 0.05 * len(CATALOGUE)
     assert GENERATED.keys() <= {hard.name for hard in CATALOGUE}
-
-
-def test_table(tmp_path: Path) -> None:
-    """A line of text and one of CSV."""
-    none = dict.fromkeys(BASELINES, Baseline(refusal="at t = 0 s: it does not converge"))
-    refused = Row("endless", Verdict("refused", REFUSED["endless"]), none)
-    rows = [row(named("starts-moving-apart")), refused]
-    assert line(rows[0]).split()[:2] == ["starts-moving-apart", "agree"]
-    assert "impacts in one instant do not end" in line(rows[1])
-    write(rows, tmp_path / "hard.csv")
-    with (tmp_path / "hard.csv").open(newline="") as file:
-        read = list(csv.DictReader(file))
-    assert [cells["scene"] for cells in read] == ["starts-moving-apart", "endless"]
-    assert float(read[0]["moreau_error"]) < 1e-2
 
 
 @pytest.mark.parametrize("solver", ["moreau", "penalty"])

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import csv
-import math
 
-import pytest
-
-from tests.benchmarks import work_precision, yardsticks
+from tests.benchmarks import work_precision
 
 
 def test_it_writes_the_table(monkeypatch, tmp_path, capsys):
@@ -32,19 +29,3 @@ def test_the_table_has_every_problem():
 def _rows(folder):
     text = (folder / work_precision.TABLE).read_text(encoding="utf-8")
     return list(csv.reader(text.splitlines()))
-
-
-def test_an_unknown_problem_is_named(capsys):
-    with pytest.raises(SystemExit):
-        work_precision.main(["P44"])
-    assert "P44: no problem; accepted: front, P1" in capsys.readouterr().err
-
-
-def test_steps_are_parts_of_the_motion():
-    problems = yardsticks.load()
-    pulse = work_precision.steps_of(work_precision.case_of("P1", problems["P1"]))
-    assert pulse[0] == pytest.approx(2.0 * math.pi / 20.0)
-    assert 8.0 * math.pi / pulse[-1] <= work_precision.MOST_STEPS
-    record = work_precision.steps_of(work_precision.case_of("P7", problems["P7"]))
-    assert record[:3] == [0.02, 0.01, 0.005]
-    assert len(record) == 7

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from decimal import Decimal
 
 import pytest
@@ -12,7 +11,6 @@ from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spri
 from tests.accuracy.storeys import DURATION, SCENE, TRUE
 from tests.oracle.certificates import Tally, hold, judge
 from tests.oracle.program import NoAnswerError, ask, program
-from tests.oracle.scene_text import scene_text
 from tests.reference.certificates import stated_amplification
 from tests.reference.problems import load
 
@@ -60,27 +58,6 @@ def test_a_row_locked_between_barriers_is_refused():
     )
     with pytest.raises(NoAnswerError, match="locked"):
         ask(scene, 0.0, 1.0)
-
-
-def test_numbers_are_written_without_rounding():
-    scene = Scene((Body("a", 0.1, 0.3, -0.2),))
-    text = scene_text(scene, 0.0, math.pi)
-    assert f"body {(0.1).hex()} {(0.3).hex()} {(-0.2).hex()}" in text
-    answer = ask(scene, 0.0, math.pi)
-    start, speed = scene.bodies[0].displacement, scene.bodies[0].velocity
-    true = Decimal(start) + Decimal(speed) * Decimal(math.pi)
-    assert abs(answer.values["final.a.u"].value - true) < Decimal("1e-18")
-
-
-def test_displacements_at_moments():
-    """Free motion of an oscillator, from the start on and at a moment in no special place."""
-    scene = Scene(
-        (Body("a", 1.0, displacement=1.0),), (Spring("s", (GROUND, "a"), Linear(1.0)),), (), ()
-    )
-    moments = [0.0, 0.5, 2.25, 3.0]
-    answer = ask(scene, 0.0, 3.0, moments=moments)
-    for k, moment in enumerate(moments):
-        assert answer.values[f"history.{k}.a"].distance(math.cos(moment)) < 2e-16
 
 
 @pytest.mark.parametrize(

@@ -45,9 +45,3 @@ def test_contact_shifts_the_most_dangerous_frequency(
     assert shifted["flexible", "cosine"] == (0.86, [0.25] * 3)
     assert shifted["flexible", "sine"] == (0.44, [0.25] * 3)
     assert all(at < 0.86 for at in shifted["stiff", "cosine"][1])
-
-
-def test_an_unknown_claim_is_named(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit):
-        claims.main(["regoins"])
-    assert "regoins: no claim; accepted: similarity," in capsys.readouterr().err
