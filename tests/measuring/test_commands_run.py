@@ -95,13 +95,13 @@ ELSEWHERE = {
     "tests.paper.abutments": "paper/test_abutments.py",
     "tests.paper.persistency": "paper/test_persistency.py",
     "tests.paper.points": "paper/test_points.py",
-    "tests.problems.league": "problems/test_league.py",
 }
 """Those whose parts another test calls."""
 
 BY_HAND = {
     "tests.benchmarks.front": "needs OpenSeesPy, and two minutes of it",
     "tests.benchmarks.first_run": "compiles every kernel anew",
+    "tests.problems.league": "gives every problem to every program, for hours",
     "tests.oracle.problems": "writes into the problem set what the independent program says",
 }
 """Those that no test can run, and why."""
