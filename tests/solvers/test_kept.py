@@ -35,6 +35,6 @@ def test_kept_after_a_run(scene: Scene, tmp_path: Path, monkeypatch: pytest.Monk
         monkeypatch.setattr(kernel, "overloads", {})
     # As a process finds it that has not run yet: by the files alone.
     assert kernels_kept(task)
-    monkeypatch.setattr(store, "_folders", lambda file: (tmp_path,))
+    monkeypatch.setattr(store, "folders", lambda file: (tmp_path,))
     assert not kernels_kept(task)
     assert not list(tmp_path.iterdir())

@@ -7,9 +7,8 @@ processes that compile the same kernel write the same file, and nothing has to b
 step with an index. It begins with a checksum, since a flipped bit in machine code ends
 the process.
 
-Kernels lie in `__pycache__` beside the sources. Where that cannot be written, new ones
-go to the user's cache folder, and both are read; `NUMBA_CACHE_DIR` replaces both. After them
-comes what the installation came with (`eventpound.numerics.compiled.shipped`).
+They lie in `folders`. After these comes what the installation came with
+(`eventpound.numerics.compiled.shipped`).
 """
 
 from __future__ import annotations
@@ -19,20 +18,18 @@ import glob
 import hashlib
 import importlib
 import io
-import os
 import pickle
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
-import numba
 
 from eventpound.numerics.compiled import shipped
 from eventpound.numerics.compiled.beside import Claim
+from eventpound.numerics.compiled.folders import folders, write_whole
 from eventpound.numerics.compiled.shipped import SUFFIX
 from eventpound.numerics.compiled.sources import source_stamp
 from eventpound.numerics.compiling import compilation_begins, compilation_waits
@@ -67,7 +64,7 @@ class KernelStore:
     @property
     def cache_path(self) -> str:
         """The folder in which kernels are looked for first."""
-        return str(_folders(self._file)[0])
+        return str(folders(self._file)[0])
 
     def load_overload(self, signature: Any, context: Any) -> Any:
         """The kept kernel for arguments of these types, or None: then it is this process's to make.
@@ -132,9 +129,9 @@ class KernelStore:
             content = _with_checksum(result, name)
         except Exception as error:
             trouble, content = error, b""
-        for folder in _folders(self._file) if content else ():
+        for folder in folders(self._file) if content else ():
             try:
-                _write_whole(folder / name, content)
+                write_whole(folder / name, content)
             except OSError as error:
                 trouble = trouble or error
             else:
@@ -146,7 +143,7 @@ class KernelStore:
         """The files in which a kernel may be kept, the first choice first."""
         machine = codegen.magic_tuple()
         name = self._name_of(signature, machine)
-        yield from (folder / name for folder in _folders(self._file))
+        yield from (folder / name for folder in folders(self._file))
         made = shipped.made()
         if made is not None and not shipped.misfit():
             yield shipped.FOLDER / self._name_of(signature, (machine[0], made.processor, ""))
@@ -224,7 +221,8 @@ def _environment(module: str, constants: list[Any], name: str) -> Any:
 def _with_checksum(result: Any, name: str) -> bytes:
     from numba.core.serialize import dumps
 
-    content: bytes = dumps(result._reduce())
+    # Numba's report of the types would hold the text of the function, too.
+    content: bytes = dumps(result._replace(type_annotation="")._reduce())
     return _checksum(content, name) + content
 
 
@@ -240,20 +238,6 @@ def _checked(content: bytes, name: str) -> bytes:
     return content
 
 
-def _write_whole(path: Path, content: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    number, made = tempfile.mkstemp(dir=path.parent, prefix=".kernel-")
-    try:
-        with os.fdopen(number, "wb") as opened:
-            opened.write(content)
-        os.chmod(made, 0o644)
-        os.replace(made, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(made)
-        raise
-
-
 def _drop(path: Path, error: Exception) -> None:
     say_once(f"a kept kernel is damaged and is compiled again: {path.name} ({error})")
     if path.parent == shipped.FOLDER:
@@ -266,16 +250,3 @@ def _drop(path: Path, error: Exception) -> None:
 def say_once(text: str) -> None:
     """A line on stderr, the first time it is said in a process."""
     print(f"eventpound: {text}", file=sys.stderr)
-
-
-@cache
-def _folders(file: str) -> tuple[Path, ...]:
-    """Where kernels of a source file are looked for, the first choice first."""
-    from numba.misc.appdirs import AppDirs
-
-    folder = Path(file).resolve().parent
-    below = f"{folder.name}_{hashlib.sha1(str(folder).encode()).hexdigest()}"
-    if numba.config.CACHE_DIR:
-        return (Path(numba.config.CACHE_DIR) / below,)
-    users = Path(AppDirs("eventpound", appauthor=False).user_cache_dir)
-    return folder / "__pycache__", users / below

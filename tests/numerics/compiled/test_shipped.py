@@ -19,8 +19,8 @@ pytestmark = pytest.mark.skipif(PLAIN, reason="Numba compiles in its own way her
 
 def forget() -> None:
     """What a new process would not know."""
-    remembered = (shipped.made, shipped.misfit, store.say_once, store._folders)
-    for each in (*remembered, sources.source_stamp, sources._text_and_imports):
+    remembered = (shipped.made, shipped.misfit, store.say_once, store.folders)
+    for each in (*remembered, sources.source_stamp, sources._module):
         each.cache_clear()
 
 

@@ -17,9 +17,9 @@ from tests.numerics.compiled.modules import imported, in_a_process, written
 @pytest.fixture(autouse=True)
 def says_anew():
     store.say_once.cache_clear()
-    store._folders.cache_clear()
+    store.folders.cache_clear()
     yield
-    store._folders.cache_clear()
+    store.folders.cache_clear()
 
 
 @pytest.fixture
@@ -80,7 +80,7 @@ def test_what_is_out_of_date_is_taken_away(kept):
     file, path = kept
     file.write_text(file.read_text().replace("2.0 * x", "4.0 * x"))
     store.source_stamp.cache_clear()
-    sources._text_and_imports.cache_clear()
+    sources._module.cache_clear()
     assert imported(file).doubled(1.5) == 6.0
     assert not path.exists()
     assert len(list(path.parent.glob("kernels.doubled-*"))) == 1
@@ -100,7 +100,7 @@ def test_a_kernel_that_takes_another_is_never_out_of_date(tmp_path, monkeypatch)
             "from eventpound.numerics.compiled import kernel\n\n\n"
             f"@kernel\ndef rule(x):\n    return {factor} * x\n"
         )
-        sources._text_and_imports.cache_clear()
+        sources._module.cache_clear()
         sources.source_stamp.cache_clear()
         taken, takes = (imported(file, file.stem) for file in files)
         assert takes.applied(taken.rule, 1.5) == factor * 1.5
@@ -108,7 +108,7 @@ def test_a_kernel_that_takes_another_is_never_out_of_date(tmp_path, monkeypatch)
 
 def test_kernels_beside_sources_that_cannot_be_written_are_used(kept, monkeypatch, tmp_path):
     file, path = kept
-    monkeypatch.setattr(store, "_write_whole", refuse_to_write)
+    monkeypatch.setattr(store, "write_whole", refuse_to_write)
     before = path.stat().st_mtime_ns
     module = imported(file)
     assert module.doubled(1.5) == 3.0
@@ -138,7 +138,7 @@ def test_a_new_process_loads_what_is_kept_and_nothing_to_compile_with(tmp_path):
 
 def test_a_full_disk_costs_a_warning(tmp_path, monkeypatch, capsys):
     module = imported(written(tmp_path))
-    monkeypatch.setattr(store, "_write_whole", refuse_to_write)
+    monkeypatch.setattr(store, "write_whole", refuse_to_write)
     assert module.doubled(1.5) == 3.0
     assert module.powers(2.0)[2] == 8.0
     said = capsys.readouterr().err
@@ -150,7 +150,7 @@ def test_a_full_disk_costs_a_warning(tmp_path, monkeypatch, capsys):
 def test_a_folder_that_cannot_be_written_leaves_it_to_the_users(tmp_path, monkeypatch):
     file = written(tmp_path)
     users = tmp_path / "users"
-    monkeypatch.setattr(store, "_folders", lambda _: (tmp_path / "kernels.py", users))
+    monkeypatch.setattr(store, "folders", lambda _: (tmp_path / "kernels.py", users))
     assert imported(file).doubled(1.5) == 3.0
     (made,) = users.glob("kernels.doubled-*.kernel")
     module = imported(file)
