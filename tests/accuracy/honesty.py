@@ -9,8 +9,6 @@ most `TIMES` what it says, or `ROUNDING`; or it *warns*; else it is *unsaid*, an
 with 1. Scenes that take a minute are left out.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -4,8 +4,6 @@ The true values are from Gragg–Bulirsch–Stoer extrapolation in 113-bit arith
 three settings gives the same to 1e-16.
 """
 
-from __future__ import annotations
-
 from decimal import Decimal
 
 from eventpound.motion.harmonic import Harmonic

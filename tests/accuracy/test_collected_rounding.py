@@ -1,7 +1,5 @@
 """Rounding that collects over a run is part of its bounds."""
 
-from __future__ import annotations
-
 from decimal import Decimal
 
 from eventpound.accuracy.verify import verify

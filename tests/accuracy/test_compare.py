@@ -1,7 +1,5 @@
 """The rigid law that a contact element stands for."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
@@ -14,7 +12,7 @@ from tests.solvers.laws.test_scenes import pair
 
 @pytest.mark.parametrize("restitution", [0.0, 0.01, 0.3, 0.6, 0.99, 1.0])
 @pytest.mark.parametrize("word", [e.word for e in Element if e.damped])
-def test_formulas_are_inverted(word: str, restitution: float) -> None:
+def test_formulas_are_inverted(word, restitution):
     element = BY_WORD[word]
     if element is Element.JANKOWSKI and restitution == 0.0:
         return
@@ -23,13 +21,13 @@ def test_formulas_are_inverted(word: str, restitution: float) -> None:
     assert restitution_of(element, constant) == pytest.approx(restitution, rel=1e-12, abs=2e-14)
 
 
-def test_more_damping_than_any_restitution_asks_for() -> None:
+def test_more_damping_than_any_restitution_asks_for():
     assert restitution_of(Element.KELVIN_VOIGT, 1.7) == 0.0
     assert restitution_of(Element.HERTZ_DAMP, 0.8) == 0.0
     assert 0.0 < restitution_of(Element.JANKOWSKI, 1e6) < 1e-6
 
 
-def test_what_a_contact_means() -> None:
+def test_what_a_contact_means():
     def meant(restitution: float | None, law: ContactLaw | None) -> float:
         return meant_restitution(Contact("c", "a", "b", 0.1, restitution, law))
 
@@ -41,7 +39,7 @@ def test_what_a_contact_means() -> None:
     assert meant(None, ContactLaw("hertz-damp", 1e5, 0.48)) == pytest.approx(0.6)
 
 
-def test_newton_contacts_stay() -> None:
+def test_newton_contacts_stay():
     scene = pair("jankowski")
     scene = replace(
         scene, contacts=(scene.contacts[0], replace(scene.contacts[1], law=None, restitution=0.9))

@@ -1,11 +1,8 @@
 """Whose run tells the errors of another, what it says of them, and of which it warns."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -59,13 +56,13 @@ def test_estimates_are_the_true_errors_of_a_loose_run():
 
 
 @pytest.fixture(params=[True, False], ids=["fast is compiled", "fast is not compiled"])
-def compiled(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
+def compiled(request, monkeypatch):
     monkeypatch.setattr(fast, "kernels_kept", lambda task: request.param)
     return bool(request.param)
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_every_run_that_keeps_a_tolerance_is_judged_unasked(solver: str, compiled: bool) -> None:
+def test_every_run_that_keeps_a_tolerance_is_judged_unasked(solver, compiled):
     response = response_of(DRIVEN, solver, 1e-6, duration=4.0)
     found = estimate_of(response, asked=None)
     assert found is not None
@@ -74,7 +71,7 @@ def test_every_run_that_keeps_a_tolerance_is_judged_unasked(solver: str, compile
     assert 0.0 < found["largest"]["part"] < 1e-4
 
 
-def test_an_estimate_that_is_asked_for_is_independent(compiled: bool) -> None:
+def test_an_estimate_that_is_asked_for_is_independent(compiled):
     """Of fixed steps, too, which a smaller tolerance would not change."""
     for solver in ("cvode", "moreau"):
         response = response_of(WALL, solver, duration=4.0)
@@ -84,14 +81,14 @@ def test_an_estimate_that_is_asked_for_is_independent(compiled: bool) -> None:
     assert found["largest"]["part"] > 1e-6
 
 
-def test_fast_judges_no_scene_that_it_does_not_take() -> None:
+def test_fast_judges_no_scene_that_it_does_not_take():
     contact = Contact("wall", "b", BARRIER, 0.5, None, ContactLaw("hertz", 1e3))
     scene = replace(WALL, contacts=(contact,))
     for asked in (True, False):
         assert judge_of(response_of(scene, "cvode", duration=4.0), asked=asked) == "cvode"
 
 
-def test_fixed_steps_are_said_not_to_know_their_error() -> None:
+def test_fixed_steps_are_said_not_to_know_their_error():
     found = estimate_of(response_of(WALL, "moreau", duration=4.0), asked=None)
     assert found is not None
     assert found["by"] is None
@@ -110,21 +107,19 @@ def test_fixed_steps_are_said_not_to_know_their_error() -> None:
         pytest.param("ida", 1e-12, 1e-12, 1e-11, id="below 1e-12 the steps of ida get no finer"),
     ],
 )
-def test_a_run_never_judges_itself_by_the_same_steps(
-    judge: str, rtol: float, of_others: float, of_itself: float
-) -> None:
+def test_a_run_never_judges_itself_by_the_same_steps(judge, rtol, of_others, of_itself):
     assert rtol_of_judge(rtol, judge, itself=False) == pytest.approx(of_others, rel=1e-12)
     assert rtol_of_judge(rtol, judge, itself=True) == pytest.approx(of_itself, rel=1e-12)
 
 
-def test_the_smallest_tolerance_has_an_error_too() -> None:
+def test_the_smallest_tolerance_has_an_error_too():
     found = estimate_of(response_of(DRIVEN, "fast", 1e-14, duration=4.0), asked=None)
     assert found is not None
     assert found["by"] == "fast itself at rtol 1e-13"
     assert 0.0 < found["largest"]["part"] < 1e-11
 
 
-def test_an_error_of_a_tenth_is_a_warning_at_any_tolerance() -> None:
+def test_an_error_of_a_tenth_is_a_warning_at_any_tolerance():
     assert allowed_part(1e-9) == 1e-4
     assert allowed_part(1e-5) == pytest.approx(1e-2)
     assert allowed_part(1e-2) == 0.1
@@ -144,7 +139,7 @@ def test_a_judge_that_fails_leaves_a_warning_that_the_error_is_not_known(monkeyp
     assert warning.startswith("error not known: fast at rtol 1e-08 failed at t = 1.25 s")
 
 
-def test_whoever_interrupts_an_estimate_ends_it() -> None:
+def test_whoever_interrupts_an_estimate_ends_it():
     def stop(t: float) -> None:
         raise InterruptionError("interrupted", t)
 
@@ -182,7 +177,7 @@ def test_a_case_that_no_tolerance_tells_warns_without_fast(name, monkeypatch):
     assert found["warnings"]
 
 
-def test_a_body_at_rest_is_no_doubt(tmp_path: Path) -> None:
+def test_a_body_at_rest_is_no_doubt(tmp_path):
     # Its velocities are the rounding of a balance of forces.
     text = """
         excitation = { kind = "none" }

@@ -1,9 +1,5 @@
 """Histories of other programs: columns by name or number, units of titles, rounded times."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -33,9 +29,7 @@ U, V = np.sin(T), np.cos(T)
         ("{0:.4f} {1!r} {2!r}\n", {"t": 1, "u.deck": 2, "v.deck": 3}),
     ],
 )
-def test_the_same_motion_in_many_dresses(
-    tmp_path: Path, form: str, columns: dict[str, str | int]
-) -> None:
+def test_the_same_motion_in_many_dresses(tmp_path, form, columns):
     *title, row = form.splitlines(keepends=True)
     table = np.column_stack([T, U, V, 1e3 * T, 1e3 * U, 1e2 * V]).tolist()
     (tmp_path / "x.out").write_text("".join([*title, *(row.format(*cells) for cells in table)]))
@@ -45,7 +39,7 @@ def test_the_same_motion_in_many_dresses(
         np.testing.assert_allclose(found, expected, rtol=1e-14, atol=1e-15)
 
 
-def test_uneven_times_stay_as_they_are(tmp_path: Path) -> None:
+def test_uneven_times_stay_as_they_are(tmp_path):
     (tmp_path / "x.csv").write_text("t,u.deck\n0,0\n0.1,1\n0.1,1\n0.25,2\n")
     motion = read_foreign(CASE, tmp_path / "x.csv", {}).motion
     assert motion.t.tolist() == [0.0, 0.1, 0.1, 0.25]

@@ -1,7 +1,5 @@
 """A run is as wrong as it says itself, with nobody else to judge it, or it warns."""
 
-from __future__ import annotations
-
 import pytest
 
 from eventpound import load_case
@@ -36,7 +34,7 @@ def _found(case: Case, solver: str) -> str:
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("name", HOLDS)
-def test_what_a_run_says_of_itself_is_true(name: str, solver: str) -> None:
+def test_what_a_run_says_of_itself_is_true(name, solver):
     case = load_case(CASES / name)
     if not knows_scene(solver_named(solver), case.scene):
         pytest.skip("the solver does not take the scene")
@@ -44,18 +42,18 @@ def test_what_a_run_says_of_itself_is_true(name: str, solver: str) -> None:
 
 
 @pytest.mark.sweep
-def test_no_shipped_case_is_more_wrong_than_it_says() -> None:
+def test_no_shipped_case_is_more_wrong_than_it_says():
     cases = {folder.name: load_case(folder) for folder in single_runs(())}
     able = {name: case for name, case in cases.items() if name not in REFUSED}
     assert [name for name, case in able.items() if _found(case, "cvode") == "unsaid"] == []
 
 
 @pytest.mark.parametrize("name", TELLS_NOTHING)
-def test_what_the_tolerance_does_not_tell_warns(name: str) -> None:
+def test_what_the_tolerance_does_not_tell_warns(name):
     assert _found(load_case(CASES / name), "cvode") == "warns"
 
 
-def test_of_what_is_off_by_more_than_it_says_nothing_holds() -> None:
+def test_of_what_is_off_by_more_than_it_says_nothing_holds():
     estimate = {"largest": {"part": 1e-9}, "warnings": []}
     assert word(1.9e-9, estimate) == "holds"
     assert word(2.1e-9, estimate) == "unsaid"

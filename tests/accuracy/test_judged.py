@@ -1,10 +1,7 @@
 """`eventpound.simulate` estimates the error of what it returns, and warns where it is large."""
 
-from __future__ import annotations
-
 import json
 import warnings
-from pathlib import Path
 
 import pytest
 
@@ -25,12 +22,12 @@ SCENE = Scene(
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _compiled() -> None:
+def _compiled():
     response_of(SCENE, "fast")
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
-def test_a_single_run_is_judged_unasked(solver: str, tmp_path: Path) -> None:
+def test_a_single_run_is_judged_unasked(solver, tmp_path):
     plain = response_of(SCENE, solver)
     found = eventpound.simulate(SCENE, solver)
     assert plain.error_estimate is None
@@ -42,11 +39,11 @@ def test_a_single_run_is_judged_unasked(solver: str, tmp_path: Path) -> None:
     assert summary["error_estimate"]["largest"] == found.error_estimate["largest"]
 
 
-def test_it_is_not_made_where_it_is_not_wanted() -> None:
+def test_it_is_not_made_where_it_is_not_wanted():
     assert eventpound.simulate(SCENE, error_estimate=False).error_estimate is None
 
 
-def test_a_run_of_few_steps_warns_that_its_error_is_not_known() -> None:
+def test_a_run_of_few_steps_warns_that_its_error_is_not_known():
     """Its judge has no more steps than it had itself."""
     plain = response_of(SCENE, "fast")
     with pytest.warns(
@@ -58,14 +55,14 @@ def test_a_run_of_few_steps_warns_that_its_error_is_not_known() -> None:
     assert "the limit of" in found.error_estimate["failed"]
 
 
-def test_code_without_a_name_is_warned_too() -> None:
+def test_code_without_a_name_is_warned_too():
     """As a notebook's or a debugger's, which `exec` runs with globals of its own."""
     code = "from eventpound.basics.told import warn_caller; warn_caller('said', UserWarning)"
     with pytest.warns(UserWarning, match="said"):
         exec(code, {})
 
 
-def test_it_is_made_where_it_is_asked_for() -> None:
+def test_it_is_made_where_it_is_asked_for():
     with (
         pytest.warns(AccuracyWarning, match="impacts at contact 'joint' have other speeds"),
         pytest.warns(AccuracyWarning, match="is off by"),
@@ -73,7 +70,7 @@ def test_it_is_made_where_it_is_asked_for() -> None:
         eventpound.simulate(SCENE, "moreau", error_estimate=True)
 
 
-def test_a_case_may_ask_for_it_or_leave_it_out(tmp_path: Path) -> None:
+def test_a_case_may_ask_for_it_or_leave_it_out(tmp_path):
     text = (ROOT / "cases" / "elastic-barrier" / "case.toml").read_text()
     by: dict[str, object] = {}
     for said in ("", "error_estimate = true", "error_estimate = false"):
@@ -86,7 +83,7 @@ def test_a_case_may_ask_for_it_or_leave_it_out(tmp_path: Path) -> None:
     assert found is None
 
 
-def test_what_the_tolerance_does_not_tell_is_a_warning() -> None:
+def test_what_the_tolerance_does_not_tell_is_a_warning():
     case = eventpound.load_case(ROOT / "cases" / "hard" / "stiff-beside-soft")
     response_of(case, "fast")
     with pytest.warns(AccuracyWarning, match="contact 'a-b' comes to rest"):
@@ -95,7 +92,7 @@ def test_what_the_tolerance_does_not_tell_is_a_warning() -> None:
     assert found.error_estimate["warnings"]
 
 
-def test_two_bodies_that_part_later_name_every_contact() -> None:
+def test_two_bodies_that_part_later_name_every_contact():
     """Bodies of 1e-3 kg between others of some kg: no tolerance of cvode tells their bounces.
 
     Whether the first contact has one more or less than `fast` is a matter of rounding.
@@ -106,7 +103,7 @@ def test_two_bodies_that_part_later_name_every_contact() -> None:
     assert named(solved(scene, end, "cvode", 1e-9, 60.0)) >= {1, 2}
 
 
-def test_without_contacts_there_is_an_estimate_too() -> None:
+def test_without_contacts_there_is_an_estimate_too():
     scene = Scene((Body("b", 1.0, 0.1),), (Spring("s", (GROUND, "b"), Linear(1.0)),))
     found = eventpound.simulate(scene, duration=2.0).error_estimate
     assert found is not None

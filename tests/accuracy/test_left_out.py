@@ -1,7 +1,5 @@
 """What runs leave out alike: ends of cascades, against their closed form."""
 
-from __future__ import annotations
-
 import pytest
 
 from eventpound.accuracy.left_out import displaced, time_to_limits
@@ -27,7 +25,7 @@ def bounces(count: int, gravity: float = 9.81, soft: int = 1) -> list[Event]:
 
 
 @pytest.mark.parametrize(("count", "soft"), [(2, 1), (30, 1), (30, 12)])
-def test_the_limit_is_as_far_as_all_intervals_that_would_follow(count: int, soft: int) -> None:
+def test_the_limit_is_as_far_as_all_intervals_that_would_follow(count, soft):
     events = bounces(count, soft=soft)
     limit = 2.0 * E * SPEED / 9.81 / (1.0 - E)
     (later,) = time_to_limits(events).values()
@@ -35,11 +33,11 @@ def test_the_limit_is_as_far_as_all_intervals_that_would_follow(count: int, soft
     assert later == pytest.approx(2.0 * (limit - events[-1].t), rel=1e-9)
 
 
-def test_an_end_without_impacts_before_it_has_no_limit() -> None:
+def test_an_end_without_impacts_before_it_has_no_limit():
     assert time_to_limits(bounces(1)) == {}
 
 
-def test_bounces_of_a_run_end_before_their_limit_by_what_is_stated() -> None:
+def test_bounces_of_a_run_end_before_their_limit_by_what_is_stated():
     """Pressed by a constant acceleration: the limit is known in closed form."""
     height, e, g = 0.3, 0.5, 2.0
     ball = Scene(
@@ -58,7 +56,7 @@ def test_bounces_of_a_run_end_before_their_limit_by_what_is_stated() -> None:
     assert displaced(found, ball) >= EPS * (found.work.steps + 4 * count)
 
 
-def test_what_ends_in_one_instant_counts_with_what_is_taken_for_rounding() -> None:
+def test_what_ends_in_one_instant_counts_with_what_is_taken_for_rounding():
     """A row between walls without play: its impacts of one instant go on to 1e-12 of the first."""
     names = "abc"
     ends = [BARRIER, *names, BARRIER]

@@ -1,7 +1,5 @@
 """Errors of peaks and final states are what docs/compare.md says, by hand."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -120,7 +118,7 @@ def test_a_certificate_that_contradicts_the_case(pair, tmp_path):
 
 
 @pytest.mark.parametrize(("off", "taken"), [(1e-5, True), (1e-3, False)])
-def test_a_certificate_beside_a_run_that_nothing_checked(tmp_path, off, taken) -> None:
+def test_a_certificate_beside_a_run_that_nothing_checked(tmp_path, off, taken):
     own = ScaledValue("final.stiff.u", 0.02, 0.05, "m", np.nan)
     stated = StatedBounds(tmp_path / "c.json", {own.name: (own.value + off, 1e-6)})
     if taken:

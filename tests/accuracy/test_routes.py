@@ -1,7 +1,5 @@
 """The code that certificates say is shared is what both solvers import."""
 
-from __future__ import annotations
-
 import ast
 from dataclasses import replace
 from functools import cache
@@ -137,7 +135,7 @@ def test_what_some_scenes_need_is_listed_where_they_do():
         assert set(shared_code(routes_of(scene), scene)) - set(known) == more
 
 
-def test_what_the_methods_of_cvode_share_is_what_it_computes_with() -> None:
+def test_what_the_methods_of_cvode_share_is_what_it_computes_with():
     used = _closure("eventpound.solvers.cvode")
     assert {*SHARED_BY_METHODS, *SHARED_WITH_LAWS, *SHARED_AT_POINTS} <= used
 

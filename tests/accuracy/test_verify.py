@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import json
 import math
 import re
@@ -188,7 +186,7 @@ def test_one_formulation_is_not_enough(monkeypatch):
     assert all(q.bound is None for q in certificate.quantities)
 
 
-def test_where_cvode_alone_is_left_its_methods_confirm_each_other() -> None:
+def test_where_cvode_alone_is_left_its_methods_confirm_each_other():
     """And the certificate says that no other program does, and which are left out."""
     contact = Contact("wall", "b", BARRIER, 0.5, 0.5, ContactLaw("hertz-damp", 1e3))
     certificate = verify(replace(_wall(0.5), contacts=(contact,)), duration=4.0)
@@ -304,7 +302,7 @@ def test_values_are_printed_as_far_as_they_hold(value, bound, text):
 
 
 @pytest.mark.parametrize("words", ["nan", "-1", "0", "inf", "soon"])
-def test_patience_is_a_stretch_of_time(words: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_patience_is_a_stretch_of_time(words, capsys):
     with pytest.raises(SystemExit, match="2"):
         main(["verify", "case", "--patience", words])
     assert f"found {words!r}; accepted: a number of seconds" in capsys.readouterr().err

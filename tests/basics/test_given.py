@@ -1,11 +1,8 @@
 """Whatever is given wrongly from Python is an InputError that names it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -271,7 +268,7 @@ NOT_CALLED = {
 """What nobody makes by hand, and what takes no argument."""
 
 
-def test_every_public_name_is_in_the_table() -> None:
+def test_every_public_name_is_in_the_table():
     assert {name.partition(".")[0] for name in WRONG} | NOT_CALLED == set(eventpound.__all__)
     calls = sum(len(k) * len(v.split()) for _, wrong in WRONG.values() for k, v in wrong.items())
     assert calls > 119
@@ -289,7 +286,7 @@ def escaped(call: Callable[..., Any], key: str, arguments: Mapping[str, Any]) ->
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_an_argument_of_a_wrong_kind_is_an_input_error(name: str) -> None:
+def test_an_argument_of_a_wrong_kind_is_an_input_error(name):
     call: Any = eventpound
     for part in name.split("."):
         call = getattr(call, part)
@@ -304,7 +301,7 @@ def test_an_argument_of_a_wrong_kind_is_an_input_error(name: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def response() -> Response:
+def response():
     return simulate(SCENE, "fast", duration=0.1)
 
 
@@ -404,12 +401,12 @@ IMPOSSIBLE: dict[str, Callable[[], Any]] = {
 
 
 @pytest.mark.parametrize("what", IMPOSSIBLE)
-def test_an_impossible_value_is_an_input_error(what: str) -> None:
+def test_an_impossible_value_is_an_input_error(what):
     with pytest.raises(InputError):
         IMPOSSIBLE[what]()
 
 
-def test_what_a_response_is_asked_wrongly(response: Response, tmp_path: Path) -> None:
+def test_what_a_response_is_asked_wrongly(response, tmp_path):
     for call in (
         lambda: response.quantity("nope"),
         lambda: response.quantity(5),  # type: ignore[arg-type]
@@ -426,12 +423,12 @@ def test_what_a_response_is_asked_wrongly(response: Response, tmp_path: Path) ->
             call()  # type: ignore[no-untyped-call]
 
 
-def test_a_message_says_how_a_case_is_read() -> None:
+def test_a_message_says_how_a_case_is_read():
     with pytest.raises(InputError, match=r"found 'mybridge'; accepted: a Case \(load_case"):
         simulate("mybridge")  # type: ignore[arg-type]
 
 
-def test_a_scene_put_into_a_case_is_checked_as_one_by_itself() -> None:
+def test_a_scene_put_into_a_case_is_checked_as_one_by_itself():
     law = ContactLaw("kelvin-voigt", 1e9, 0.3)
     twice = replace(SCENE, contacts=[Contact("joint", "deck", "barrier", 0.01, 0.7, law)])
     shut = replace(SCENE, bodies=[Body("deck", 1.3e6, displacement=0.02)])
@@ -449,14 +446,14 @@ def test_a_scene_put_into_a_case_is_checked_as_one_by_itself() -> None:
             call(replace(PAIR, scene=shut))
 
 
-def test_a_motion_that_sets_no_duration_asks_for_one() -> None:
+def test_a_motion_that_sets_no_duration_asks_for_one():
     free = replace(SCENE, motion=eventpound.NoMotion())
     for call in (simulate, verify, eventpound.prepare, eventpound.design_numbers):
         with pytest.raises(InputError, match="duration: missing, and free motion sets none"):
             call(free)
 
 
-def test_a_solver_may_be_named_with_its_settings() -> None:
+def test_a_solver_may_be_named_with_its_settings():
     with pytest.raises(InputError, match="events"):
         simulate(SCENE, "cvode:events=nothing")
     with pytest.raises(InputError, match=r"solvers: moreau:time_step=1: time_step cannot stand"):

@@ -11,8 +11,6 @@ last digits. What neither explains is called a defect. A motion that amplifies t
 the steps shows it by its own change from ten times `TIGHT` to it.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections import Counter

@@ -11,8 +11,6 @@ run, the same of the C program, and the ratio of the two. Processor time is what
 busy machine leaves as it is, but for its caches.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from collections.abc import Callable

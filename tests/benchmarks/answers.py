@@ -8,8 +8,6 @@ speeds between two parts of the largest, `SLOWEST`, the widest gap parts the slo
 from the others, so that a loose tolerance moves none across.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ temporary directory, and called through ctypes. A program exports ``prepare()`` 
 ``solve(problem, answer, repeats)``; its structures are those of ``yardstick/oscillator.h``.
 """
 
-from __future__ import annotations
-
 import ctypes
 import shutil
 import subprocess

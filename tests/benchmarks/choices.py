@@ -3,8 +3,6 @@
 ``python -m tests.benchmarks.choices``
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Iterator

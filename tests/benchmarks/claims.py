@@ -8,8 +8,6 @@ and "reduced" mean by more than 5 %, "unseen" by less than 0.1 L_e; a gain is th
 peak with contact over that without. docs/figures.md has the verdicts.
 """
 
-from __future__ import annotations
-
 import argparse
 import tempfile
 from collections.abc import Iterator

@@ -7,8 +7,6 @@ its stiffest spring, on `cvode`. A Hertz stiffness stores the same energy in an 
 scene's speed. Times are of the processor, the shortest of a few.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable

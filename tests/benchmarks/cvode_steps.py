@@ -9,8 +9,6 @@ found there. Processor times, the smallest of runs taken in turns; `largest diff
 of the rows, in parts of the largest displacement.
 """
 
-from __future__ import annotations
-
 import ctypes
 import subprocess
 import sys

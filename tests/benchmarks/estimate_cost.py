@@ -7,8 +7,6 @@ by `fast` and, as on a fresh installation, by itself; of `fast` by itself. Media
 in which the best of some runs counts. Everything is compiled before.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable

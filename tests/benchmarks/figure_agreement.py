@@ -7,8 +7,6 @@ and tolerance of its study and on CVODE at rtol 1e-10, and prints how far apart
 their Pi_um are, relative to it. The second number seeds the draw.
 """
 
-from __future__ import annotations
-
 import sys
 import tomllib
 from dataclasses import replace

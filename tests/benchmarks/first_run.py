@@ -6,8 +6,6 @@ processor and wall time, the same of a second run, how many functions were compi
 largest memory. Another checkout of this repository can stand beside, each run in turns with it.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

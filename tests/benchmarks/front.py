@@ -6,8 +6,6 @@ processor time of some turns. OpenSeesPy, where it is installed, has a Kelvin-Vo
 place of Newton's law.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import Any

@@ -6,8 +6,6 @@ Two oscillators and a wall, every contact with the law (`tests.solvers.laws.test
 1.2 s. The error is the largest of a displacement at the end, as a part of the largest of all times.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -11,8 +11,6 @@ of the smallest step; the true one is for docs/steppers.md's other table. For so
 with a tolerance it is the slope of log error over log rtol.
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ with beta = gamma = 1/2 (kappa = 1 while u' z > 0, else 0), from rest, under one
 of a sinusoid or a record. The programs under yardstick/ solve this and nothing else.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ kinks exactly, so that the error of a stepper against *its own model* can be tol
 the model against the rigid law (docs/measured/steppers.md takes it further apart).
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from dataclasses import replace

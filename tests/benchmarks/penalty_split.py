@@ -18,8 +18,6 @@ contact and with it the error going as k^(-1/2), for Hertz contacts as k^(-2/5).
 displacement and the largest speed of the true motion.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """A benchmark problem: a scene to be run over a stretch of time, and its true answer."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from pathlib import Path
 

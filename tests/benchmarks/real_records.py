@@ -5,8 +5,6 @@ is left to it; where it does not say, the index does; of several components the 
 the index names, or the first.
 """
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

@@ -10,8 +10,6 @@ memory that the process took. Steps end at impacts, so it is the cost of a step 
 like N: an exponent of one.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import resource

@@ -12,8 +12,6 @@ guard against missed ones: such code carries on, or never ends, so that impacts
 and time are bounded here and what happened is reported.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -8,8 +8,6 @@ springs takes 3 to 7 microseconds a call where NumPy, all springs at once, takes
 8 to 15. One body on one spring is written out.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

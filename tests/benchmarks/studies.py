@@ -6,8 +6,6 @@ A process for each size runs ``eventpound study`` on Pi_Q and Pi_delta at random
 ends, and prints runs, seconds, and the largest memory that the process held.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -7,8 +7,6 @@ run in units of problem P7, scaled by the number of samples. Times are those of
 the processor, the least of several.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from collections.abc import Callable

@@ -6,8 +6,6 @@ oscillator at a barrier under a record. Post-yield frequencies give k = m omega_
 PZ rests on its barrier after infinitely many impacts.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from itertools import pairwise

@@ -14,8 +14,6 @@ A tutorial says in comments what a reader would do:
 Blocks of `sh` are run by a shell, in order.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

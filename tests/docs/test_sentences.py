@@ -1,9 +1,6 @@
 """Sentences of the pages for users are short enough to be read once."""
 
-from __future__ import annotations
-
 import re
-from pathlib import Path
 
 import pytest
 
@@ -35,6 +32,6 @@ def sentences(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=[page.stem for page in PAGES])
-def test_sentences_are_short(page: Path) -> None:
+def test_sentences_are_short(page):
     found = sentences(page.read_text(encoding="utf-8"))
     assert [each for each in found if len(each.split()) > LONGEST] == []

@@ -1,7 +1,5 @@
 """What the pages show is there: pictures of the cases as they are, files, pages, commands."""
 
-from __future__ import annotations
-
 import re
 import shlex
 import sys
@@ -29,7 +27,7 @@ NAMES = [str(path.relative_to(DOCS)) for path in PAGES]
 
 
 @pytest.mark.parametrize("name", case_names())
-def test_the_gallery_shows_the_case_as_it_is(name: str) -> None:
+def test_the_gallery_shows_the_case_as_it_is(name):
     """`python docs/pictures.py NAME` makes a picture again."""
     assert made().get(name) == hash_of(name)
     assert (GALLERY / f"{name}.png").exists()
@@ -37,7 +35,7 @@ def test_the_gallery_shows_the_case_as_it_is(name: str) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)
-def test_links_lead_to_files(page: Path) -> None:
+def test_links_lead_to_files(page):
     text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
     for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", text):
         if "://" in target or target.startswith(WRITTEN_WHEN_BUILT):
@@ -52,14 +50,14 @@ FILE = re.compile(
 
 
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md"], ids=[*NAMES, "README.md"])
-def test_files_of_the_checkout_are_there(page: Path) -> None:
+def test_files_of_the_checkout_are_there(page):
     for name in FILE.findall(page.read_text(encoding="utf-8")):
         # NAME stands for one of the reader's own; results are written by a run.
         if "NAME" not in name and not name.startswith("results/"):
             assert (ROOT / name).exists() or (ROOT / "eventpound" / name).exists(), name
 
 
-def test_the_package_names_pages_that_are_there_and_no_files_of_the_checkout() -> None:
+def test_the_package_names_pages_that_are_there_and_no_files_of_the_checkout():
     """What is installed has no docs; `eventpound.cli.talk` puts in the address of the site."""
     for file in (ROOT / "eventpound").rglob("*.py"):
         text = file.read_text(encoding="utf-8")
@@ -69,7 +67,7 @@ def test_the_package_names_pages_that_are_there_and_no_files_of_the_checkout() -
 
 
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md"], ids=[*NAMES, "README.md"])
-def test_commands_are_understood(page: Path) -> None:
+def test_commands_are_understood(page):
     """Every line of a block that calls eventpound or a module of the tests."""
     for line in _commands(page):
         words = shlex.split(line, comments=True)
@@ -80,7 +78,7 @@ def test_commands_are_understood(page: Path) -> None:
             assert find_spec(words[2]), line
 
 
-def test_the_citation_has_the_version_of_the_package() -> None:
+def test_the_citation_has_the_version_of_the_package():
     version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
     assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 

@@ -1,11 +1,9 @@
 """The table of solvers says what they take."""
 
-from __future__ import annotations
-
 from tests.docs.solvers import BLOCK, PAGE, table
 
 
-def test_the_table_is_that_of_the_code() -> None:
+def test_the_table_is_that_of_the_code():
     """`python -m tests.docs.solvers` writes it."""
     (found,) = BLOCK.findall(PAGE.read_text(encoding="utf-8"))
     assert found == table()

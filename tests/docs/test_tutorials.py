@@ -1,9 +1,6 @@
 """Tutorials do what they say, followed to the letter in a new folder."""
 
-from __future__ import annotations
-
 from importlib.util import find_spec
-from pathlib import Path
 
 import pytest
 
@@ -12,7 +9,7 @@ from tests.docs.follow import TUTORIALS, follow
 NAMES = sorted(page.stem for page in TUTORIALS.glob("*.md"))
 
 
-def test_they_are_there() -> None:
+def test_they_are_there():
     assert len(NAMES) >= 5
 
 
@@ -21,7 +18,7 @@ def test_they_are_there() -> None:
 )
 @pytest.mark.pages
 @pytest.mark.parametrize("name", NAMES)
-def test_followed(name: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+def test_followed(name, tmp_path, request):
     if request.config.option.quick:
         pytest.skip("takes a minute, and compiles in processes of its own")
     assert follow(name, tmp_path) == []

@@ -1,13 +1,10 @@
 """Python on the pages passes mypy --strict, as somebody would write it who checks types."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -31,12 +28,12 @@ def shown() -> dict[str, str]:
     return {name: "\n".join(found) for name, found in blocks.items() if found}
 
 
-def test_pages_with_python_are_found() -> None:
+def test_pages_with_python_are_found():
     assert {"readme", "python", "many", "studies", "notebook-bridge"} <= set(shown())
 
 
 @pytest.mark.pages
-def test_what_pages_show_has_the_types_that_it_says(tmp_path: Path) -> None:
+def test_what_pages_show_has_the_types_that_it_says(tmp_path):
     for name, text in shown().items():
         (tmp_path / f"{name.replace('-', '_')}_page.py").write_text(text, encoding="utf-8")
     run = subprocess.run(

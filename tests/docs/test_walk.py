@@ -1,13 +1,11 @@
 """The walk through the code names files that are there, each once."""
 
-from __future__ import annotations
-
 import re
 
 from tests.models import ROOT
 
 
-def test_files_of_the_walk() -> None:
+def test_files_of_the_walk():
     page = (ROOT / "docs" / "walk.md").read_text(encoding="utf-8")
     named = re.findall(r"`([\w/]+\.py)`", page)
     assert len(named) > 30

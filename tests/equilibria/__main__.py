@@ -5,8 +5,6 @@
 Prints every scene that is wrong, refused without need or moves, and the counts.
 """
 
-from __future__ import annotations
-
 import sys
 from collections import Counter
 

@@ -1,7 +1,5 @@
 """One random scene: is it in equilibrium, the same in other units, and does it stay there?"""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

@@ -10,8 +10,6 @@ equilibrium, and a direction in which it falls without end that there is none:
 * where it is refused, a linear program finds the body that nothing holds, or no room.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scenes drawn at random that forces press on stops, cables, barriers and each other."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise

@@ -3,8 +3,6 @@
 The long run is a command: ``python -m tests.equilibria 1000``.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -28,31 +26,31 @@ PAIR = Scene(
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_random_scenes_stand_where_forces_balance(seed: int) -> None:
+def test_random_scenes_stand_where_forces_balance(seed):
     found = examine(seed, solvers=())
     assert not found.wrong, found
 
 
 @pytest.mark.parametrize("seed", range(30))
-def test_random_scenes_with_soil_and_sliders_stand_where_forces_balance(seed: int) -> None:
+def test_random_scenes_with_soil_and_sliders_stand_where_forces_balance(seed):
     found = examine(seed, solvers=(), memory=True)
     assert not found.wrong, found
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_random_scenes_with_soil_and_sliders_stay_there(seed: int) -> None:
+def test_random_scenes_with_soil_and_sliders_stay_there(seed):
     found = examine(seed, solvers=("cvode",), memory=True)
     assert not found.wrong, found
 
 
 @pytest.mark.parametrize("seed", [LOCKED, *range(4)])
 @pytest.mark.parametrize("solver", ["fast", "cvode"])
-def test_random_scenes_stay_there(seed: int, solver: str) -> None:
+def test_random_scenes_stay_there(seed, solver):
     found = examine(seed, solvers=(solver,))
     assert not found.wrong, found
 
 
-def test_what_is_out_of_place_is_seen() -> None:
+def test_what_is_out_of_place_is_seen():
     standing = in_equilibrium(PAIR)
     assert judge(PAIR, standing).unbalanced <= LIMITS["unbalanced"]
     a, b = standing.bodies
@@ -65,7 +63,7 @@ def test_what_is_out_of_place_is_seen() -> None:
     assert judge(floating, moved).farther > 0.1
 
 
-def test_what_has_no_equilibrium_is_seen() -> None:
+def test_what_has_no_equilibrium_is_seen():
     assert loose(PAIR) is None
     away = loose(replace(PAIR, springs=PAIR.springs[:1], forces=(Force("b", 1.0),)))
     assert away is not None

@@ -6,8 +6,6 @@ it names. What holds up even the watchdog of a single file (a hang in compiled
 code) ends the run, which then says in which directory that file is.
 """
 
-from __future__ import annotations
-
 import faulthandler
 import re
 import sys

@@ -1,7 +1,5 @@
 """What happens to files, and what somebody who wants to break a reader does to them."""
 
-from __future__ import annotations
-
 import random
 import re
 from collections.abc import Callable, Sequence

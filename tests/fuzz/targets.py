@@ -1,7 +1,5 @@
 """What is done with a damaged file, and what must not come of it."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import math

@@ -1,9 +1,5 @@
 """A sample of the long runs of ``python -m tests.fuzz``, and what they have found."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 
 from eventpound.case import load_case
@@ -30,7 +26,7 @@ SOUND = {
 
 
 @pytest.mark.parametrize(("kind", "count"), [("cases", 120), ("records", 270)])
-def test_damaged_files_are_read_or_refused(kind: str, count: int, tmp_path: Path) -> None:
+def test_damaged_files_are_read_or_refused(kind, count, tmp_path):
     found = [
         (number, outcome)
         for number, _, outcome in defects(kind, count, 7, tmp_path)
@@ -54,7 +50,7 @@ def test_damaged_files_are_read_or_refused(kind: str, count: int, tmp_path: Path
         ({"mass": '"' + "x" * 100_000 + '"'}, "mass"),  # a message of 100 000 characters
     ],
 )
-def test_numbers_out_of_all_reason(changes: dict[str, str], key: str, tmp_path: Path) -> None:
+def test_numbers_out_of_all_reason(changes, key, tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(CASE.format(**(SOUND | changes)))
     with pytest.raises(InputError) as caught:
@@ -95,7 +91,7 @@ count = {count}
         ({"part": "[[study.part]]"}, "study"),  # two parts without a name: a KeyError
     ],
 )
-def test_studies_out_of_all_reason(changes: dict[str, str], key: str, tmp_path: Path) -> None:
+def test_studies_out_of_all_reason(changes, key, tmp_path):
     file = tmp_path / "case.toml"
     sound = {"periods": 10, "to": 2.0, "count": 3, "part": ""}
     file.write_text(STUDY.format(**(sound | changes)))
@@ -119,7 +115,7 @@ def test_studies_out_of_all_reason(changes: dict[str, str], key: str, tmp_path: 
         ("two_columns", "0.100000", "1e-" + "9" * 80),  # a decimal.InvalidOperation
     ],
 )
-def test_records_that_were_not_refused(name: str, old: str, new: str, tmp_path: Path) -> None:
+def test_records_that_were_not_refused(name, old, new, tmp_path):
     written = dict(written_records())[name]
     file = tmp_path / "damaged.txt"
     file.write_text(written.text.replace(old, new, 1))
@@ -129,7 +125,7 @@ def test_records_that_were_not_refused(name: str, old: str, new: str, tmp_path: 
     assert all(str(file) in problem for problem in caught.value.problems)
 
 
-def test_thousands_of_channels_take_no_hours(tmp_path: Path) -> None:
+def test_thousands_of_channels_take_no_hours(tmp_path):
     """The header of each was looked for in all lines before it."""
     written = dict(written_records())["csmip_v2"]
     lines = written.text.splitlines()
@@ -172,7 +168,7 @@ theta = {theta}
     [("marks", "[1" + "0" * 400 + "]"), ("fractiles", "[1" + "0" * 400 + "]"), ("marks", "[true]"),
      ("marks", "[nan]"), ("fractiles", "[]"), ("theta", "1" + "0" * 400)],
 )  # fmt: skip
-def test_lists_of_numbers_that_are_none(key: str, value: str, tmp_path: Path) -> None:
+def test_lists_of_numbers_that_are_none(key, value, tmp_path):
     file = tmp_path / "case.toml"
     sound = {"marks": "[1.0]", "fractiles": "[50]", "theta": "0.5"}
     file.write_text(FIGURE.format(**(sound | {key: value})))

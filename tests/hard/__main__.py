@@ -6,8 +6,6 @@ choose by themselves: the largest error of a peak or final value in parts of the
 motion, and impacts missed and extra.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections import Counter

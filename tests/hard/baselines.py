@@ -1,7 +1,5 @@
 """What the fixed-step baselines make of a hard scene, beside what the others agree on."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The hard scenes of ``cases/hard`` and what must come out of them."""
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import dataclass
 from functools import cached_property

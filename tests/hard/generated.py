@@ -3,8 +3,6 @@
 Writes the record, beside a copy of the case that `eventpound run` then takes.
 """
 
-from __future__ import annotations
-
 import shutil
 import sys
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """What the solvers make of a hard scene, and whether they agree."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from dataclasses import dataclass, field

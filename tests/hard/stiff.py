@@ -12,8 +12,6 @@ each contact concerned must be named by a warning of one of the two runs that di
 warns *needlessly*. Prints all but what agrees, and the counts.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections import Counter

@@ -1,7 +1,5 @@
 """The catalogue as a table, as text and as CSV."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterable
 from dataclasses import dataclass

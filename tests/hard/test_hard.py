@@ -1,7 +1,5 @@
 """The catalogue of hard scenes: known answers are met, and the solvers agree or refuse alike."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -30,14 +28,14 @@ def named(name: str) -> Hard:
         for hard in CATALOGUE
     ],
 )
-def test_right_or_refused(hard: Hard) -> None:
+def test_right_or_refused(hard):
     found = verdict(hard, [outcome(hard, solver) for solver in hard.solvers])
     allowed = ("agree", "warns") if hard.name in WARNED else ("agree", "refused")
     assert found.word in allowed, found.remark
 
 
 @pytest.mark.parametrize("solver", ["cvode", "fast", pytest.param("ida", marks=pytest.mark.sweep)])
-def test_stiff_beside_soft(solver: str) -> None:
+def test_stiff_beside_soft(solver):
     """Changes of 1e-10 in masses and forces leave 15 or 16 rests, of 1e-12 always 16."""
     found = outcome(named("stiff-beside-soft"), solver, 1e-12).response
     assert found is not None
@@ -48,7 +46,7 @@ def test_stiff_beside_soft(solver: str) -> None:
     assert found.recording.resting_time[0] == pytest.approx(0.197158, rel=1e-3)
 
 
-def test_counts_that_differ_are_said() -> None:
+def test_counts_that_differ_are_said():
     """At 1e-9 the same scene rests two to eight times as often, and says so."""
     hard = named("stiff-beside-soft")
     found = [outcome(hard, solver).response for solver in ("cvode", "fast")]
@@ -59,7 +57,7 @@ def test_counts_that_differ_are_said() -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_scales(solver: str) -> None:
+def test_scales(solver):
     """Peaks in parts of L_e do not depend on the units of length and time."""
     peaks = []
     for hard in SCALES:
@@ -71,7 +69,7 @@ def test_scales(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_error_follows_the_tolerance(solver: str) -> None:
+def test_error_follows_the_tolerance(solver):
     """From 1e-4 to 1e-13: twelve slips of a slider, each begun and ended by an event."""
     hard = named("slider-sticks-and-slips")
     for rtol in 10.0 ** -np.arange(4.0, 14.0):
@@ -80,14 +78,14 @@ def test_error_follows_the_tolerance(solver: str) -> None:
         assert not wrong_values(replace(hard, within=OWN * float(rtol)), found)
 
 
-def test_few_are_refused() -> None:
+def test_few_are_refused():
     assert REFUSED.keys() <= {hard.name for hard in CATALOGUE}
     assert len(REFUSED) <= 0.05 * len(CATALOGUE)
     assert GENERATED.keys() <= {hard.name for hard in CATALOGUE}
 
 
 @pytest.mark.parametrize("solver", ["moreau", "penalty"])
-def test_a_graze_that_fixed_steps_do_not_see(solver: str) -> None:
+def test_a_graze_that_fixed_steps_do_not_see(solver):
     """An overshoot of 1e-12 is far below what a hundred steps a period resolve."""
     hard = named("graze-hit-1e-12")
     found = baseline(hard, solver, outcome(hard, "cvode").response)

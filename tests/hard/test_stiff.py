@@ -1,7 +1,5 @@
 """A few of the random scenes with stiff beside soft bodies: same events by every solver."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 import pytest
@@ -23,13 +21,13 @@ from tests.hard.stiff import RTOL, examine, stiff_scene
         pytest.param(599, id="where a collapse is cut off"),
     ],
 )
-def test_same_events(seed: int) -> None:
+def test_same_events(seed):
     found = examine(seed, 60.0)
     assert found.word == "agrees", found.remark
 
 
 @pytest.mark.parametrize("rtol", [1e-9, 5e-11, 3e-11, 2e-11, 1e-11])
-def test_rounding_where_forces_vanish_makes_no_impacts(rtol: float) -> None:
+def test_rounding_where_forces_vanish_makes_no_impacts(rtol):
     """Three bodies leave a barrier in touch; the stiff one of them opened and closed for ever."""
     scene, end = stiff_scene(51)
     events = solver_named("fast").solve(Task(scene, 0.0, end, rtol)).events
@@ -38,7 +36,7 @@ def test_rounding_where_forces_vanish_makes_no_impacts(rtol: float) -> None:
     assert len(events) == 111
 
 
-def test_a_force_that_rounding_keeps_from_changing_vanishes() -> None:
+def test_a_force_that_rounding_keeps_from_changing_vanishes():
     """A stiff body rests on one far from its place: Newton's steps to the zero crept along."""
     scene, _ = stiff_scene(990)
     recording = solver_named("ida").solve(Task(scene, 0.0, 0.3, RTOL))

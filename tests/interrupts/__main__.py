@@ -5,8 +5,6 @@ instant of its run. A job may end by exit code 130 or KeyboardInterrupt, or be d
 the signal comes; the exit code of this is the number of those that ended otherwise.
 """
 
-from __future__ import annotations
-
 import sys
 import tempfile
 from pathlib import Path

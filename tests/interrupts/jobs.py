@@ -1,7 +1,5 @@
 """What is interrupted: commands of the command line and calls of the package."""
 
-from __future__ import annotations
-
 import shutil
 import threading
 from collections.abc import Callable

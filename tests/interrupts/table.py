@@ -1,7 +1,5 @@
 """Interrupts of one job, counted by how they ended."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from collections import Counter

@@ -1,8 +1,6 @@
 """A few interrupts of what runs compiled code; ``python -m tests.interrupts`` makes more."""
 
 import signal
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
@@ -17,7 +15,7 @@ CALLS = [
 
 
 @pytest.fixture(autouse=True)
-def in_the_background() -> Iterator[None]:
+def in_the_background():
     """As where a shell starts the tests in the background: what they start ignores SIGINT."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     yield
@@ -29,7 +27,7 @@ def in_the_background() -> Iterator[None]:
     [CALLS[0], CALLS[-1], *(pytest.param(n, marks=pytest.mark.sweep) for n in CALLS[1:-1])],
     ids=lambda n: f"{JOBS[n].command} {JOBS[n].solver}",
 )
-def test_an_interrupt_is_no_crash(number: int, tmp_path: Path) -> None:
+def test_an_interrupt_is_no_crash(number, tmp_path):
     row = interrupted(number, 6, 1, tmp_path)
     assert not row.wrong, line(row)
     assert row.ends["130"] > 0

@@ -4,8 +4,6 @@ A line for each interrupt: the exit code, or the name of the exception. Whoever 
 process learns of a crash by its end.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import random

@@ -1,7 +1,5 @@
 """The benchmark commands run, and the problems that trip others are right at all tolerances."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

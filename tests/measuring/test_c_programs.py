@@ -1,7 +1,5 @@
 """The hand-written program gives the yardstick answers where a C compiler is present."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Every command of the tests that the documentation names runs, here or in another test."""
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Callable, Mapping
@@ -109,12 +107,7 @@ BY_HAND = {
 
 @pytest.mark.pages
 @pytest.mark.parametrize("name", sorted(RUN))
-def test_runs(
-    name: str,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    request: pytest.FixtureRequest,
-) -> None:
+def test_runs(name, monkeypatch, capsys, request):
     if request.config.option.quick:
         pytest.skip("compiles, some of them in processes of their own")
     small = RUN[name]
@@ -127,7 +120,7 @@ def test_runs(
     assert capsys.readouterr().out.strip()
 
 
-def test_every_command_of_the_pages_is_run() -> None:
+def test_every_command_of_the_pages_is_run():
     named = {
         found.removesuffix(".") for page in PAGES for found in COMMAND.findall(page.read_text())
     }
@@ -135,7 +128,7 @@ def test_every_command_of_the_pages_is_run() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(ELSEWHERE))
-def test_is_called_elsewhere(name: str) -> None:
+def test_is_called_elsewhere(name):
     text = (ROOT / "tests" / ELSEWHERE[name]).read_text(encoding="utf-8")
     package, _, module = name.rpartition(".")
     assert re.search(rf"from {package} import .*\b{module}\b|(from|import) {name}\b", text)

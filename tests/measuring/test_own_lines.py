@@ -1,15 +1,11 @@
 """The lines that stand beside a stepper's own: its own model, and a run among many."""
 
-from __future__ import annotations
-
-import pytest
-
 from eventpound.accuracy.compare import entries, judge_entries
 from tests.benchmarks import own_lines, work_precision, yardsticks
 from tests.benchmarks.work_precision import case_of
 
 
-def test_the_lines_stand_beside_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_lines_stand_beside_the_others(monkeypatch):
     monkeypatch.setattr(own_lines, "RUNS", 20)
     case = case_of("P4", yardsticks.load()["P4"])
     asked = entries([("fast", {}), ("penalty", {})], [1e-6], [0.02])

@@ -1,7 +1,5 @@
 """The commands behind docs/steppers.md print their tables, and the parts are what they say."""
 
-from __future__ import annotations
-
 from tests.benchmarks import orders, penalty_split
 
 

@@ -1,7 +1,5 @@
 """The command behind docs/performance.md, on one small problem."""
 
-from __future__ import annotations
-
 import csv
 
 from tests.benchmarks import work_precision

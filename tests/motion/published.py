@@ -9,8 +9,6 @@ same digital files, and how its conventions explain what differs. The third
 says how far the conventions of the mean period are apart.
 """
 
-from __future__ import annotations
-
 import csv
 from dataclasses import dataclass
 from functools import cached_property

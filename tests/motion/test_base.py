@@ -1,7 +1,5 @@
 """Duties that every ground motion has: kinematics, pieces, compiled evaluation, scales."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 
@@ -57,13 +55,13 @@ def _begin(motion: GroundMotion) -> float:
 
 
 @EACH
-def test_it_is_a_ground_motion(motion: GroundMotion) -> None:
+def test_it_is_a_ground_motion(motion):
     assert isinstance(motion, GroundMotion)
 
 
 @EACH
 @pytest.mark.parametrize("after", [0.05, 0.6, 1.3, 4.0])
-def test_velocity_and_displacement_are_the_integrals(motion: GroundMotion, after: float) -> None:
+def test_velocity_and_displacement_are_the_integrals(motion, after):
     start = _begin(motion)
     t = start + after
     points = [start, *_breaks(motion, start, t), t]
@@ -79,7 +77,7 @@ def test_velocity_and_displacement_are_the_integrals(motion: GroundMotion, after
 
 
 @EACH
-def test_the_ground_starts_at_rest(motion: GroundMotion) -> None:
+def test_the_ground_starts_at_rest(motion):
     start = np.array([_begin(motion)])
     assert motion.velocity(start)[0] == 0.0
     assert motion.displacement(start)[0] == 0.0
@@ -91,7 +89,7 @@ def test_the_ground_starts_at_rest(motion: GroundMotion) -> None:
 
 
 @EACH
-def test_pieces_follow_one_another_without_holes(motion: GroundMotion) -> None:
+def test_pieces_follow_one_another_without_holes(motion):
     pieces = motion.pieces()
     assert pieces[0].start == -math.inf
     assert pieces[-1].end == math.inf
@@ -100,7 +98,7 @@ def test_pieces_follow_one_another_without_holes(motion: GroundMotion) -> None:
 
 
 @EACH
-def test_the_compiled_pieces_are_the_motion(motion: GroundMotion) -> None:
+def test_the_compiled_pieces_are_the_motion(motion):
     times = np.linspace(_begin(motion) - 0.5, _begin(motion) + 4.0, 613)
     times = np.append(times, [p.start for p in motion.pieces() if math.isfinite(p.start)])
     expected = motion.acceleration(times)
@@ -112,7 +110,7 @@ def test_the_compiled_pieces_are_the_motion(motion: GroundMotion) -> None:
 
 
 @EACH
-def test_nothing_happens_after_the_end(motion: GroundMotion) -> None:
+def test_nothing_happens_after_the_end(motion):
     if math.isfinite(motion.end):
         late = motion.end + np.array([0.0, 0.1, 3.0])
         scales = motion.scales()
@@ -121,7 +119,7 @@ def test_nothing_happens_after_the_end(motion: GroundMotion) -> None:
 
 
 @EACH
-def test_the_amplitude_is_the_peak_and_reverse_changes_the_sign_only(motion: GroundMotion) -> None:
+def test_the_amplitude_is_the_peak_and_reverse_changes_the_sign_only(motion):
     scales = motion.scales()
     if scales is None:
         return
@@ -136,7 +134,7 @@ def test_the_amplitude_is_the_peak_and_reverse_changes_the_sign_only(motion: Gro
 @pytest.mark.parametrize(
     "kind", [Sine, Cosine, TypeC, Ricker, AntisymmetricRicker, MavroeidisPapageorgiou, Harmonic]
 )
-def test_a_reversed_motion_is_the_mirror_image(kind: type) -> None:
+def test_a_reversed_motion_is_the_mirror_image(kind):
     times = np.linspace(-0.5, 3.0, 501)
     ahead, back = kind(2.0, 0.7, start=0.1), kind(2.0, 0.7, start=0.1, reverse=True)
     for quantity in ("acceleration", "velocity", "displacement"):

@@ -1,7 +1,5 @@
 """Compiled Taylor coefficients against Cauchy's integral formula, and straight lines."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -62,7 +60,7 @@ def _scaled_by_cauchy(piece: Piece, t: float, radius: float) -> np.ndarray:
     ids=lambda motion: motion.kind,
 )
 @pytest.mark.parametrize("t", [0.31, 0.77, 1.9])
-def test_coefficients_agree_with_cauchys_formula(motion: Sine, t: float) -> None:
+def test_coefficients_agree_with_cauchys_formula(motion, t):
     piece = motion.pieces()[-1] if len(motion.pieces()) == 1 else motion.pieces()[1]
     radius = motion.period / (2.0 * math.pi)
     computed = _taylor(piece, t) * radius ** np.arange(ORDER)
@@ -73,7 +71,7 @@ def test_coefficients_agree_with_cauchys_formula(motion: Sine, t: float) -> None
     assert computed[0] == pytest.approx(a, abs=1e-15)
 
 
-def test_a_sine_starts_with_an_exact_zero() -> None:
+def test_a_sine_starts_with_an_exact_zero():
     piece = Sine(2.0, 0.8).pieces()[1]
     coefficients = _taylor(piece, 0.0, 4)
     assert coefficients[0] == 0.0
@@ -81,11 +79,11 @@ def test_a_sine_starts_with_an_exact_zero() -> None:
     assert coefficients[1] == pytest.approx(2.0 * 2.0 * math.pi / 0.8, rel=1e-15)
 
 
-def test_zero_has_zero_coefficients() -> None:
+def test_zero_has_zero_coefficients():
     assert not np.any(_taylor(Sine(1.0, 1.0).pieces()[0], -3.0))
 
 
-def test_a_record_gives_the_line_to_the_right_of_every_sample() -> None:
+def test_a_record_gives_the_line_to_the_right_of_every_sample():
     samples = np.random.default_rng(5).normal(size=2000)
     dt = 0.005
     piece = Record(samples, dt, start=0.1).pieces()[1]
@@ -96,7 +94,7 @@ def test_a_record_gives_the_line_to_the_right_of_every_sample() -> None:
         assert a[2] == 0.0
 
 
-def test_a_record_is_continued_by_its_first_and_last_line() -> None:
+def test_a_record_is_continued_by_its_first_and_last_line():
     piece = Record(np.array([1.0, 3.0, 2.0]), 0.5).pieces()[1]
     formula = forcing_of(piece, 0.0)
     assert ground_acceleration(formula, -0.25) == 0.0
@@ -105,7 +103,7 @@ def test_a_record_is_continued_by_its_first_and_last_line() -> None:
 
 
 @pytest.mark.parametrize("t", [-3.0, 0.5, 2.5])
-def test_a_gaussian_dies_away_in_its_decay_time(t: float) -> None:
+def test_a_gaussian_dies_away_in_its_decay_time(t):
     # |f / f'| of exp(-q s^2), by Taylor coefficients.
     numbers = np.array([0.5, 1.7, 2.0, 0.0, 0.0, 0.0])
     value, slope = _taylor(Piece(-math.inf, math.inf, Family.GAUSSIAN, numbers), t, 2)

@@ -1,7 +1,5 @@
 """Harmonic motion, with and without end."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -11,7 +9,7 @@ from eventpound.errors import InputError
 from eventpound.motion import Harmonic
 
 
-def test_endless_harmonic_has_no_last_piece() -> None:
+def test_endless_harmonic_has_no_last_piece():
     motion = Harmonic(2.0, 0.5, start=0.1)
     assert motion.end == math.inf
     assert len(motion.pieces()) == 2
@@ -22,7 +20,7 @@ def test_endless_harmonic_has_no_last_piece() -> None:
     )
 
 
-def test_cycles_end_it_in_the_middle_of_a_period() -> None:
+def test_cycles_end_it_in_the_middle_of_a_period():
     motion = Harmonic(2.0, 0.5, cycles=1.25)
     assert motion.end == 0.625
     assert motion.acceleration(np.array([0.625 - 1e-9, 0.625])).tolist() == pytest.approx(
@@ -31,6 +29,6 @@ def test_cycles_end_it_in_the_middle_of_a_period() -> None:
 
 
 @pytest.mark.parametrize("cycles", [0.0, -1.0, math.inf])
-def test_cycles_must_be_positive(cycles: float) -> None:
+def test_cycles_must_be_positive(cycles):
     with pytest.raises(InputError, match=r"harmonic.*cycles"):
         Harmonic(1.0, 1.0, cycles=cycles)

@@ -1,7 +1,5 @@
 """Intensity measures against closed forms and the motion itself, finely sampled."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -12,7 +10,7 @@ from eventpound.motion.intensity import intensity
 from eventpound.units import STANDARD_GRAVITY
 
 
-def test_a_triangle() -> None:
+def test_a_triangle():
     # a rises from 0 to A in dt and falls back.
     peak, dt = 3.0, 0.1
     measures = intensity(Record(np.array([0.0, -peak, 0.0]), dt, start=5.0))
@@ -30,7 +28,7 @@ def test_a_triangle() -> None:
     assert measures.significant_duration == pytest.approx(1.8 * dt, rel=1e-13)
 
 
-def test_extremes_between_samples() -> None:
+def test_extremes_between_samples():
     # a = 1 - 2 t / dt: v = t - t^2 / dt has its peak dt / 4 at dt / 2, and is zero
     # at dt, where d = dt^2 / 6; then a = -1 + 4 (t - dt) / dt.
     dt = 0.2
@@ -43,7 +41,7 @@ def test_extremes_between_samples() -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_peaks_are_those_of_the_motion_finely_sampled(seed: int) -> None:
+def test_peaks_are_those_of_the_motion_finely_sampled(seed):
     samples = np.random.default_rng(seed).normal(size=60)
     dt, parts = 0.02, 2000
     record = Record(samples, dt, scale=1.7)
@@ -57,7 +55,7 @@ def test_peaks_are_those_of_the_motion_finely_sampled(seed: int) -> None:
     assert 0.0 <= measures.pgd - d + 1e-14 <= measures.pga * h**2 / 8.0 + 2e-14
 
 
-def test_a_sine_of_whole_cycles() -> None:
+def test_a_sine_of_whole_cycles():
     # Trapezium sums of sin^2 over whole cycles are exact; those of |sin| are not.
     a_p, dt, n = 2.0, 0.01, 400
     t = dt * np.arange(n + 1)

@@ -1,7 +1,5 @@
 """Pieces of a ground motion with loads: united at every breakpoint, each signal as it is alone."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -52,7 +50,7 @@ def loaded(ground: GroundMotion) -> LoadedMotion:
 
 
 @pytest.mark.parametrize("ground", [Sine(1.0, 1.1), RECORD, NoMotion(), Ricker(2.0, 0.6)])
-def test_every_signal_is_itself(ground: GroundMotion) -> None:
+def test_every_signal_is_itself(ground):
     motion = loaded(ground)
     pieces = motion.pieces()
     assert [p.end for p in pieces[:-1]] == [p.start for p in pieces[1:]]
@@ -79,7 +77,7 @@ def test_every_signal_is_itself(ground: GroundMotion) -> None:
 
 
 @pytest.mark.parametrize("ground", [Sine(1.0, 1.1), RECORD, NoMotion(), Ricker(2.0, 0.6)])
-def test_supports_are_where_their_motions_take_them(ground: GroundMotion) -> None:
+def test_supports_are_where_their_motions_take_them(ground):
     moved: tuple[GroundMotion, ...] = (
         Sine(2.0, 0.7),
         Cosine(1.0, 0.9),
@@ -108,7 +106,7 @@ def ends_beside(ground: GroundMotion, moved: GroundMotion) -> list[float]:
     return sorted({piece.end for piece in motion.pieces()} - own)
 
 
-def test_a_piece_ends_where_motions_that_were_the_same_part() -> None:
+def test_a_piece_ends_where_motions_that_were_the_same_part():
     one, other = np.array([[0, 1, 2, 1, 2, 3, 1, 2], [0, 1, 2, 1, 0, 3, 0, 1]]) / 10.0
     # They are the same once more, by chance.
     assert ends_beside(Record(one, 0.5), Record(other, 0.5)) == [1.5]
@@ -116,7 +114,7 @@ def test_a_piece_ends_where_motions_that_were_the_same_part() -> None:
 
 
 @pytest.mark.parametrize("kind", [Ricker, AntisymmetricRicker])
-def test_a_piece_ends_where_a_tail_has_begun(kind: type[Ricker | AntisymmetricRicker]) -> None:
+def test_a_piece_ends_where_a_tail_has_begun(kind):
     wavelet = kind(1.0, 0.5, center=5.0)
     for ground, moved in ((NoMotion(), wavelet), (wavelet, Delayed(wavelet, 0.2))):
         (end,) = ends_beside(ground, moved)
@@ -127,7 +125,7 @@ def test_a_piece_ends_where_a_tail_has_begun(kind: type[Ricker | AntisymmetricRi
 
 
 @pytest.mark.parametrize("q", [0.0, 0.4])
-def test_integrals_of_any_cubic_beside_a_gaussian(q: float) -> None:
+def test_integrals_of_any_cubic_beside_a_gaussian(q):
     """Its own differences over h err by h²/12 of a derivative, and by rounding over h."""
     numbers, none, h = np.array([0.3, q, 0.7, -0.4, 0.9, 0.2]), np.empty(0), 1e-4
     for t in np.linspace(-2.0, 3.0, 11):
@@ -137,7 +135,7 @@ def test_integrals_of_any_cubic_beside_a_gaussian(q: float) -> None:
         assert (at[2][1] - at[0][1]) / (2.0 * h) == pytest.approx(a, abs=1e-7)
 
 
-def test_series_of_a_load() -> None:
+def test_series_of_a_load():
     motion = loaded(Sine(1.0, 1.1))
     t, h = 0.4, 1e-2
     formula = forcing_of(next(p for p in motion.pieces() if p.end > t), 0.0)
@@ -151,7 +149,7 @@ def test_series_of_a_load() -> None:
     assert float(np.polynomial.polynomial.polyval(h, out)) == pytest.approx(value, rel=1e-13)
 
 
-def test_corners_of_two_records() -> None:
+def test_corners_of_two_records():
     motion = loaded(RECORD)
     samples = {round(float(s + 0.13 * i), 12) for s in (0.31, 0.71) for i in range(9)}
     found, t = set(), 0.0
@@ -162,7 +160,7 @@ def test_corners_of_two_records() -> None:
     assert samples <= found
 
 
-def test_the_shortest_decay_counts() -> None:
+def test_the_shortest_decay_counts():
     piece = loaded(Ricker(2.0, 0.6)).pieces()[0]
     alone = [m.pieces()[0] for m in (Ricker(2.0, 0.6), Ricker(1.5, 0.9))]
     times = [decay_time(forcing_of(p, 0.0), 0.1) for p in alone]
@@ -170,7 +168,7 @@ def test_the_shortest_decay_counts() -> None:
 
 
 @pytest.mark.parametrize("motion", [Sine(2.0, 0.7), Cosine(1.0, 0.9), RECORD, Ricker(2.0, 0.8)])
-def test_a_motion_later(motion: GroundMotion) -> None:
+def test_a_motion_later(motion):
     later = Delayed(motion, 0.3)
     t = np.linspace(-0.5, 3.0, 200)
     for name in ("acceleration", "velocity", "displacement"):
@@ -181,7 +179,7 @@ def test_a_motion_later(motion: GroundMotion) -> None:
 
 
 @pytest.mark.parametrize("delay", np.linspace(0.01, 1.3, 100))
-def test_a_later_jump_is_where_its_piece_begins(delay: float) -> None:
+def test_a_later_jump_is_where_its_piece_begins(delay):
     motion = Cosine(1.0, 0.9, start=0.1)
     later = Delayed(motion, delay)
     for piece, values in zip(later.pieces()[1:], ((0.0, 1.0), (1.0, 0.0)), strict=True):
@@ -189,7 +187,7 @@ def test_a_later_jump_is_where_its_piece_begins(delay: float) -> None:
         np.testing.assert_allclose(later.acceleration(t), values, atol=1e-14)
 
 
-def test_a_wavelet_has_begun_long_before() -> None:
+def test_a_wavelet_has_begun_long_before():
     """Displacement from -inf: what `start` counts from is not where it was at rest."""
     ricker = Ricker(2.0, 0.8)
     t = np.linspace(-3.0, 4.0, 20001)

@@ -1,7 +1,5 @@
 """The Mavroeidis-Papageorgiou pulse against its published velocity."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -20,7 +18,7 @@ PULSES = [
 
 
 @pytest.mark.parametrize("pulse", PULSES)
-def test_velocity_is_the_published_formula(pulse: MavroeidisPapageorgiou) -> None:
+def test_velocity_is_the_published_formula(pulse):
     t = np.linspace(pulse.start, pulse.end, 301)
     tau = t - pulse.start - pulse.gamma * pulse.period / 2.0
     w = 2.0 * math.pi / pulse.period
@@ -32,7 +30,7 @@ def test_velocity_is_the_published_formula(pulse: MavroeidisPapageorgiou) -> Non
 
 
 @pytest.mark.parametrize("pulse", PULSES)
-def test_peak_acceleration_is_the_amplitude_to_rounding(pulse: MavroeidisPapageorgiou) -> None:
+def test_peak_acceleration_is_the_amplitude_to_rounding(pulse):
     t = np.linspace(pulse.start, pulse.end, 20_001)
     magnitude = np.abs(pulse.acceleration(t))
     i = int(np.argmax(magnitude))
@@ -46,7 +44,7 @@ def test_peak_acceleration_is_the_amplitude_to_rounding(pulse: MavroeidisPapageo
     assert -best.fun == pytest.approx(pulse.amplitude, rel=1e-14)
 
 
-def test_default_pulse_returns_the_ground() -> None:
+def test_default_pulse_returns_the_ground():
     pulse = PULSES[0]
     assert pulse.displacement(np.array([pulse.end]))[0] == pytest.approx(0.0, abs=1e-15)
 
@@ -54,6 +52,6 @@ def test_default_pulse_returns_the_ground() -> None:
 @pytest.mark.parametrize(
     ("key", "value"), [("gamma", 1.0), ("gamma", math.nan), ("phase", math.inf)]
 )
-def test_a_wrong_number_is_named(key: str, value: float) -> None:
+def test_a_wrong_number_is_named(key, value):
     with pytest.raises(InputError, match=f"mavroeidis-papageorgiou.*{key}"):
         MavroeidisPapageorgiou(1.0, 1.0, **{key: value})

@@ -1,7 +1,5 @@
 """Baseline correction and filtering against what they must leave alone and take away."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -17,14 +15,14 @@ def data(acceleration: Any, time_step: float = 0.01) -> RecordData:
     return RecordData(np.asarray(acceleration, float), time_step, "g", "at2", "a.at2", "0" * 64)
 
 
-def test_nothing_is_done_unless_asked_for() -> None:
+def test_nothing_is_done_unless_asked_for():
     record = data([1.0, 2.0, 3.0])
     assert Processing().apply(record) is record
     assert Processing().described() == {}
 
 
 @pytest.mark.parametrize("degree", [0, 1, 3, 6])
-def test_a_polynomial_is_taken_away_and_what_is_left_has_none(degree: int) -> None:
+def test_a_polynomial_is_taken_away_and_what_is_left_has_none(degree):
     random = np.random.default_rng(degree)
     t = np.linspace(0.0, 1.0, 500)
     noise = random.normal(size=500)
@@ -48,9 +46,7 @@ def test_a_polynomial_is_taken_away_and_what_is_left_has_none(degree: int) -> No
     ],
 )
 @pytest.mark.parametrize("order", [2, 4])
-def test_gain_is_the_square_of_butterworth_s_without_phase(
-    corners: dict[str, float], frequency: float, order: int
-) -> None:
+def test_gain_is_the_square_of_butterworth_s_without_phase(corners, frequency, order):
     dt, n = 0.01, 8000
     t = dt * np.arange(n)
     sine = np.sin(2.0 * math.pi * frequency * t)
@@ -66,7 +62,7 @@ def test_gain_is_the_square_of_butterworth_s_without_phase(
     np.testing.assert_allclose(filtered[middle], gain * sine[middle], atol=1e-9)
 
 
-def test_a_band_and_a_baseline_are_noted() -> None:
+def test_a_band_and_a_baseline_are_noted():
     random = np.random.default_rng(0)
     processing = Processing(baseline=1, highpass=0.5, lowpass=20.0)
     record = processing.apply(data(random.normal(size=1000)))
@@ -89,16 +85,16 @@ def test_a_band_and_a_baseline_are_noted() -> None:
         ({"highpass": 5.0, "lowpass": 5.0}, r"the lower corner is that of highpass"),
     ],
 )
-def test_refusals(arguments: dict[str, Any], message: str) -> None:
+def test_refusals(arguments, message):
     with pytest.raises(InputError, match=message):
         Processing(**arguments)
 
 
-def test_a_corner_beyond_nyquist_is_refused() -> None:
+def test_a_corner_beyond_nyquist_is_refused():
     with pytest.raises(InputError, match=r"a.at2: a corner of 50 Hz; .* below 50 Hz"):
         Processing(lowpass=50.0).apply(data(np.ones(100)))
 
 
-def test_a_record_that_is_all_baseline_is_refused() -> None:
+def test_a_record_that_is_all_baseline_is_refused():
     with pytest.raises(InputError, match="nothing is left"):
         Processing(baseline=0).apply(data(np.full(64, 0.5)))

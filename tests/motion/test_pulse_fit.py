@@ -1,7 +1,5 @@
 """Pulses are found again: a pure one exactly, one in noise within what noise allows."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -24,7 +22,7 @@ def pulse(kind: str) -> GroundMotion:
 
 
 @pytest.mark.parametrize("kind", PULSES)
-def test_a_pure_pulse_is_found_exactly_in_its_acceleration(kind: str) -> None:
+def test_a_pure_pulse_is_found_exactly_in_its_acceleration(kind):
     """The samples are those of the formula, so the least sum of squares is zero.
 
     Where it is zero the parameters are as exact as the square root of rounding.
@@ -39,7 +37,7 @@ def test_a_pure_pulse_is_found_exactly_in_its_acceleration(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", PULSES)
-def test_a_pure_pulse_is_found_in_its_velocity(kind: str) -> None:
+def test_a_pure_pulse_is_found_in_its_velocity(kind):
     """The velocity of a record is that of straight lines between its samples.
 
     They miss (omega dt)^2 / 12 of a smooth pulse. A jump is a ramp of one step
@@ -55,7 +53,7 @@ def test_a_pure_pulse_is_found_in_its_velocity(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["sine", "ricker", "mavroeidis-papageorgiou"])
-def test_a_pulse_in_noise(kind: str) -> None:
+def test_a_pulse_in_noise(kind):
     """White noise of standard deviation s, known error bars of least squares.
 
     The sum over n samples of the squared derivatives of the pulse to ln a_p and
@@ -76,7 +74,7 @@ def test_a_pulse_in_noise(kind: str) -> None:
     assert fit.explained == pytest.approx(share, abs=0.1)
 
 
-def test_the_right_kind_is_the_best() -> None:
+def test_the_right_kind_is_the_best():
     for kind in ("cosine", "ricker", "antisymmetric-ricker"):
         others = [name for name in PULSES if name != "mavroeidis-papageorgiou"]
         best, *rest = fit_pulse(sampled(pulse(kind)), others)
@@ -84,7 +82,7 @@ def test_the_right_kind_is_the_best() -> None:
         assert all(fit.explained <= best.explained for fit in rest)
 
 
-def test_scale_and_direction_of_the_record_count() -> None:
+def test_scale_and_direction_of_the_record_count():
     plain = sampled(pulse("ricker"))
     turned = Record(plain.samples, STEP, scale=3.0, reverse=True, start=-2.0)
     (fit,) = fit_pulse(turned, ["ricker"], on="acceleration")
@@ -93,7 +91,7 @@ def test_scale_and_direction_of_the_record_count() -> None:
     assert getattr(fit.motion, "start") == pytest.approx(START - 2.0, abs=1e-6)  # noqa: B009
 
 
-def test_what_cannot_be_fitted_is_refused() -> None:
+def test_what_cannot_be_fitted_is_refused():
     record = sampled(pulse("sine"))
     with pytest.raises(InputError, match="found square; accepted: sine, cosine"):
         fit_pulse(record, ["square"])

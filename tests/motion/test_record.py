@@ -1,9 +1,6 @@
 """Records: values, jumps, scaling and refusals."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +11,7 @@ from eventpound.motion import Record
 SAMPLES = np.array([0.5, -1.0, 2.0, -3.0, 1.0])
 
 
-def test_linear_between_samples_with_jumps_at_both_ends() -> None:
+def test_linear_between_samples_with_jumps_at_both_ends():
     record = Record(SAMPLES, 0.1, start=1.0)
     t = np.array([1.0 - 1e-9, 1.0, 1.05, 1.25, record.end - 1e-12, record.end, 9.0])
     np.testing.assert_allclose(
@@ -23,7 +20,7 @@ def test_linear_between_samples_with_jumps_at_both_ends() -> None:
     assert record.acceleration(np.array([1.0]))[0] == 0.5
 
 
-def test_kinematics_at_every_sample_of_a_long_record() -> None:
+def test_kinematics_at_every_sample_of_a_long_record():
     samples = np.random.default_rng(3).normal(size=4000)
     dt = 0.02
     record = Record(samples, dt)
@@ -43,7 +40,7 @@ def test_kinematics_at_every_sample_of_a_long_record() -> None:
     )
 
 
-def test_after_the_end_the_ground_keeps_its_velocity() -> None:
+def test_after_the_end_the_ground_keeps_its_velocity():
     record = Record(SAMPLES, 0.1)
     at, late = record.velocity(np.array([record.end, record.end + 2.0]))
     d_at, d_late = record.displacement(np.array([record.end, record.end + 2.0]))
@@ -51,7 +48,7 @@ def test_after_the_end_the_ground_keeps_its_velocity() -> None:
     assert d_late == pytest.approx(d_at + 2.0 * at, rel=1e-15)
 
 
-def test_scale_pga_and_reverse() -> None:
+def test_scale_pga_and_reverse():
     t = np.linspace(-0.1, 0.6, 71)
     plain = Record(SAMPLES, 0.1).acceleration(t)
     scaled = Record(SAMPLES, 0.1, scale=2.5).acceleration(t)
@@ -62,7 +59,7 @@ def test_scale_pga_and_reverse() -> None:
     assert turned.scales().period == pytest.approx(Record(SAMPLES, 0.1).mean_period, rel=1e-15)
 
 
-def test_samples_are_a_copy_that_cannot_change() -> None:
+def test_samples_are_a_copy_that_cannot_change():
     mine = SAMPLES.copy()
     record = Record(mine, 0.1)
     mine[0] = 99.0
@@ -84,6 +81,6 @@ def test_samples_are_a_copy_that_cannot_change() -> None:
         ({"start": math.nan}, "start"),
     ],
 )
-def test_refusals_name_what_is_wrong(arguments: dict[str, Any], text: str) -> None:
+def test_refusals_name_what_is_wrong(arguments, text):
     with pytest.raises(InputError, match=text):
         Record(**{"samples": SAMPLES, "time_step": 0.1, **arguments})

@@ -1,7 +1,5 @@
 """Lists of record files."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +18,7 @@ from eventpound.motion.record_list import (
 from tests.motion.readers.writers import WRITERS, motion
 
 
-def test_a_line_says_what_its_cells_say(tmp_path: Path) -> None:
+def test_a_line_says_what_its_cells_say(tmp_path):
     path = tmp_path / "list.csv"
     path.write_text(
         "\ufefffile,units,dt_s,time_step,component,more\n"
@@ -36,7 +34,7 @@ def test_a_line_says_what_its_cells_say(tmp_path: Path) -> None:
     ]
 
 
-def test_a_line_that_says_nonsense_names_itself(tmp_path: Path) -> None:
+def test_a_line_that_says_nonsense_names_itself(tmp_path):
     path = tmp_path / "list.csv"
     path.write_text("file,time_step\na,0.1\n\n,0.1\nb,fast\n")
     rows = read_list(path)
@@ -49,12 +47,12 @@ def test_a_line_that_says_nonsense_names_itself(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b"t,a\n0,1\n", b"\xff\xfe\x00\x01"])
-def test_other_files_are_no_lists(tmp_path: Path, content: bytes) -> None:
+def test_other_files_are_no_lists(tmp_path, content):
     (tmp_path / "x.csv").write_bytes(content)
     assert read_list(tmp_path / "x.csv") is None
 
 
-def test_a_list_that_is_not_there(tmp_path: Path) -> None:
+def test_a_list_that_is_not_there(tmp_path):
     with pytest.raises(InputError, match=r"none\.csv: cannot be read: No such file"):
         read_list(tmp_path / "none.csv")
 
@@ -68,14 +66,14 @@ def folder_of(directory: Path, *names: str) -> Path:
     return directory
 
 
-def test_files_are_found_in_order_but_not_hidden_ones(tmp_path: Path) -> None:
+def test_files_are_found_in_order_but_not_hidden_ones(tmp_path):
     for name in ("b/2", "a", "b/1", ".hidden", ".git/x"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("x")
     assert files_in(tmp_path) == [tmp_path / x for x in ("a", "b/1", "b/2")]
 
 
-def test_what_is_given_is_used_only_where_a_file_does_not_say_it(tmp_path: Path) -> None:
+def test_what_is_given_is_used_only_where_a_file_does_not_say_it(tmp_path):
     folder_of(tmp_path, "at2", "one_column", "geonet")
     wrong = {"units": "m/s2", "time_step": 7.0, "as_needed": True}
     data = read_record(tmp_path / "at2", **wrong)
@@ -94,7 +92,7 @@ def test_what_is_given_is_used_only_where_a_file_does_not_say_it(tmp_path: Path)
         read_record(tmp_path / "at2", time_step=7.0)
 
 
-def test_all_components_of_a_file(tmp_path: Path) -> None:
+def test_all_components_of_a_file(tmp_path):
     folder_of(tmp_path, "geonet", "csv")
     found = read_components(tmp_path / "geonet")
     assert [data.component for data in found] == ["N28W", "S62W", "Up"]
@@ -102,7 +100,7 @@ def test_all_components_of_a_file(tmp_path: Path) -> None:
     np.testing.assert_array_equal(east.acceleration, -north.acceleration)
 
 
-def test_a_bad_file_does_not_stop_the_others(tmp_path: Path) -> None:
+def test_a_bad_file_does_not_stop_the_others(tmp_path):
     folder_of(tmp_path, "at2", "one_column", "knet")
     (tmp_path / "bad.txt").write_text("no numbers\nhere\n")
     files = [RecordFile(path, units="m/s2") for path in files_in(tmp_path)]
@@ -115,7 +113,7 @@ def test_a_bad_file_does_not_stop_the_others(tmp_path: Path) -> None:
     assert all(isinstance(by_name[name], list) for name in ("at2", "knet"))
 
 
-def test_a_list_says_units_and_time_steps(tmp_path: Path) -> None:
+def test_a_list_says_units_and_time_steps(tmp_path):
     folder_of(tmp_path, "at2", "one_column", "geonet")
     table = tmp_path / "list.csv"
     table.write_text(
@@ -139,7 +137,7 @@ def test_a_list_says_units_and_time_steps(tmp_path: Path) -> None:
         ("file,time_step\na,fast\n", "line 2: time_step is 'fast'"),
     ],
 )
-def test_lists_that_are_none(tmp_path: Path, text: str, message: str) -> None:
+def test_lists_that_are_none(tmp_path, text, message):
     (tmp_path / "list.csv").write_text(text)
     with pytest.raises(InputError, match=message):
         listed_files(tmp_path / "list.csv")

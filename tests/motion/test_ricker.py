@@ -1,7 +1,5 @@
 """Ricker wavelets: peaks, places of the peaks, what is left at start and end."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -12,7 +10,7 @@ from eventpound.motion import AntisymmetricRicker, Ricker
 from eventpound.motion.base import Family
 
 
-def test_symmetric_wavelet_by_its_formula() -> None:
+def test_symmetric_wavelet_by_its_formula():
     wavelet = Ricker(1.3, 0.9, center=2.0)
     t = np.linspace(0.0, 4.0, 101)
     x2 = (math.pi * (t - 2.0) / 0.9) ** 2
@@ -22,7 +20,7 @@ def test_symmetric_wavelet_by_its_formula() -> None:
     assert wavelet.acceleration(np.array([2.0]))[0] == 1.3
 
 
-def test_antisymmetric_wavelet_has_the_published_normalisation() -> None:
+def test_antisymmetric_wavelet_has_the_published_normalisation():
     # Vassiliou and Makris 2011: a_p / 1.3801 (4 pi^2 t^2 / (3 T^2) - 3) 2 pi t / (sqrt(3) T) ...
     wavelet = AntisymmetricRicker(1.0, 0.9, center=0.0)
     t = np.linspace(-2.0, 2.0, 101)
@@ -32,7 +30,7 @@ def test_antisymmetric_wavelet_has_the_published_normalisation() -> None:
     )
 
 
-def test_antisymmetric_wavelet_peaks_where_its_derivative_vanishes() -> None:
+def test_antisymmetric_wavelet_peaks_where_its_derivative_vanishes():
     wavelet = AntisymmetricRicker(2.0, 0.9, center=0.0)
     t = math.sqrt(3.0 - math.sqrt(6.0)) * math.sqrt(3.0) * 0.9 / (2.0 * math.pi)
     np.testing.assert_allclose(wavelet.acceleration(np.array([-t, t])), [2.0, -2.0], rtol=1e-15)
@@ -41,23 +39,21 @@ def test_antisymmetric_wavelet_peaks_where_its_derivative_vanishes() -> None:
 @pytest.mark.parametrize(
     ("wavelet", "fraction"), [(Ricker(1.0, 0.8), -9.7e-4), (AntisymmetricRicker(1.0, 0.8), -3.9e-5)]
 )
-def test_acceleration_left_at_the_start_is_the_documented_one(
-    wavelet: Ricker | AntisymmetricRicker, fraction: float
-) -> None:
+def test_acceleration_left_at_the_start_is_the_documented_one(wavelet, fraction):
     magnitude = abs(wavelet.acceleration(np.array([0.0]))[0])
     assert magnitude == pytest.approx(abs(fraction), rel=0.01)
 
 
-def test_nothing_is_cut_off() -> None:
+def test_nothing_is_cut_off():
     (piece,) = Ricker(1.0, 0.8, start=1.0).pieces()
     assert (piece.start, piece.end, piece.family) == (-math.inf, math.inf, Family.GAUSSIAN)
 
 
-def test_default_centers() -> None:
+def test_default_centers():
     assert Ricker(1.0, 0.8, start=0.5).middle == pytest.approx(0.5 + 0.8)
     assert AntisymmetricRicker(1.0, 0.8, start=0.5).middle == pytest.approx(0.5 + 1.2)
 
 
-def test_center_must_be_a_number() -> None:
+def test_center_must_be_a_number():
     with pytest.raises(InputError, match=r"ricker.*center"):
         Ricker(1.0, 1.0, center=math.nan)

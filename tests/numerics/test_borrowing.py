@@ -1,7 +1,5 @@
 """Borrowed arrays are the same memory."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numba.core.errors import TypingError

@@ -1,7 +1,5 @@
 """Complementarity problems against non-negative least squares and against enumeration."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np
@@ -42,7 +40,7 @@ def _compare_with_nnls(contacts: Contacts, p: np.ndarray) -> bool:
 
 @pytest.mark.parametrize("decades", [0.0, 1.0, 3.0])
 @pytest.mark.parametrize("barriers", ["none", "left", "right", "both"])
-def test_random_rows(decades: float, barriers: str) -> None:
+def test_random_rows(decades, barriers):
     rng = np.random.default_rng(11)
     judged = 0
     for _ in range(100):
@@ -53,7 +51,7 @@ def test_random_rows(decades: float, barriers: str) -> None:
 
 
 @pytest.mark.parametrize("decades", [0.0, 1.0, 3.0])
-def test_random_graphs(decades: float) -> None:
+def test_random_graphs(decades):
     rng = np.random.default_rng(12)
     judged = 0
     for _ in range(1500):
@@ -75,7 +73,7 @@ def _by_enumeration(G: np.ndarray, q: np.ndarray) -> np.ndarray | None:
     return None
 
 
-def test_against_every_active_set() -> None:
+def test_against_every_active_set():
     # Masses of one decade and at most six contacts: no condition number above 1e4.
     rng = np.random.default_rng(13)
     compared = 0
@@ -93,7 +91,7 @@ def test_against_every_active_set() -> None:
     assert compared > 200
 
 
-def test_parallel_contacts_with_different_restitution() -> None:
+def test_parallel_contacts_with_different_restitution():
     # Two contacts of the same pair, q = (1 + ε) γ out of the range of G: the one with
     # the larger ε takes all, γ⁺ = -ε_max γ⁻, whatever else is touched.
     rng = np.random.default_rng(14)
@@ -111,7 +109,7 @@ def test_parallel_contacts_with_different_restitution() -> None:
         np.testing.assert_allclose(w, q - q[largest], rtol=0.0, atol=16 * EPS)
 
 
-def test_parallel_contacts_in_random_graphs() -> None:
+def test_parallel_contacts_in_random_graphs():
     # Approaching contacts of one velocity field, each with its own ε.
     rng = np.random.default_rng(15)
     solved = 0
@@ -129,7 +127,7 @@ def test_parallel_contacts_in_random_graphs() -> None:
 
 
 @pytest.mark.parametrize("bodies", [1, 2, 5, 12])
-def test_row_squeezed_between_two_barriers(bodies: int) -> None:
+def test_row_squeezed_between_two_barriers(bodies):
     # At rest, pushed by forces p: x is not unique, but w = 0 where all are pressed.
     rng = np.random.default_rng(bodies)
     for _ in range(100):
@@ -142,7 +140,7 @@ def test_row_squeezed_between_two_barriers(bodies: int) -> None:
 
 @pytest.mark.parametrize("ratio", [1e-6, 1e6])
 @pytest.mark.parametrize("bodies", [2, 3, 6])
-def test_mass_ratios(ratio: float, bodies: int) -> None:
+def test_mass_ratios(ratio, bodies):
     rng = np.random.default_rng(16)
     for barriers in ("none", "left", "both"):
         for _ in range(50):
@@ -152,13 +150,13 @@ def test_mass_ratios(ratio: float, bodies: int) -> None:
             _compare_with_nnls(contacts, p)
 
 
-def test_a_problem_without_solution_is_told() -> None:
+def test_a_problem_without_solution_is_told():
     # Both contacts of a squeezed body are to open at once.
     contacts = Contacts(np.array([-1, 0]), np.array([0, -1]), np.array([1.0]))
     assert not solve_dense(contacts.G, np.array([-1.0, -1.0]), 0.0)[2]
 
 
-def test_a_locked_row_is_solved_to_the_accuracy_of_its_data() -> None:
+def test_a_locked_row_is_solved_to_the_accuracy_of_its_data():
     # Exactly, the sum of q over the gaps between two barriers is nothing.
     contacts = Contacts(np.array([-1, 0, 1]), np.array([0, 1, -1]), np.array([1.5, 0.2]))
     q = np.array([-1.0, 0.0, 1.0 - 1e-12])
@@ -170,7 +168,7 @@ def test_a_locked_row_is_solved_to_the_accuracy_of_its_data() -> None:
     np.testing.assert_allclose(x - x[2], [1.7, 0.2, 0.0], rtol=1e-11)
 
 
-def test_nothing_to_do() -> None:
+def test_nothing_to_do():
     x, w, solved = solve_dense(np.eye(3), np.array([0.0, 1.0, 2.0]), 0.0)
     assert solved
     assert not x.any()
@@ -184,7 +182,7 @@ def _couplings(contacts: Contacts) -> np.ndarray:
 
 @pytest.mark.parametrize("decades", [0.0, 1.0, 3.0])
 @pytest.mark.parametrize("barriers", ["none", "left", "right", "both"])
-def test_chain_against_dense(decades: float, barriers: str) -> None:
+def test_chain_against_dense(decades, barriers):
     rng = np.random.default_rng(17)
     for _ in range(40):
         contacts = row(rng, int(rng.integers(2, 40)), decades, barriers)
@@ -200,7 +198,7 @@ def test_chain_against_dense(decades: float, barriers: str) -> None:
         assert (np.abs(w - v) <= blur + 4.0 * level).all()
 
 
-def test_long_chain_of_equal_masses() -> None:
+def test_long_chain_of_equal_masses():
     # The first of N equal bodies hits the others at rest with ε = 1: only the last leaves,
     # so every contact takes the whole momentum. The condition of G is about (N/2)².
     size = 2000

@@ -1,7 +1,5 @@
 """Disjoint sets, lists by node and directed cycles against SciPy's graph algorithms."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -28,7 +26,7 @@ def _components(tail: np.ndarray, head: np.ndarray, nodes: int, connection: str)
     return connected_components(matrix, directed=True, connection=connection)[1]
 
 
-def test_directed_cycles_are_the_edges_inside_strong_components() -> None:
+def test_directed_cycles_are_the_edges_inside_strong_components():
     for tail, head, nodes in _graphs():
         label = _components(tail, head, nodes, "strong")
         np.testing.assert_array_equal(
@@ -36,7 +34,7 @@ def test_directed_cycles_are_the_edges_inside_strong_components() -> None:
         )
 
 
-def test_a_long_cycle_and_one_edge_that_leaves_it() -> None:
+def test_a_long_cycle_and_one_edge_that_leaves_it():
     tail = np.append(np.arange(1000), 500)
     head = np.append(np.arange(1, 1001) % 1000, 1000)
     found = on_directed_cycles(tail, head, 1001)
@@ -44,7 +42,7 @@ def test_a_long_cycle_and_one_edge_that_leaves_it() -> None:
     assert not found[1000]
 
 
-def test_sets_joined_edge_by_edge_are_the_weak_components() -> None:
+def test_sets_joined_edge_by_edge_are_the_weak_components():
     for tail, head, nodes in _graphs():
         parent = np.arange(nodes)
         for a, b in zip(tail, head, strict=True):
@@ -54,7 +52,7 @@ def test_sets_joined_edge_by_edge_are_the_weak_components() -> None:
         np.testing.assert_array_equal(found[:, None] == found, label[:, None] == label)
 
 
-def test_groups_keep_their_order() -> None:
+def test_groups_keep_their_order():
     for label, _, groups in _graphs():
         first, position = grouped(label, groups)
         np.testing.assert_array_equal(position, np.argsort(label, kind="stable"))

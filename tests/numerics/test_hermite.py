@@ -1,7 +1,5 @@
 """Bernstein coefficients: they are those of the polynomial, and they bound it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.special import comb
@@ -29,7 +27,7 @@ def _from_ends(polynomial: np.polynomial.Polynomial, h: float, degree: int) -> n
 
 
 @pytest.mark.parametrize("degree", [3, 5])
-def test_random_polynomials(degree: int) -> None:
+def test_random_polynomials(degree):
     rng = np.random.default_rng(1)
     for _ in range(100):
         h = 10.0 ** rng.uniform(-6, 3)
@@ -45,7 +43,7 @@ def test_random_polynomials(degree: int) -> None:
         assert values.max() <= b.max() + rounding
 
 
-def test_a_dip_between_positive_ends_is_not_excluded() -> None:
+def test_a_dip_between_positive_ends_is_not_excluded():
     # (s - 1/2)^2 - 1e-9 is positive at both ends with slopes that hide nothing.
     p = np.polynomial.Polynomial([0.25 - 1e-9, -1.0, 1.0])
     assert _from_ends(p, 1.0, 5).min() < 0.0

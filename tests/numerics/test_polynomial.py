@@ -1,7 +1,5 @@
 """First roots against closed forms, the companion matrix, and values in rational numbers."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from fractions import Fraction
@@ -26,7 +24,7 @@ def _series(*leading: float, order: int = 12) -> np.ndarray:
 
 
 @pytest.mark.parametrize("exponent", range(-250, 4, 11))
-def test_bounce_intervals_at_every_scale(exponent: int) -> None:
+def test_bounce_intervals_at_every_scale(exponent):
     # A ball thrown with speed v against a constant pull a returns after 2 v/a, whatever v.
     v, a = 10.0**exponent, 3.0
     root = _root(_series(0.0, v, -0.5 * a), 10.0 * max(1.0, v))
@@ -34,14 +32,14 @@ def test_bounce_intervals_at_every_scale(exponent: int) -> None:
 
 
 @pytest.mark.parametrize("exponent", range(-250, -19, 11))
-def test_far_terms_do_not_hide_a_tiny_interval(exponent: int) -> None:
+def test_far_terms_do_not_hide_a_tiny_interval(exponent):
     # Terms that rule at x = 1 change the root by a factor 1 + O(v) only.
     v = 10.0**exponent
     c = _series(0.0, v, -1.5, 40.0, -7.0, 300.0, 0.0, -1e4, 1e4)
     assert _root(c, 1.0) == pytest.approx(v / 1.5, rel=8 * EPS)
 
 
-def test_gap_closing_with_constant_acceleration() -> None:
+def test_gap_closing_with_constant_acceleration():
     # g + γ x + a x²/2 in the forms without cancellation.
     rng = np.random.default_rng(2)
     for _ in range(500):
@@ -60,7 +58,7 @@ def test_gap_closing_with_constant_acceleration() -> None:
 @pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("factor", [(1.0,), (1.0, 3.0), (1.0, -0.4, 0.3, 0.1), (2.0, 0.0, -0.5)])
 @pytest.mark.parametrize("place", [0.03, 0.51, 0.97])
-def test_grazes(depth: float, factor: tuple[float, ...], place: float) -> None:
+def test_grazes(depth, factor, place):
     # ((x - place)² - depth²) f(x) with f > 0 on [0, 1] dips below zero at place - depth.
     f = np.polynomial.Polynomial(factor)
     dip = np.polynomial.Polynomial([place**2 - depth**2, -2.0 * place, 1.0]) * f
@@ -82,17 +80,17 @@ def test_grazes(depth: float, factor: tuple[float, ...], place: float) -> None:
     "c",
     [(1.0,), (0.0, 1.0), (1.0, 1.0, 1.0), (1.0, -1.0, 0.2501), (0.0, 0.0, 2.0, 1.0), (0.0,)],
 )
-def test_no_root(c: tuple[float, ...]) -> None:
+def test_no_root(c):
     assert _root(_series(*c), 100.0) == math.inf
 
 
-def test_root_beyond_the_limit_is_none() -> None:
+def test_root_beyond_the_limit_is_none():
     assert _root(_series(1.0, -1.0), 1.0 - 1e-12) == math.inf
     assert _root(_series(1.0, -1.0), 1.0 + 1e-12) == pytest.approx(1.0, rel=4 * EPS)
 
 
 @pytest.mark.parametrize("decay", [1.0, 0.4])
-def test_random_polynomials(decay: float) -> None:
+def test_random_polynomials(decay):
     rng = np.random.default_rng(3)
     found = 0
     for _ in range(600):
@@ -153,7 +151,7 @@ def _hard(kind: str, rng: np.random.Generator) -> np.ndarray:
 
 @pytest.mark.parametrize("kind", ["zero at the start", "decaying", "double", "grazing", "cluster"])
 @pytest.mark.parametrize("seed", range(40))
-def test_hard_cases_err_by_rounding_at_every_scale(kind: str, seed: int) -> None:
+def test_hard_cases_err_by_rounding_at_every_scale(kind, seed):
     rng = np.random.default_rng(seed)
     scale, size = 10.0 ** rng.uniform(-9.0, 9.0, 2)
     c = _hard(kind, rng)
@@ -170,7 +168,7 @@ def test_hard_cases_err_by_rounding_at_every_scale(kind: str, seed: int) -> None
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_the_only_root_errs_by_rounding_at_every_scale(seed: int) -> None:
+def test_the_only_root_errs_by_rounding_at_every_scale(seed):
     # 1 less a polynomial that only grows, and hardly at first.
     rng = np.random.default_rng(seed)
     scale, size = 10.0 ** rng.uniform(-9.0, 9.0, 2)
@@ -181,7 +179,7 @@ def test_the_only_root_errs_by_rounding_at_every_scale(seed: int) -> None:
     assert only_root(c, c.size, 1e-4 * scale) == math.inf
 
 
-def test_value_and_slope() -> None:
+def test_value_and_slope():
     rng = np.random.default_rng(4)
     for _ in range(100):
         c, x = rng.normal(size=13), rng.uniform(-1.0, 1.0)

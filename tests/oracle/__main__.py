@@ -4,8 +4,6 @@ Certifies COUNT scenes from SEED on at the tightest tolerance and compares every
 the oracle's answer. Prints each bound that does not hold, and the counts as they grow.
 """
 
-from __future__ import annotations
-
 import sys
 
 from tests.oracle.certificates import Tally, judge

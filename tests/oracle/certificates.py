@@ -1,7 +1,5 @@
 """Certificates of random scenes held against the oracle, bound by bound."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field

@@ -6,8 +6,6 @@ of them agree, of how many the oracle itself is not sure to a tenth of the bound
 why it gives no answer (`silent`). Exit code 1 where a number does not agree.
 """
 
-from __future__ import annotations
-
 import sys
 from collections import Counter
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The oracle as a function: compiled once, run on a scene, its answer with uncertainties."""
 
-from __future__ import annotations
-
 import atexit
 import shutil
 import subprocess

@@ -18,8 +18,6 @@ the periods from there to the middle of a Ricker wavelet. A closed contact is on
 package's rule, in double precision, calls closed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 

@@ -1,7 +1,5 @@
 """The oracle against answers that others computed, and a few certificates against the oracle."""
 
-from __future__ import annotations
-
 from decimal import Decimal
 
 import pytest

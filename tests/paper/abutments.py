@@ -7,8 +7,6 @@ reading of its ends, with the damping of eq. 2 and of the initial stiffness, as 
 reversed, and prints impacts / ends of continuous contact / largest displacements (cm).
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from dataclasses import replace

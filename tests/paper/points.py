@@ -9,8 +9,6 @@ max(1e-4, 10 × amplification × tolerance) of the largest displacement, with th
 that the package measures. Exit code 1 where one is beyond.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -9,8 +9,6 @@ closed), so that the integrator never meets a kink; an event is where a sign sto
     impacts: 0 ≤ γ⁺ + ε γ⁻ ⊥ Λ ≥ 0 over closed contacts that do not separate
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import combinations, pairwise

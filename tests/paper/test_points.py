@@ -1,7 +1,5 @@
 """Points of the paper's figures beside a program that shares nothing with the package."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -17,7 +15,7 @@ from tests.paper import points
         *(pytest.param(f"figure-0{i}", marks=pytest.mark.sweep) for i in (5, 7)),
     ],
 )
-def test_peaks_of_a_study(name: str) -> None:
+def test_peaks_of_a_study(name):
     """All of them: python -m tests.paper.points."""
     study = load_study(points.CASES / name).study
     for run in np.random.default_rng(6).choice(study.size, 1, replace=False).tolist():
@@ -26,6 +24,6 @@ def test_peaks_of_a_study(name: str) -> None:
 
 
 @pytest.mark.sweep
-def test_displacements_of_the_bridge() -> None:
+def test_displacements_of_the_bridge():
     for point in points.of_bridge("figure-11", 1, np.random.default_rng(3)):
         assert point.apart <= point.allowed, point

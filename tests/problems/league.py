@@ -6,8 +6,6 @@ Runs our solvers, SciPy, a C program, and Octave and Siconos where they are foun
 and league.json as well. Programs that are not there are named and left out.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import json

@@ -1,7 +1,5 @@
 """A program in another language, scored from the archive where there is no eventpound."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

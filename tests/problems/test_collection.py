@@ -1,7 +1,5 @@
 """The set is what was frozen, its answers hold, and its archive is always the same."""
 
-from __future__ import annotations
-
 import io
 import json
 import shutil

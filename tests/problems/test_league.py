@@ -1,7 +1,5 @@
 """The league says of cards what they say, and its page what its file says."""
 
-from __future__ import annotations
-
 import csv
 
 from eventpound import score

@@ -5,8 +5,6 @@
 Prints every finding but those where a property simply holds, and the counts.
 """
 
-from __future__ import annotations
-
 import sys
 from collections import Counter
 

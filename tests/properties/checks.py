@@ -4,8 +4,6 @@ A rule yields one line for each way in which it is broken. Sizes that rounding a
 tolerances leave are in parts of the scene's scales or of the largest value at hand.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass

@@ -9,8 +9,6 @@ follows may differ by the root of the error; one that bounces with less than the
 may be called at rest a bounce sooner or later; a scene in which nothing is defined may be refused.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace

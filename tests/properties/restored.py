@@ -1,7 +1,5 @@
 """Recordings of scenes seen otherwise, translated back, and those of two parts as one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import fields, replace
 

@@ -3,8 +3,6 @@
 The long run is a command: ``python -m tests.properties 2000 0 fast``.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import lru_cache
 
@@ -47,7 +45,7 @@ BROKEN = ("VIOLATION", "ComputationError")
 
 
 @pytest.mark.parametrize(("solver", "seed"), SAMPLE)
-def test_random_scenes(solver: str, seed: int) -> None:
+def test_random_scenes(solver, seed):
     found = examine(seed, solver)
     assert [f for f in found if f.word in BROKEN] == []
     assert len({f.property for f in found}) == 9
@@ -60,7 +58,7 @@ def _pair() -> tuple[Scene, Recording]:
 
 
 @pytest.mark.parametrize("rule", ["no_penetration", "bounded_z", "newton", "peaks"])
-def test_a_wrong_history_is_seen(rule: str) -> None:
+def test_a_wrong_history_is_seen(rule):
     scene, recording = _pair()
     history = recording.history
     wrong = {
@@ -74,7 +72,7 @@ def test_a_wrong_history_is_seen(rule: str) -> None:
 
 
 @pytest.mark.parametrize("change", ["gap_velocity_after", "impulse", "energy_lost"])
-def test_a_wrong_impact_is_seen(change: str) -> None:
+def test_a_wrong_impact_is_seen(change):
     scene, recording = _pair()
     events = list(recording.events)
     i = next(i for i, e in enumerate(events) if e.kind is EventKind.IMPACT)
@@ -83,7 +81,7 @@ def test_a_wrong_impact_is_seen(change: str) -> None:
     assert any(line.startswith("impacts") for line in lines), lines
 
 
-def test_a_pulling_contact_is_seen() -> None:
+def test_a_pulling_contact_is_seen():
     scene, recording = _pair()
     history = recording.history
     force = history.contact_force.copy()

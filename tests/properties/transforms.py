@@ -4,8 +4,6 @@ Each transformation returns the other scene and the `View` by which its answer i
 translated back into the terms of the first one.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

@@ -1,11 +1,8 @@
 """One gap for each joint with which nothing touches: proved by runs with it, and with 1 % less."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -170,7 +167,7 @@ def built_with(scene: Scene, gaps: list[float]) -> Scene:
 
 
 @pytest.mark.parametrize(("kind", "seed"), ALL)
-def test_a_run_with_it_touches_nothing_and_with_less_it_does(kind: str, seed: int) -> None:
+def test_a_run_with_it_touches_nothing_and_with_less_it_does(kind, seed):
     scene = KINDS[kind](seed)
     before = simulate(scene, duration=END)
     needed = needed_by(before)
@@ -184,7 +181,7 @@ def test_a_run_with_it_touches_nothing_and_with_less_it_does(kind: str, seed: in
         assert events[0].contact in joint if events else min(needed[i] for i in joint) == 0.0
 
 
-def test_of_today_it_does_not_depend_on_equal_gaps() -> None:
+def test_of_today_it_does_not_depend_on_equal_gaps():
     found = []
     for gap in (0.01, 0.2):
         scene = buildings(1)
@@ -193,7 +190,7 @@ def test_of_today_it_does_not_depend_on_equal_gaps() -> None:
     assert found[0] == pytest.approx(found[1], rel=1e-7)
 
 
-def test_many_runs_tell_it_of_their_own_gaps() -> None:
+def test_many_runs_tell_it_of_their_own_gaps():
     scene, gap = buildings(1), np.array([0.0, 0.01, 0.05])
     name = "contacts.c1.separation_needed"
     many = simulate_many(scene, {"contact.c0.gap": gap}, quantities=[name], duration=END)
@@ -244,9 +241,7 @@ def joined(*links: tuple[str, str], contacts: list[tuple[str, str]]) -> Sequence
         ([("P", "D")], [("P", "D"), ("D", "P"), ("P", "D")], [[0, 2], [1]]),
     ],
 )
-def test_what_is_one_joint(
-    links: list[tuple[str, str]], contacts: list[tuple[str, str]], joints: list[list[int]]
-) -> None:
+def test_what_is_one_joint(links, contacts, joints):
     assert joined(*links, contacts=contacts) == joints
 
 
@@ -281,7 +276,7 @@ quantities = ["contacts.stop.separation_needed"]
 """
 
 
-def test_what_leans_on_its_contact_stands_without_it(tmp_path: Path) -> None:
+def test_what_leans_on_its_contact_stands_without_it(tmp_path):
     """The opened run starts in an equilibrium of its own, as a run with that gap does."""
     name, gap = "contacts.stop.separation_needed", 0.01
     (tmp_path / "case.toml").write_text(PRESSED.format(gap="1 cm"))
@@ -295,14 +290,14 @@ def test_what_leans_on_its_contact_stands_without_it(tmp_path: Path) -> None:
         assert bool(simulate(load_case(tmp_path)).recording.events) == struck
 
 
-def test_gaps_to_be_built_are_rounded_up() -> None:
+def test_gaps_to_be_built_are_rounded_up():
     trade, name = Trade(), "contacts.joint.separation_needed"
     shown = [trade.number(x, "m", name) for x in (0.10401, 0.09996, 0.0123401, 0.0)]
     assert shown == ["105", "100", "12.4", "0"]
     assert trade.number(0.10401, "m", "contacts.joint.seat_used") == "104"
 
 
-def test_a_pulse_and_one_contact_have_the_motion_without_it() -> None:
+def test_a_pulse_and_one_contact_have_the_motion_without_it():
     scene = replace(buildings(1), motion=Ricker(3.0, 0.5))
     (contact, *_) = scene.contacts
     run = simulate(replace(scene, contacts=(contact,)), duration=END)

@@ -1,7 +1,5 @@
 """What only close rows tell, against closed forms, SciPy, the ledger, and what solvers locate."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 
@@ -15,7 +13,6 @@ from eventpound.motion import Cosine, Record
 from eventpound.quantities import between, rows
 from eventpound.quantities.between import SETTLED
 from eventpound.quantities.rows import AGREEMENT
-from eventpound.response import Response
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -35,14 +32,14 @@ SHAKEN = Record(RNG.normal(0.0, 2.0, 150), 0.02)
 
 
 @pytest.fixture(scope="module", params=["pulse", "record"])
-def pounding(request: pytest.FixtureRequest) -> Response:
+def pounding(request):
     scene = pounding_pair()
     if request.param == "record":
         scene = replace(scene, motion=SHAKEN)
     return simulate(scene, rtol=1e-10, duration=5.0, energy=True)
 
 
-def test_work_is_that_of_the_ledger(pounding: Response) -> None:
+def test_work_is_that_of_the_ledger(pounding):
     ledger = pounding.energy
     assert ledger is not None
     stored = 0.5 * np.array([4.0 * 0.03, 6.0 * 0.02]) @ (pounding.recording.z**2 - [0.0, 0.1**2])
@@ -53,7 +50,7 @@ def test_work_is_that_of_the_ledger(pounding: Response) -> None:
     assert sum(viscous) == pytest.approx(ledger.viscous, rel=AGREEMENT)
 
 
-def test_shear_of_all_is_the_located_one(pounding: Response) -> None:
+def test_shear_of_all_is_the_located_one(pounding):
     # A cable of no stiffness makes one structure of both decks, which is the whole scene.
     found = pounding._motion_between.extremes("structures.a.*_base_shear")
     located = pounding.recording.base_shear
@@ -108,7 +105,7 @@ def struck_pair() -> tuple[Scene, dict[str, float]]:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_openings_velocities_and_shears_against_scipy(solver: str) -> None:
+def test_openings_velocities_and_shears_against_scipy(solver):
     scene, expected = struck_pair()
     response = simulate(scene, solver, 1e-11, duration=4.0)
     assert response.impacts > 2
@@ -117,7 +114,7 @@ def test_openings_velocities_and_shears_against_scipy(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["moreau", "penalty"])
-def test_openings_of_fixed_steps_are_the_largest_of_a_step(solver: str) -> None:
+def test_openings_of_fixed_steps_are_the_largest_of_a_step(solver):
     scene, expected = struck_pair()
     if solver == "penalty":
         scene = with_springs(scene, Element.KELVIN_VOIGT, 1e5)
@@ -128,7 +125,7 @@ def test_openings_of_fixed_steps_are_the_largest_of_a_step(solver: str) -> None:
     assert found == pytest.approx(expected["contacts.joint.largest_gap"], rel=0.05)
 
 
-def test_free_vibration_in_closed_form() -> None:
+def test_free_vibration_in_closed_form():
     # u = 0.1 cos(w t), w = 3 rad/s beside a body that swings back with 5 rad/s.
     scene = Scene(
         (Body("a", 2.0, 0.1), Body("b", 1.0, -0.2)),
@@ -151,7 +148,7 @@ def test_free_vibration_in_closed_form() -> None:
     assert response.quantity("springs.a.abs_max_force") == pytest.approx(1.8, rel=1e-9)
 
 
-def test_shears_of_separate_structures_are_those_of_each_alone() -> None:
+def test_shears_of_separate_structures_are_those_of_each_alone():
     law = BoucWen.from_yield("4 kN/m", "80 N", 0.05)
     whole = Scene(
         (Body("a", 100.0), Body("b", 80.0), Body("c", 50.0)),
@@ -174,7 +171,7 @@ def test_shears_of_separate_structures_are_those_of_each_alone() -> None:
             assert found == pytest.approx(value, abs=100.0 * 2.0 * SETTLED)
 
 
-def test_hysteresis_against_scipy() -> None:
+def test_hysteresis_against_scipy():
     k, q, u_y, n = 20.0, 4.0, 0.03, 6.0
     scene = Scene((Body("a", 1.2, 0.0, 0.9),), (Spring("s", (GROUND, "a"), BoucWen(k, q, u_y, n)),))
 
@@ -204,7 +201,7 @@ def test_hysteresis_against_scipy() -> None:
     assert response.quantity("velocity.a.min") == pytest.approx(fine[1].min(), rel=2e-9)
 
 
-def test_estimated_force_is_that_of_an_elastic_contact() -> None:
+def test_estimated_force_is_that_of_an_elastic_contact():
     # A mass that meets a spring k with speed v compresses it with v sqrt(k m).
     scene = Scene((Body("a", 3.0, 0.0, 2.0),), contacts=(Contact("stop", "a", BARRIER, 0.5, 1.0),))
     response = simulate(scene, duration=0.6)
@@ -221,7 +218,7 @@ def test_estimated_force_is_that_of_an_elastic_contact() -> None:
     )
 
 
-def test_the_motion_without_contact_is_a_run_of_its_own(pounding: Response) -> None:
+def test_the_motion_without_contact_is_a_run_of_its_own(pounding):
     scene = replace(pounding.scene, contacts=())
     apart = simulate(scene, rtol=1e-10, duration=5.0, energy=True)
     assert pounding.quantity("free.peaks.a.abs_max") == apart.peaks.loc["a", "abs_max"]
@@ -229,7 +226,7 @@ def test_the_motion_without_contact_is_a_run_of_its_own(pounding: Response) -> N
     assert pounding.quantity("amplification.b") == pytest.approx(gain, rel=1e-15)
 
 
-def test_a_warning_names_what_was_asked_and_what_helps(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_warning_names_what_was_asked_and_what_helps(monkeypatch):
     monkeypatch.setattr(between, "_ROUNDS", 1)
     response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)
     said = r"^velocity.a.\*: known to some \d.\d\de-\d+ of its size, not to 1e-06; a smaller rtol "

@@ -1,7 +1,5 @@
 """Floor spectra against closed forms and an oscillator of a billionth of the mass in the scene."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +15,6 @@ from eventpound.case.solver_options import SolverOptions
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Cosine, Record, Sine
-from eventpound.motion.base import GroundMotion
 from eventpound.motion.free import NoMotion
 from eventpound.response import Response
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
@@ -37,7 +34,7 @@ def struck_once(velocity: float = 0.5, restitution: float = 0.6) -> Scene:
 
 # At t = 0 the ground jumps beside a body that is free by then.
 @pytest.mark.parametrize("motion", [NoMotion(), Cosine(0.5, 1.0)])
-def test_one_impact_in_closed_form(motion: GroundMotion) -> None:
+def test_one_impact_in_closed_form(motion):
     scene, run = replace(struck_once(), motion=motion), RunOptions(-0.5, 8.0, 0.01)
     case = Case("", scene, run, SolverOptions("fast", 1e-10), Path(), "", None, (), {})
     response = simulate(case)
@@ -77,7 +74,7 @@ def _resting() -> Scene:
 
 @pytest.mark.parametrize("solver", ["fast", "cvode"])
 @pytest.mark.parametrize("scene", [pounding_pair(), _resting()], ids=["pulse", "resting"])
-def test_against_an_oscillator_of_the_scene(scene: Scene, solver: str) -> None:
+def test_against_an_oscillator_of_the_scene(scene, solver):
     response = simulate(scene, solver, 1e-11, duration=5.0)
     assert response.impacts > 5
     assert scene.motion is not SHAKEN or response.recording.resting_time.sum() > 0.01
@@ -93,7 +90,7 @@ def test_against_an_oscillator_of_the_scene(scene: Scene, solver: str) -> None:
         assert row["SA"] == pytest.approx(abs(largest), rel=5e-8)
 
 
-def test_scene_with_supports_and_with_forces() -> None:
+def test_scene_with_supports_and_with_forces():
     wave = load_case(CASES / "passing-wave")
     response = simulate(wave, "fast", 1e-11, duration=4.0)
     assert response.impacts > 0
@@ -110,7 +107,7 @@ def test_scene_with_supports_and_with_forces() -> None:
     assert found == pytest.approx(2.0 * 9.80665 / (2.0 * np.pi / 0.05) ** 2, rel=1e-9)
 
 
-def test_a_stiff_body_hands_the_ground_on() -> None:
+def test_a_stiff_body_hands_the_ground_on():
     # Its own motion is 1e-4 of the ground's: (T/T_g)^2 of a pulse of 0.8 s on a body of 8 ms.
     motion = Sine(3.0, 0.8)
     scene = Scene(
@@ -125,7 +122,7 @@ def test_a_stiff_body_hands_the_ground_on() -> None:
     assert found["PSA_g"].to_numpy() == pytest.approx(expected["PSA_g"].to_numpy(), rel=5e-3)
 
 
-def test_table() -> None:
+def test_table():
     response = simulate(pounding_pair(), "fast", 1e-8, duration=2.0)
     table = response.floor_spectrum(["b", "a"], [0.2, 0.4], ["2 %", 0.05])
     assert list(table["body"]) == ["b"] * 4 + ["a"] * 4
@@ -144,9 +141,7 @@ def test_table() -> None:
         ("a", [1.0], "5 m", "damping: found '5 m'"),
     ],
 )
-def test_refused(
-    body: str | list[str], periods: list[float], damping: float | str, said: str
-) -> None:
+def test_refused(body, periods, damping, said):
     response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)
     with pytest.raises(InputError, match=said):
         response.floor_spectrum(body, periods, damping)
@@ -165,7 +160,7 @@ duration = "3 s"
 """
 
 
-def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command(tmp_path, capsys):
     (tmp_path / "case.toml").write_text(CASE)
     words = ["floor-spectrum", str(tmp_path), "deck", "--damping", "2%,5 %", "--periods", "0.1,2"]
     assert main([*words, "--without-contact", "--format", "png,svg"]) == 0
@@ -186,9 +181,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         (["deck", "--damping", "120 %"], "damping: found '120 %'"),
     ],
 )
-def test_command_refuses(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
-) -> None:
+def test_command_refuses(tmp_path, capsys, words, said):
     (tmp_path / "case.toml").write_text(CASE)
     assert main(["floor-spectrum", str(tmp_path), *words]) == 2
     assert said in capsys.readouterr().err

@@ -1,12 +1,9 @@
 """The list of quantities: each against another way to the same number, every table from it."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -30,7 +27,7 @@ END = 6.0
 
 
 @pytest.fixture(scope="module")
-def response() -> Response:
+def response():
     return simulate(pounding_pair(), duration=END, energy=True)
 
 
@@ -40,7 +37,7 @@ def struck(response: Response, contact: str) -> pd.DataFrame:
 
 
 @pytest.mark.parametrize("contact", ["left", "joint", "right"])
-def test_numbers_of_a_contact_are_those_of_its_events(response: Response, contact: str) -> None:
+def test_numbers_of_a_contact_are_those_of_its_events(response, contact):
     rows, of = struck(response, contact), response.summary
     assert len(rows) > 0
     strongest = rows.loc[rows["impulse"].idxmax()]
@@ -57,14 +54,14 @@ def test_numbers_of_a_contact_are_those_of_its_events(response: Response, contac
     assert of[key + "impacts_faster"] == faster["count"].sum()
 
 
-def test_the_threshold_is_the_stated_one(response: Response) -> None:
+def test_the_threshold_is_the_stated_one(response):
     speeds = -struck(response, "joint")["gap_velocity_before"].to_numpy()
     threshold = float(np.median(speeds))
     other = replace(response, stated=replace(response.stated, threshold_speed=threshold))
     assert other.summary["contacts.joint.impacts_faster"] == np.count_nonzero(speeds > threshold)
 
 
-def test_terms_and_scales_stand_in_the_summary(response: Response) -> None:
+def test_terms_and_scales_stand_in_the_summary(response):
     scales = response.scene.motion.scales()
     assert scales is not None
     first, *_ = response.scene.bodies
@@ -73,7 +70,7 @@ def test_terms_and_scales_stand_in_the_summary(response: Response) -> None:
     assert response.summary["scales.L_e"] == scales.length
 
 
-def test_energy_lost_in_contacts_adds_up_to_the_ledger(response: Response) -> None:
+def test_energy_lost_in_contacts_adds_up_to_the_ledger(response):
     lost = sum(response.summary[f"contacts.{c}.energy_lost"] for c in ("left", "joint", "right"))
     assert response.energy is not None
     # The ledger is a sum of the same terms, and each is a difference of velocities.
@@ -81,7 +78,7 @@ def test_energy_lost_in_contacts_adds_up_to_the_ledger(response: Response) -> No
     assert response.summary["energy.impact"] == response.energy.impact
 
 
-def test_contacts_of_one_problem_share_what_it_loses() -> None:
+def test_contacts_of_one_problem_share_what_it_loses():
     # A body strikes two that touch: what the three lose is kinetic energy, from the velocities.
     bodies = (Body("a", 2.0, 0.0, 1.0), Body("b", 1.0), Body("c", 3.0))
     contacts = (Contact("ab", "a", "b", 0.0, 0.5), Contact("bc", "b", "c", 0.0, 0.25))
@@ -95,7 +92,7 @@ def test_contacts_of_one_problem_share_what_it_loses() -> None:
     assert shares[0] > 0.0 == shares[1]
 
 
-def test_drift_ratio_is_drift_over_height() -> None:
+def test_drift_ratio_is_drift_over_height():
     springs = (
         Spring("storey", (GROUND, "floor"), Linear("40 kN/m"), height="3.2 m"),
         Spring("other", (GROUND, "floor"), Linear(1.0)),
@@ -122,7 +119,7 @@ def frame(masses: Sequence[float], speeds: Sequence[float], gap: float = math.in
     return Scene(bodies, springs, (), contacts)
 
 
-def test_largest_drifts_are_those_of_a_mode() -> None:
+def test_largest_drifts_are_those_of_a_mode():
     # Pushed in the shape of a mode, u = shape sin(w t) / w: both storeys are widest at once.
     masses = np.array([20.0, 10.0])
     stiffness = np.array([[7e3, -3e3], [-3e3, 3e3]])
@@ -139,7 +136,7 @@ def test_largest_drifts_are_those_of_a_mode() -> None:
     assert summarise(response)["max_drift"] == found["max_drift"]
 
 
-def test_largest_drifts_of_many_are_of_each() -> None:
+def test_largest_drifts_of_many_are_of_each():
     gaps, named = [1e-3, 0.5], ["max_drift", "max_drift_ratio"]
     scene = frame([20.0, 10.0], [0.3, -0.6], gap=0.01)
     table = simulate_many(scene, {"contact.wall.gap": gaps}, duration=4.0, quantities=named).table
@@ -161,13 +158,13 @@ def test_largest_drifts_of_many_are_of_each() -> None:
         assert ratio <= table["max_drift_ratio"][i] <= ratio + 2.5e-5
 
 
-def test_without_heights_there_is_no_largest_drift() -> None:
+def test_without_heights_there_is_no_largest_drift():
     assert "max_drift" not in names_of(pounding_pair())
     with pytest.raises(InputError, match="max_drift"):
         simulate(pounding_pair(), duration=0.1).quantity("max_drift")
 
 
-def test_no_number_of_an_impact_without_one() -> None:
+def test_no_number_of_an_impact_without_one():
     scene = Scene(
         (Body("a", 1.0, 0.0, 0.1),),
         (Spring("s", (GROUND, "a"), Linear(1.0)),),
@@ -179,7 +176,7 @@ def test_no_number_of_an_impact_without_one() -> None:
     assert found["contacts.far.energy_lost"] == 0.0
 
 
-def test_summary_json_holds_every_number_of_the_list(response: Response) -> None:
+def test_summary_json_holds_every_number_of_the_list(response):
     stored = summarise(response)
     first = f"pi_um.{response.scene.bodies[0].name}"
     for name, value in response.summary.items():
@@ -200,7 +197,7 @@ def test_summary_json_holds_every_number_of_the_list(response: Response) -> None
         assert table == value
 
 
-def test_named_quantities_of_many_are_those_of_each() -> None:
+def test_named_quantities_of_many_are_those_of_each():
     gaps = {"contact.joint.gap": np.array([0.03, 0.045])}
     named = ["contacts.joint.sum_impulse", "peaks.a.max", "energy.viscous"]
     many = simulate_many(pounding_pair(), gaps, duration=END, quantities=named, rtol=1e-8)
@@ -213,7 +210,7 @@ def test_named_quantities_of_many_are_those_of_each() -> None:
         assert [many.table[name][i] for name in named] == [one[name] for name in named]
 
 
-def test_a_name_that_there_is_not() -> None:
+def test_a_name_that_there_is_not():
     with pytest.raises(InputError, match=r"sum_impulses.*did you mean 'contacts.joint.sum_imp"):
         simulate_many(
             pounding_pair(),
@@ -222,7 +219,7 @@ def test_a_name_that_there_is_not() -> None:
         )
 
 
-def test_names_lead_back_to_their_quantity() -> None:
+def test_names_lead_back_to_their_quantity():
     scene = pounding_pair()
     for name in names_of(scene):
         found = find(scene, name.removeprefix("free."))
@@ -232,7 +229,7 @@ def test_names_lead_back_to_their_quantity() -> None:
     assert find(scene, "springs.cable.ductility") is None
 
 
-def test_units_of_pi_terms_are_products_of_mass_length_and_time() -> None:
+def test_units_of_pi_terms_are_products_of_mass_length_and_time():
     scales = Cosine(3.0, 2.0).scales()
     assert scales is not None
     mass, length, time = 5.0, scales.length, 1.0 / scales.omega_g
@@ -251,21 +248,19 @@ def test_units_of_pi_terms_are_products_of_mass_length_and_time() -> None:
     assert {q.dimension for q in LISTED} <= {*expected, Dimension.ANGULAR_FREQUENCY}
 
 
-def test_the_command_lists_them_without_a_case(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_lists_them_without_a_case(capsys):
     assert main(["check", "--quantities"]) == 0
     printed = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in printed[:-1]] == [path for path, *_ in listing()]
 
 
-def test_names_of_a_case(capsys: pytest.CaptureFixture[str]) -> None:
+def test_names_of_a_case(capsys):
     case = ROOT / "cases" / "pair"
     assert main(["check", "--quantities", str(case)]) == 0
     assert capsys.readouterr().out.split() == names_of(load_case(case).scene)
 
 
-def test_names_of_a_study_are_those_of_all_its_scenes(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_names_of_a_study_are_those_of_all_its_scenes(tmp_path, capsys):
     part = '[[study.part]]\nname = "{0}"\npi = {{ structure = "{0}"{1} }}\n'
     text = '[excitation]\nkind = "sine"\n[pi]\n[study]\n'
     axis = '[[study.axis]]\nkey = "excitation.reverse"\nvalues = [false, true]\n'
@@ -281,7 +276,7 @@ def test_names_of_a_study_are_those_of_all_its_scenes(
     assert len(names) == len(set(names))
 
 
-def test_a_study_tabulates_what_needs_all_of_a_run(tmp_path: Path) -> None:
+def test_a_study_tabulates_what_needs_all_of_a_run(tmp_path):
     text = (ROOT / "cases" / "pair" / "case.toml").read_text().split("[run]")[0]
     names = ["contacts.joint.sum_impulse", "free.final.stiff.u", "contacts.joint.impacts_faster"]
     study = (
@@ -300,7 +295,7 @@ def test_a_study_tabulates_what_needs_all_of_a_run(tmp_path: Path) -> None:
     assert math.isclose(table[names[1]][0], table[names[1]][1])
 
 
-def test_a_case_names_what_it_wants(tmp_path: Path) -> None:
+def test_a_case_names_what_it_wants(tmp_path):
     text = (ROOT / "cases" / "pair" / "case.toml").read_text().split("[run]")[0]
     wanted = 'quantities = ["springs.<spring>.*_force", "velocity.stiff.abs_max"]'
     run = f'[run]\nwithout_contact = true\ncontact_stiffness = "50 MN/m"\n{wanted}\n'
@@ -321,9 +316,7 @@ def test_a_case_names_what_it_wants(tmp_path: Path) -> None:
     assert manifest["case"]["run"]["contact_stiffness"] == 5e7
 
 
-def test_a_named_quantity_that_there_is_not(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_named_quantity_that_there_is_not(tmp_path, capsys):
     text = (ROOT / "cases" / "pair" / "case.toml").read_text().split("[run]")[0]
     (tmp_path / "case.toml").write_text(text + '[run]\nquantities = ["velocity.stif.max"]\n')
     for command in ("check", "run"):
@@ -335,11 +328,11 @@ def test_a_named_quantity_that_there_is_not(
         simulate(load_case(tmp_path))
 
 
-def test_every_source_is_used() -> None:
+def test_every_source_is_used():
     assert {q.source for q in LISTED} == set(TakenFrom)
 
 
-def test_a_named_energy_brings_the_ledger(tmp_path: Path) -> None:
+def test_a_named_energy_brings_the_ledger(tmp_path):
     text = (ROOT / "cases" / "pair" / "case.toml").read_text()
     (tmp_path / "case.toml").write_text(text + '\n[run]\nquantities = ["energy.impact"]\n')
     case = load_case(tmp_path)

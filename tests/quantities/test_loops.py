@@ -1,7 +1,5 @@
 """Loops between rows, against the law integrated from row to row."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -11,7 +9,7 @@ from eventpound.quantities.loops import loop_of
 
 
 @pytest.mark.parametrize("exponent", [1.0, 20.0, 1000.0])
-def test_a_loop_between_rows_far_apart_keeps_to_the_strength(exponent: float) -> None:
+def test_a_loop_between_rows_far_apart_keeps_to_the_strength(exponent):
     law = BoucWen(2.0e6, 3.0e6, 0.01, exponent)
     t = np.linspace(0.0, 2.0, 21)
     x, rate = 0.2 * np.sin(np.pi * t), 0.2 * np.pi * np.cos(np.pi * t)

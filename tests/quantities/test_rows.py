@@ -1,7 +1,5 @@
 """The state at any time: beside a closed form, rows of the run, and either side of its jumps."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -26,7 +24,7 @@ FREE = Scene(
 
 
 @SOLVERS
-def test_before_and_after_an_impact_it_is_the_swing_of_the_closed_form(solver: str) -> None:
+def test_before_and_after_an_impact_it_is_the_swing_of_the_closed_form(solver):
     omega, t = math.sqrt(K / M), np.linspace(0.0, 0.5, 101)[::-1]
     struck = math.asin(omega * GAP) / omega
     response = simulate(FREE, solver, 1e-10, duration=0.5, output_step=0.5)
@@ -56,7 +54,7 @@ def test_before_and_after_an_impact_it_is_the_swing_of_the_closed_form(solver: s
 
 
 @SOLVERS
-def test_it_is_what_the_run_has_rows_of(solver: str) -> None:
+def test_it_is_what_the_run_has_rows_of(solver):
     response = simulate(load_case(BRIDGE), solver, error_estimate=False)
     whole = response.history
     assert set(whole["t"][whole["t"].duplicated()]) > set(response.events["t"][1:])
@@ -78,7 +76,7 @@ def test_it_is_what_the_run_has_rows_of(solver: str) -> None:
         *(("bridge-pulse", solver) for solver in ("cvode", "ida", "moreau", "penalty")),
     ],
 )
-def test_times_that_are_asked_for_change_no_step(name: str, solver: str) -> None:
+def test_times_that_are_asked_for_change_no_step(name, solver):
     response = simulate(load_case(BRIDGE.parent / name), solver, error_estimate=False)
     task, kept = response.task, response.recording
     t = np.random.default_rng(1).uniform(task.start, task.end, 500)
@@ -88,7 +86,7 @@ def test_times_that_are_asked_for_change_no_step(name: str, solver: str) -> None
     assert np.array_equal(np.r_[run.u, run.v, run.z], np.r_[kept.u, kept.v, kept.z])
 
 
-def test_a_jump_of_the_ground_has_two_sides() -> None:
+def test_a_jump_of_the_ground_has_two_sides():
     scene = Scene(FREE.bodies, FREE.springs, motion=Cosine("1 m/s^2", "0.8 s", start=0.25))
     response = simulate(scene, duration=1.2)
     sides = [response.at("250 ms", side)["a_g"].item() for side in ("before", "after")]
@@ -107,13 +105,13 @@ def test_a_jump_of_the_ground_has_two_sides() -> None:
         (0.1, "before", "side: found 'before' at 0.1 s, an event inside a step"),
     ],
 )
-def test_what_there_is_no_state_of_is_refused(t: object, side: str, said: str) -> None:
+def test_what_there_is_no_state_of_is_refused(t, side, said):
     response = simulate(FREE, "moreau:time_step=0.01", duration=0.5)
     with pytest.raises(InputError, match=said):
         response.at(response.events["t"][0] if side == "before" else t, side)  # type: ignore[arg-type]
 
 
-def test_what_a_logger_sees_has_the_floor_spectrum() -> None:
+def test_what_a_logger_sees_has_the_floor_spectrum():
     wall = Contact("c", "a", "barrier", gap=0.02, restitution=E)
     motion = Harmonic(3.0, 0.7, cycles=6)
     scene = Scene(FREE.bodies, FREE.springs, contacts=(wall,), motion=motion)
@@ -132,7 +130,7 @@ def test_what_a_logger_sees_has_the_floor_spectrum() -> None:
     assert (sampled < 0.6 * exact).all()
 
 
-def test_what_a_logger_sees_is_the_change_of_velocity() -> None:
+def test_what_a_logger_sees_is_the_change_of_velocity():
     scene = Scene(FREE.bodies, FREE.springs, contacts=FREE.contacts, motion=Cosine(3.0, 0.7))
     response = simulate(scene, "fast", duration=1.0)
     t = np.array([0.0, 0.004, 0.5, 0.02])

@@ -1,7 +1,5 @@
 """Events of springs beside closed forms and a program in SciPy, in files and in messages."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping
@@ -46,9 +44,7 @@ def swing() -> Scene:
 
 @pytest.mark.parametrize(("solver", "events"), SOLVERS)
 @pytest.mark.parametrize("strong", [1.3, 3.0], ids=["sticks", "slips on"])
-def test_block_on_a_shaken_plane_sticks_and_slips_when_the_closed_form_says(
-    solver: str, events: str, strong: float
-) -> None:
+def test_block_on_a_shaken_plane_sticks_and_slips_when_the_closed_form_says(solver, events, strong):
     friction, w, end = 0.1 * g, 5.0, 9.0
     deck, bearing = on_ground(Slider(0.1, 1000.0 * g))
     motion = Harmonic(strong * friction, 2.0 * math.pi / w)
@@ -70,7 +66,7 @@ def test_block_on_a_shaken_plane_sticks_and_slips_when_the_closed_form_says(
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_swing_slips_back_each_half_period_until_it_sticks(solver: str) -> None:
+def test_swing_slips_back_each_half_period_until_it_sticks(solver):
     found = run(swing(), 3.0, solver).spring_events
     half, dead = math.pi * math.sqrt(1000.0 / 4.0e5), 0.1 * g / 400.0
     np.testing.assert_allclose(found["time_s"], half * np.arange(11), rtol=0.0, atol=CLOSE)
@@ -81,7 +77,7 @@ def test_swing_slips_back_each_half_period_until_it_sticks(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_an_impact_that_breaks_a_stick_is_an_impact_and_a_slip(solver: str) -> None:
+def test_an_impact_that_breaks_a_stick_is_an_impact_and_a_slip(solver):
     response = run(broken_stick(), 6.0, solver)
     found = response.spring_events
     assert found["kind"].tolist() == ["slip", "stick"]
@@ -99,9 +95,7 @@ def test_an_impact_that_breaks_a_stick_is_an_impact_and_a_slip(solver: str) -> N
     [(BETWEEN_TWO, 8.0), (POUNDING, 6.0), (THROWN_BACK, 2.0)],
     ids=["two abutments", "pounding", "thrown back"],
 )
-def test_soil_is_touched_and_left_as_in_another_program(
-    scene: Scene, end: float, solver: str, settings: dict
-) -> None:
+def test_soil_is_touched_and_left_as_in_another_program(scene, end, solver, settings):
     # No row but those of events.
     response = simulate(
         scene, solver, RTOL, duration=end, output_step=end, settings=settings, error_estimate=False
@@ -129,7 +123,7 @@ def shaken() -> Scene:
 
 
 @pytest.mark.parametrize("scene", [shaken(), BETWEEN_TWO], ids=["slider", "soil"])
-def test_the_table_is_the_same_however_the_run_is_made(scene: Scene) -> None:
+def test_the_table_is_the_same_however_the_run_is_made(scene):
     whole = simulate(scene, duration=5.0, error_estimate=False)
     table = whole.spring_events
     assert len(table) > 8
@@ -144,7 +138,7 @@ def test_the_table_is_the_same_however_the_run_is_made(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("cut", [0.4, 1.8], ids=["while it slips", "while it sticks"])
-def test_events_of_a_run_that_goes_on_are_those_that_are_left(cut: float) -> None:
+def test_events_of_a_run_that_goes_on_are_those_that_are_left(cut):
     scene = swing()
     whole, first = run(scene, 2.0), run(scene, cut)
     later = simulate(scene, duration=2.0 - cut, start=first.final, rtol=RTOL, error_estimate=False)
@@ -165,7 +159,7 @@ def written(folder: Path) -> pd.DataFrame:
     return pd.read_csv(folder / "results" / "spring_events.csv")
 
 
-def test_a_run_writes_what_is_asked_for_and_nothing_else(tmp_path: Path) -> None:
+def test_a_run_writes_what_is_asked_for_and_nothing_else(tmp_path):
     folder = case_with(tmp_path, 'events = ["slip"]')
     assert main(["run", str(folder), "--no-figures"]) == 0
     response = simulate(load_case(folder), error_estimate=False)
@@ -182,7 +176,7 @@ def test_a_run_writes_what_is_asked_for_and_nothing_else(tmp_path: Path) -> None
     assert "spring_events.csv" in files
 
 
-def test_a_run_that_is_not_asked_leaves_none_of_an_earlier_one(tmp_path: Path) -> None:
+def test_a_run_that_is_not_asked_leaves_none_of_an_earlier_one(tmp_path):
     folder = case_with(tmp_path, 'events = ["slip"]')
     assert main(["run", str(folder), "--no-figures"]) == 0
     before = (folder / "results" / "history.csv").read_bytes()
@@ -192,7 +186,7 @@ def test_a_run_that_is_not_asked_leaves_none_of_an_earlier_one(tmp_path: Path) -
     assert (folder / "results" / "history.csv").read_bytes() == before
 
 
-def test_a_run_that_ends_early_keeps_the_events_up_to_there(tmp_path: Path) -> None:
+def test_a_run_that_ends_early_keeps_the_events_up_to_there(tmp_path):
     folder = case_with(tmp_path, 'events = ["slip"]')
     assert main(["run", str(folder), "--no-figures"]) == 0
     whole = written(folder)
@@ -202,7 +196,7 @@ def test_a_run_that_ends_early_keeps_the_events_up_to_there(tmp_path: Path) -> N
     pd.testing.assert_frame_equal(part, whole.iloc[: len(part)], check_exact=True)
 
 
-def test_every_record_of_a_suite_has_its_own(tmp_path: Path) -> None:
+def test_every_record_of_a_suite_has_its_own(tmp_path):
     folder = case_with(tmp_path, 'events = ["slip"]')
     (folder / "a.txt").write_text("\n".join(f"{0.3 * math.sin(0.1 * i)!r}" for i in range(200)))
     text = (folder / "case.toml").read_text()
@@ -216,7 +210,7 @@ def test_every_record_of_a_suite_has_its_own(tmp_path: Path) -> None:
     assert len(written(folder)) > 2
 
 
-def test_verify_says_that_it_lists_none(tmp_path: Path) -> None:
+def test_verify_says_that_it_lists_none(tmp_path):
     """Here a warning is an error, so that nothing is computed."""
     case = load_case(case_with(tmp_path, 'events = ["slip"]'))
     with pytest.raises(OptionWarning, match=r"\[run\]: events: no part of verify"):
@@ -234,9 +228,7 @@ def test_verify_says_that_it_lists_none(tmp_path: Path) -> None:
         ('["slip"]', "found 'slip', which needs a spring of the law 'slider'; there is none"),
     ],
 )
-def test_wrong_words_in_a_case_are_refused_in_one_message(
-    tmp_path: Path, value: str, said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_wrong_words_in_a_case_are_refused_in_one_message(tmp_path, value, said, capsys):
     name = "deck-on-backfill" if "needs" in said else SLIDING
     folder = case_with(tmp_path, f"events = {value}", name)
     assert main(["run", str(folder)]) == 2
@@ -256,13 +248,13 @@ def test_wrong_words_in_a_case_are_refused_in_one_message(
         (["soil"], "events: found 'soil', which needs a spring of the law 'backfill'; there is"),
     ],
 )
-def test_wrong_words_from_python_are_refused_in_one_message(events: object, said: str) -> None:
+def test_wrong_words_from_python_are_refused_in_one_message(events, said):
     with pytest.raises(InputError, match=said) as caught:
         simulate(shaken(), duration=1.0, events=events)
     assert len(caught.value.problems) == 1
 
 
-def test_what_is_asked_for_from_python_is_written(tmp_path: Path) -> None:
+def test_what_is_asked_for_from_python_is_written(tmp_path):
     response = simulate(shaken(), duration=2.0, events=("slip",), error_estimate=False)
     write(response, tmp_path / "results")
     pd.testing.assert_frame_equal(written(tmp_path), response.spring_events, check_exact=True)
@@ -284,14 +276,14 @@ class Silent:
         raise AssertionError
 
 
-def test_a_solver_that_does_not_list_them_says_so_in_one_message() -> None:
+def test_a_solver_that_does_not_list_them_says_so_in_one_message():
     with pytest.raises(InputError) as caught:
         simulate(shaken(), solver=Silent(), duration=1.0, events=("slip",))
     said = "[solver]: silent does not list events of springs; accepted: cvode, ida"
     assert str(caught.value).startswith(said)
 
 
-def test_a_scene_without_such_springs_has_an_empty_table() -> None:
+def test_a_scene_without_such_springs_has_an_empty_table():
     scene = Scene(
         (Body("deck", 1.0),), (Spring("k", (GROUND, "deck"), Linear(1.0)),), motion=Harmonic(1.0, 1)
     )

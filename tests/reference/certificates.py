@@ -9,8 +9,6 @@ double precision, it is left out, and so is an end of a rest that the same conta
 takes up again in that time.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Iterator

@@ -10,8 +10,6 @@ of its threshold is below 0.3 decades, a sequence where the problem says that
 rounding of the input changes it.
 """
 
-from __future__ import annotations
-
 import sys
 from dataclasses import dataclass, field
 

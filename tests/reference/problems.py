@@ -1,7 +1,5 @@
 """The solved problems of ``open.json`` as scenes, and how far an answer is from them."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import dataclass

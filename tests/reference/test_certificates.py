@@ -1,7 +1,5 @@
 """Certificates of solved problems hold against 28 digits."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

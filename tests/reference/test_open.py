@@ -1,7 +1,5 @@
 """The solved problems, every one, at the tightest tolerance; at a loose one by ``-m sweep``."""
 
-from __future__ import annotations
-
 import pytest
 
 from eventpound.simulation import response_of

@@ -1,7 +1,5 @@
 """What is wrong with an answer is found, and an answer that cannot be judged is refused."""
 
-from __future__ import annotations
-
 import ast
 import json
 import subprocess

@@ -1,7 +1,5 @@
 """Pairing of times, impacts and rests: by hand, and against SciPy's assignment."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

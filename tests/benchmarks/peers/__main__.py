@@ -8,8 +8,6 @@ problem is taken off. A dash: it does not get there, or is not written for that.
 `tests.benchmarks.peers.bridge`. A program that is not installed is said to be absent.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import resource

@@ -6,8 +6,6 @@ our run with the spring and of OpenSees against Newton's law, and of OpenSees ag
 the same spring. Times are of the processor.
 """
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 from importlib.util import find_spec

@@ -1,7 +1,5 @@
 """diffrax: Runge-Kutta of order 8 in JAX, compiled once, called again from event to event."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import diffrax as dx

@@ -1,7 +1,5 @@
 """heyoka: a Taylor series with events, compiled for the problem; one run, or eight side by side."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

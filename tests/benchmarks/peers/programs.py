@@ -1,7 +1,5 @@
 """The programs, by what a table calls them: what each needs, how it is made ready, its lines."""
 
-from __future__ import annotations
-
 import io
 import tokenize
 from collections.abc import Callable

@@ -12,8 +12,6 @@ pulled away. A run is cut at whatever changes a mode, which is an event of the p
 `NEAR` changes nothing: it ends a step, since below it z^20 hides from the terms of a series.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -9,8 +9,6 @@ every format that the tests write, damaged too. Values and metadata are told by 
 refusals by their message.
 """
 
-from __future__ import annotations
-
 import hashlib
 import random
 import sys

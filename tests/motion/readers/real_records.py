@@ -3,8 +3,6 @@
 It is looked for beside the checkout, or where EVENTPOUND_RECORDS says.
 """
 
-from __future__ import annotations
-
 import csv
 import os
 from pathlib import Path

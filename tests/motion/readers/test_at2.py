@@ -1,7 +1,5 @@
 """PEER AT2 files: the five headers, touching numbers, and what is refused."""
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 
@@ -56,9 +54,7 @@ def write(path: Path, *lines: str, end: str = "\n") -> Path:
 
 @pytest.mark.parametrize("header", HEADERS.values(), ids=HEADERS.keys())
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r\r\n", "\r"])
-def test_every_header_with_every_line_end(
-    tmp_path: Path, header: tuple[str, ...], end: str
-) -> None:
+def test_every_header_with_every_line_end(tmp_path, header, end):
     data = read_record(write(tmp_path / "a.txt", *header, *NUMBERS, end=end))
     np.testing.assert_array_equal(data.acceleration, VALUES * STANDARD_GRAVITY)
     assert (data.format, data.units, data.time_step) == ("at2", "G", 0.01)
@@ -69,28 +65,28 @@ def test_every_header_with_every_line_end(
     assert data.notes == ()
 
 
-def test_the_hash_is_that_of_the_bytes(tmp_path: Path) -> None:
+def test_the_hash_is_that_of_the_bytes(tmp_path):
     path = write(tmp_path / "a.at2", *HEADERS["NGA-West2"], *NUMBERS)
     data = read_record(path)
     assert data.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
     assert data.file == str(path)
 
 
-def test_text_after_the_last_sample_is_noted(tmp_path: Path) -> None:
+def test_text_after_the_last_sample_is_noted(tmp_path):
     path = write(tmp_path / "a.at2", *HEADERS["NGA-West2"], *NUMBERS, "*** End ***")
     data = read_record(path)
     assert data.acceleration.size == 7
     assert data.notes == ("line 8: text after the last sample passed over: '*** End ***'",)
 
 
-def test_units_of_the_header_may_be_others(tmp_path: Path) -> None:
+def test_units_of_the_header_may_be_others(tmp_path):
     lines = list(HEADERS["NGA-West2"])
     lines[2] = "ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC"
     data = read_record(write(tmp_path / "a.at2", *lines, *NUMBERS))
     np.testing.assert_allclose(data.acceleration, VALUES * 0.01, rtol=1e-15)
 
 
-def test_what_the_caller_knows_must_agree(tmp_path: Path) -> None:
+def test_what_the_caller_knows_must_agree(tmp_path):
     path = write(tmp_path / "a.at2", *HEADERS["NGA-West2"], *NUMBERS)
     assert read_record(path, units="g", time_step=0.01, format="at2").acceleration.size == 7
     with pytest.raises(InputError, match=r"line 3.*'m/s2' were given.*states 'G'"):
@@ -99,7 +95,7 @@ def test_what_the_caller_knows_must_agree(tmp_path: Path) -> None:
         read_record(path, time_step=0.02)
 
 
-def test_units_the_header_does_not_state_are_asked_for(tmp_path: Path) -> None:
+def test_units_the_header_does_not_state_are_asked_for(tmp_path):
     header = list(HEADERS["NGA-West2"])
     header[2] = "ACCELERATION TIME SERIES"
     path = write(tmp_path / "a.at2", *header, *NUMBERS)
@@ -123,9 +119,7 @@ def test_units_the_header_does_not_state_are_asked_for(tmp_path: Path) -> None:
         ({3: "NPTS= 7, DT= .0000 SEC"}, "line 4: time step 0.0 s"),
     ],
 )
-def test_refusals_name_file_line_and_finding(
-    tmp_path: Path, change: dict[int, str], message: str
-) -> None:
+def test_refusals_name_file_line_and_finding(tmp_path, change, message):
     lines = [*HEADERS["NGA-West2"], *NUMBERS]
     for i, line in change.items():
         lines[i] = line
@@ -134,13 +128,13 @@ def test_refusals_name_file_line_and_finding(
     assert all("broken.at2" in problem for problem in caught.value.problems)
 
 
-def test_all_unreadable_numbers_are_named_together(tmp_path: Path) -> None:
+def test_all_unreadable_numbers_are_named_together(tmp_path):
     lines = [*HEADERS["NGA-West2"], "0.1 NaN 0.2", "x 0.1 0.2", "0.3"]
     with pytest.raises(InputError) as caught:
         read_record(write(tmp_path / "a.at2", *lines))
     assert len(caught.value.problems) == 2
 
 
-def test_a_file_without_header_is_not_at2(tmp_path: Path) -> None:
+def test_a_file_without_header_is_not_at2(tmp_path):
     with pytest.raises(InputError, match=r"not a PEER AT2 file.*NPTS"):
         read_record(write(tmp_path / "a.at2", *NUMBERS), format="at2")

@@ -1,9 +1,6 @@
 """One- and two-column text: what is read, what is asked for, what is refused."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +14,7 @@ def write(path: Path, text: str) -> Path:
     return path
 
 
-def test_one_column_with_units_and_time_step(tmp_path: Path) -> None:
+def test_one_column_with_units_and_time_step(tmp_path):
     data = read_record(
         write(tmp_path / "a.txt", "0.1\r\n-.2\r\n3e-1\r\n\r\n"), units="gal", time_step=0.02
     )
@@ -35,13 +32,13 @@ def test_one_column_with_units_and_time_step(tmp_path: Path) -> None:
         "% x\n 0.0000000e+000 1.0E-01\n 2.0000000e-002 2.0E-01\n 4.0000000e-002-3.0E-01\n",
     ],
 )
-def test_two_columns_in_many_dresses(tmp_path: Path, text: str) -> None:
+def test_two_columns_in_many_dresses(tmp_path, text):
     data = read_record(write(tmp_path / "a.csv", text), units="m/s2")
     np.testing.assert_array_equal(data.acceleration, [0.1, 0.2, -0.3])
     assert data.time_step == 0.02
 
 
-def test_components_side_by_side(tmp_path: Path) -> None:
+def test_components_side_by_side(tmp_path):
     path = write(tmp_path / "a.txt", "t EW NS\n0.0 1 4\n0.1 2 5\n0.2 3 -6\n")
     data = read_record(path, units="m/s2", component="n-s")
     np.testing.assert_array_equal(data.acceleration, [4.0, 5.0, -6.0])
@@ -51,7 +48,7 @@ def test_components_side_by_side(tmp_path: Path) -> None:
     )
 
 
-def test_columns_without_times(tmp_path: Path) -> None:
+def test_columns_without_times(tmp_path):
     path = write(tmp_path / "a.txt", "4 -1 7\n6 -2 8\n5 3 -6\n")
     data = read_record(path, units="m/s2", component="#2", time_step=0.1)
     np.testing.assert_array_equal(data.acceleration, [-1.0, -2.0, 3.0])
@@ -59,19 +56,19 @@ def test_columns_without_times(tmp_path: Path) -> None:
         read_record(path, units="m/s2", component="#2")
 
 
-def test_a_number_before_the_unit(tmp_path: Path) -> None:
+def test_a_number_before_the_unit(tmp_path):
     data = read_record(write(tmp_path / "a.txt", "0.1\n0.2\n"), units="1e-1 g", time_step=0.1)
     np.testing.assert_allclose(data.acceleration, [0.0980665, 0.196133], rtol=1e-15)
 
 
-def test_passed_over_lines_are_noted(tmp_path: Path) -> None:
+def test_passed_over_lines_are_noted(tmp_path):
     text = "# who\ntime,acc\n0.0,0.1\n0.1,0.2\n"
     data = read_record(write(tmp_path / "a.csv", text), units="g")
     assert data.notes == ("2 lines before the numbers passed over",)
 
 
 @pytest.mark.parametrize("dt", [0.005, 0.0025, 0.00244, 1.0 / 128.0, 0.01])
-def test_time_step_of_times_rounded_in_printing(tmp_path: Path, dt: float) -> None:
+def test_time_step_of_times_rounded_in_printing(tmp_path, dt):
     rows = "".join(f"{i * dt:.4f} {(-1) ** i * 0.5:.3f}\n" for i in range(2000))
     data = read_record(write(tmp_path / "a.txt", rows), units="m/s2")
     # Two thousand steps fix dt to half of 1e-4 s in their sum and dt/1000.
@@ -106,6 +103,6 @@ def test_time_step_of_times_rounded_in_printing(tmp_path: Path, dt: float) -> No
         ("0,01 0,5\n0,02 0,6\n", {"units": "g"}, "line 1: .*decimal comma"),
     ],
 )
-def test_refusals(tmp_path: Path, text: str, arguments: dict[str, Any], message: str) -> None:
+def test_refusals(tmp_path, text, arguments, message):
     with pytest.raises(InputError, match=message):
         read_record(write(tmp_path / "a.txt", text), **arguments)

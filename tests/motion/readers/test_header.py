@@ -1,7 +1,5 @@
 """What agencies and programs write otherwise than their format says, and what is no text at all."""
 
-from __future__ import annotations
-
 import gzip
 import io
 import zipfile
@@ -37,14 +35,14 @@ def written(path: Path, text: str, name: str = "record") -> Path:
         "accel. pts,units=gal,Format=(8F10.5)",
     ],
 )
-def test_cosmos_is_read_by_meaning(data: str, tmp_path: Path) -> None:
+def test_cosmos_is_read_by_meaning(data, tmp_path):
     file = written(tmp_path, writers.cosmos(MOTION, STEP, data).text)
     read = read_record(file, component="70")
     np.testing.assert_allclose(read.acceleration, -0.5 * MOTION, rtol=0.0, atol=0.6e-7)
     assert (read.time_step, read.acceleration.size) == (STEP, MOTION.size)
 
 
-def test_cosmos_with_the_step_of_the_raw_record_alone(tmp_path: Path) -> None:
+def test_cosmos_with_the_step_of_the_raw_record_alone(tmp_path):
     text = writers.cosmos(MOTION, STEP).text
     line = next(x for x in text.splitlines() if "    10.000000" in x)
     raw = text.splitlines()[text.splitlines().index(line) - 5]
@@ -55,7 +53,7 @@ def test_cosmos_with_the_step_of_the_raw_record_alone(tmp_path: Path) -> None:
     assert read_record(written(tmp_path, text), component="70").time_step == STEP
 
 
-def test_cosmos_with_semicolons(tmp_path: Path) -> None:
+def test_cosmos_with_semicolons(tmp_path):
     text = writers.cosmos(MOTION, STEP, "pts, approx {0:4.0f} secs; units=cm/sec2;Format=(8F10.5)")
     text = text.text.replace("0 deg (Rcrdr", "0 deg Roof (Rcrdr")
     data = read_record(written(tmp_path, text), component="#1")
@@ -64,14 +62,14 @@ def test_cosmos_with_semicolons(tmp_path: Path) -> None:
     assert data.component.isdecimal()
 
 
-def test_cosmos_counts_are_no_accelerations(tmp_path: Path) -> None:
+def test_cosmos_counts_are_no_accelerations(tmp_path):
     data = "pts, approx {0:4.0f} secs, units=counts (50),Format=(8F10.5)"
     file = written(tmp_path, writers.cosmos(MOTION, STEP, data).text)
     with pytest.raises(InputError, match="accelerations and not counts, as its V1 and V2 have"):
         read_record(file, component="#1")
 
 
-def test_a_channel_of_a_structure_is_named_without_its_location(tmp_path: Path) -> None:
+def test_a_channel_of_a_structure_is_named_without_its_location(tmp_path):
     text = writers.csmip_structure(MOTION, STEP).text
     file = written(tmp_path, text)
     assert components_of(file) == ["90", "UP"]
@@ -96,20 +94,20 @@ def test_a_channel_of_a_structure_is_named_without_its_location(tmp_path: Path) 
         ("Ref. North  Location: pile", "Ref. North"),
     ],
 )
-def test_names_and_locations_of_channels(tmp_path: Path, printed: str, asked: str) -> None:
+def test_names_and_locations_of_channels(tmp_path, printed, asked):
     text = writers.csmip_v2(MOTION, STEP).text.replace(":  90 DEG\r\n", f": {printed}\r\n")
     assert printed in text
     data = read_record(written(tmp_path, text), component=asked)
     np.testing.assert_allclose(data.acceleration, MOTION, atol=1e-5)
 
 
-def test_a_response_spectrum_is_no_accelerogram(tmp_path: Path) -> None:
+def test_a_response_spectrum_is_no_accelerogram(tmp_path):
     text = writers.esm(MOTION, STEP).text.replace("ACCELERATION", "ACCELERATION RESPONSE SPECTRUM")
     with pytest.raises(InputError, match="an acceleration time series is needed"):
         read_record(written(tmp_path, text))
 
 
-def test_pairs_at_uneven_times_need_a_time_step(tmp_path: Path) -> None:
+def test_pairs_at_uneven_times_need_a_time_step(tmp_path):
     """Every other time is 2 ms late: a straight line is sampled as itself."""
     t = STEP * np.arange(200)
     late = t + 0.002 * (np.arange(200) % 2)
@@ -127,7 +125,7 @@ def test_pairs_at_uneven_times_need_a_time_step(tmp_path: Path) -> None:
     assert any("200 samples at uneven times" in note for note in read.notes)
 
 
-def test_times_are_those_of_the_rate(tmp_path: Path) -> None:
+def test_times_are_those_of_the_rate(tmp_path):
     text = writers.tspair(MOTION, STEP).text
     with pytest.raises(InputError, match=r"line 3: its time is -0.01 s off those of 50 Hz"):
         read_record(written(tmp_path, text.replace("100 sps", "50 sps")), units="m/s2")
@@ -136,13 +134,13 @@ def test_times_are_those_of_the_rate(tmp_path: Path) -> None:
         read_record(changed, units="m/s2")
 
 
-def test_a_channel_in_pieces_is_refused(tmp_path: Path) -> None:
+def test_a_channel_in_pieces_is_refused(tmp_path):
     text = writers.slist(MOTION, STEP).text.replace("HNN", "HNE")
     with pytest.raises(InputError, match="channel xx_made__hne_r begins again, after a gap"):
         read_record(written(tmp_path, text))
 
 
-def test_more_samples_than_a_series_states_are_refused(tmp_path: Path) -> None:
+def test_more_samples_than_a_series_states_are_refused(tmp_path):
     text = writers.slist(MOTION, STEP).text.replace("400 samples", "384 samples", 1)
     with pytest.raises(InputError, match=r"400 numbers found .* states samples = 384"):
         read_record(written(tmp_path, text), component="HNE")
@@ -152,7 +150,7 @@ def test_more_samples_than_a_series_states_are_refused(tmp_path: Path) -> None:
     ("index", "value", "message"),
     [(16, 7, "says velocities"), (16, 6, "says displacements"), (35, 0, "its times are uneven")],
 )
-def test_sac_that_is_no_accelerogram(index: int, value: int, message: str, tmp_path: Path) -> None:
+def test_sac_that_is_no_accelerogram(index, value, message, tmp_path):
     lines = writers.sac_alphanumeric(MOTION, STEP).text.splitlines()
     line, at = 14 + index // 5, 10 * (index % 5)
     lines[line] = lines[line][:at] + f"{value:10d}" + lines[line][at + 10 :]
@@ -177,7 +175,7 @@ PAIRS = "".join(f"{i * STEP:.2f}\t{x:.6f}\n" for i, x in enumerate(MOTION))
     ],
     ids=["deepsoil", "column", "step-first", "eqsig", "commas", "along-lines", "pointed"],
 )
-def test_a_count_and_a_step_before_the_samples(text: str, tmp_path: Path) -> None:
+def test_a_count_and_a_step_before_the_samples(text, tmp_path):
     file = written(tmp_path, text)
     read = read_record(file, units="m/s2")
     np.testing.assert_allclose(read.acceleration, MOTION, rtol=0.0, atol=0.51e-6)
@@ -201,7 +199,7 @@ def test_a_count_and_a_step_before_the_samples(text: str, tmp_path: Path) -> Non
     ],
     ids=["unit-behind", "two-lines", "step-first", "labels", "comments", "shake"],
 )
-def test_a_count_and_a_step_told_otherwise(text: str, tmp_path: Path) -> None:
+def test_a_count_and_a_step_told_otherwise(text, tmp_path):
     file = written(tmp_path, text)
     read = read_record(file, units="m/s2")
     np.testing.assert_allclose(read.acceleration, MOTION, rtol=0.0, atol=0.51e-6)
@@ -210,7 +208,7 @@ def test_a_count_and_a_step_told_otherwise(text: str, tmp_path: Path) -> None:
         read_record(file, units="m/s2", time_step=0.02)
 
 
-def test_units_in_a_head_are_heeded(tmp_path: Path) -> None:
+def test_units_in_a_head_are_heeded(tmp_path):
     file = written(tmp_path, f"NPTS = 400\nDT = 0.01\nUNITS: CM/S2\n{COLUMN}")
     read = read_record(file)
     np.testing.assert_allclose(read.acceleration, 0.01 * MOTION, rtol=0.0, atol=0.51e-8)
@@ -218,30 +216,30 @@ def test_units_in_a_head_are_heeded(tmp_path: Path) -> None:
         read_record(file, units="g")
 
 
-def test_another_count_than_words_say_is_refused(tmp_path: Path) -> None:
+def test_another_count_than_words_say_is_refused(tmp_path):
     for samples in (COLUMN, PAIRS):
         file = written(tmp_path, f"# Number of points: 500\n# Time step: 0.01 s\n{samples}")
         with pytest.raises(InputError, match=r"line 2 states .*samples = (500|1000)"):
             read_record(file, units="m/s2")
 
 
-def test_a_scale_beside_a_count_and_a_step_is_not_ignored(tmp_path: Path) -> None:
+def test_a_scale_beside_a_count_and_a_step_is_not_ignored(tmp_path):
     with pytest.raises(InputError, match="unlike the 400 numbers after it"):
         read_record(written(tmp_path, f"400 0.01 9.81\n{COLUMN}"), units="m/s2", time_step=STEP)
 
 
-def test_times_beside_a_count_and_a_step_are_as_stated(tmp_path: Path) -> None:
+def test_times_beside_a_count_and_a_step_are_as_stated(tmp_path):
     text = f"400 0.0104\n{PAIRS}"
     with pytest.raises(InputError, match=r"step of 0.0104 s is stated, its times are 0.01 s apart"):
         read_record(written(tmp_path, text), units="m/s2")
 
 
-def test_rows_of_times_are_no_count_and_step(tmp_path: Path) -> None:
+def test_rows_of_times_are_no_count_and_step(tmp_path):
     text = "".join(f"{10 + i} {0.01 * i + 0.01:.2f}\n" for i in range(5))
     assert read_record(written(tmp_path, text), units="m/s2", time_step=1.0).format == "columns"
 
 
-def test_rows_that_repeat_the_last_are_no_samples(tmp_path: Path) -> None:
+def test_rows_that_repeat_the_last_are_no_samples(tmp_path):
     text = writers.unam(MOTION, STEP).text
     filled = text + 2 * (text.splitlines()[-1] + "\n")
     read = read_record(written(tmp_path, filled), component="V")
@@ -251,7 +249,7 @@ def test_rows_that_repeat_the_last_are_no_samples(tmp_path: Path) -> None:
         read_record(written(tmp_path, text + " 1.0 2.0 3.0\n"), component="V")
 
 
-def test_wide_characters_are_text(tmp_path: Path) -> None:
+def test_wide_characters_are_text(tmp_path):
     file = tmp_path / "record"
     file.write_bytes(PAIRS.encode("utf-16"))
     read = read_record(file, units="m/s2")
@@ -294,9 +292,7 @@ def _zip(*names: str) -> bytes:
         "tar",
     ],
 )
-def test_what_is_no_text_is_named_and_never_shown(
-    content: bytes, message: str, tmp_path: Path
-) -> None:
+def test_what_is_no_text_is_named_and_never_shown(content, message, tmp_path):
     file = tmp_path / "record"
     file.write_bytes(content)
     for name in (None, "at2", "columns"):
@@ -307,9 +303,7 @@ def test_what_is_no_text_is_named_and_never_shown(
 
 
 @pytest.mark.parametrize("begins", [b"000001V 010", b"000001D \x00", b"000001R*", b"MS\x03\x00"])
-def test_seed_without_obspy_is_named(
-    begins: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_seed_without_obspy_is_named(begins, tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "obspy", None)
     file = tmp_path / "record"
     file.write_bytes(begins + bytes(200))
@@ -317,7 +311,7 @@ def test_seed_without_obspy_is_named(
         read_record(file, units="g")
 
 
-def test_smc_of_uneven_times_is_named(tmp_path: Path) -> None:
+def test_smc_of_uneven_times_is_named(tmp_path):
     text = writers.smc(MOTION, STEP).text
     assert text.count("  1.0000000E+02") == 1
     text = text.replace("  1.0000000E+02", "  1.7000000E+38")
@@ -335,11 +329,11 @@ def test_smc_of_uneven_times_is_named(tmp_path: Path) -> None:
         ("1.00 mm/s/s", 0.001),
     ],
 )
-def test_units_as_headers_spell_them(units: str, factor: float) -> None:
+def test_units_as_headers_spell_them(units, factor):
     assert unit_factor(units) == factor
 
 
-def test_a_line_of_digits_without_end_is_read_past(tmp_path: Path) -> None:
+def test_a_line_of_digits_without_end_is_read_past(tmp_path):
     # Each digit was tried as the end of what stands behind a name, for minutes.
     digits = "EVENT   " + "9" * 3000 + "   " + "9" * 3000
     head = "FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:"

@@ -1,12 +1,8 @@
 """Formats of other packages: found, named where broken, harmless to the rest."""
 
-from __future__ import annotations
-
 import re
 import sys
 import tomllib
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,7 +17,7 @@ GROUP = "eventpound.readers"
 
 
 @pytest.fixture(autouse=True)
-def _look_again() -> Iterator[None]:
+def _look_again():
     """Entry points are looked for once a process; here once a test."""
     registry._plugged_in.cache_clear()
     known = set(sys.modules)
@@ -32,7 +28,7 @@ def _look_again() -> Iterator[None]:
             del sys.modules[name]
 
 
-def test_the_documented_example(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_documented_example(monkeypatch, tmp_path):
     text = (ROOT / "docs" / "your-format.md").read_text(encoding="utf-8")
     files = dict(re.findall(r"<!-- example: (\S+) -->\n```\w+\n(.*?)```", text, re.DOTALL))
     project = tomllib.loads(files["pyproject.toml"])["project"]
@@ -64,9 +60,7 @@ def test_the_documented_example(monkeypatch: pytest.MonkeyPatch, tmp_path: Path)
         ),
     ],
 )
-def test_broken_ones_are_named_and_left_out(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, source: str, words: str
-) -> None:
+def test_broken_ones_are_named_and_left_out(monkeypatch, tmp_path, source, words):
     entries = {"broken": "broken:READER"}
     plug_in(monkeypatch, tmp_path, {"broken.py": source}, entries, "bad-package", GROUP)
     path = tmp_path / "record"

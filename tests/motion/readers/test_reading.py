@@ -1,8 +1,5 @@
 """Every text format, written from a synthetic motion and read without being told which."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +28,7 @@ MOTION = motion(SIZE, STEP)
 
 
 @pytest.fixture(params=WRITERS, ids=WRITERS.keys())
-def case(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[str, Written, Path]:
+def case(request, tmp_path):
     written = WRITERS[request.param](MOTION, STEP)
     path = tmp_path / "record.bin"
     path.write_bytes(written.text.encode())
@@ -52,7 +49,7 @@ def read(written: Written, path: Path) -> RecordData:
     )
 
 
-def test_samples_step_component_and_format(case: tuple[str, Written, Path]) -> None:
+def test_samples_step_component_and_format(case):
     name, written, path = case
     data = read(written, path)
     expected = MOTION - np.mean(MOTION) if name == "knet" else MOTION
@@ -70,7 +67,7 @@ def test_samples_step_component_and_format(case: tuple[str, Written, Path]) -> N
     assert not [note for note in data.notes if "peak" in note and name != "usc"]
 
 
-def test_several_components_are_listed_and_asked_for(case: tuple[str, Written, Path]) -> None:
+def test_several_components_are_listed_and_asked_for(case):
     _, written, path = case
     if len(written.components) == 1:
         assert len(components_of(path, units=written.units)) == 1
@@ -90,7 +87,7 @@ def test_several_components_are_listed_and_asked_for(case: tuple[str, Written, P
     assert any(not np.array_equal(by_name[0], other) for other in by_name[1:])
 
 
-def test_a_file_cut_short_is_refused(case: tuple[str, Written, Path]) -> None:
+def test_a_file_cut_short_is_refused(case):
     name, written, path = case
     if name in ("one_column", "two_columns", "csv", "opensees"):
         pytest.skip("the format does not state how many samples there are")
@@ -104,9 +101,7 @@ def test_a_file_cut_short_is_refused(case: tuple[str, Written, Path]) -> None:
 
 
 @pytest.mark.parametrize("bad", ["NaN", "*****", "1.2.3", "Infinity"])
-def test_what_is_no_number_is_named_with_its_line(
-    case: tuple[str, Written, Path], bad: str
-) -> None:
+def test_what_is_no_number_is_named_with_its_line(case, bad):
     name, written, path = case
     lines = written.text.splitlines()
     # A line of samples of the first component: the 60th from its end or that of the file.
@@ -127,9 +122,7 @@ def _numbers(lines: list[str]) -> bool:
 
 
 @pytest.mark.parametrize("spelt", [str.upper, str.lower], ids=["capitals", "small"])
-def test_letter_case_of_a_header_means_nothing(
-    case: tuple[str, Written, Path], spelt: Callable[[str], str]
-) -> None:
+def test_letter_case_of_a_header_means_nothing(case, spelt):
     _, written, path = case
     ways = [
         read_record(path, component=f"#{i}", units=written.units, time_step=written.time_step)
@@ -152,7 +145,7 @@ def test_letter_case_of_a_header_means_nothing(
         )
 
 
-def test_units_must_agree_with_the_file(case: tuple[str, Written, Path]) -> None:
+def test_units_must_agree_with_the_file(case):
     _, written, path = case
     if written.units is not None:
         pytest.skip("the file does not state its units")
@@ -162,7 +155,7 @@ def test_units_must_agree_with_the_file(case: tuple[str, Written, Path]) -> None
         read_record(path, units="mi/h2", component="#1", time_step=STEP)
 
 
-def test_a_time_step_must_agree_with_the_file(case: tuple[str, Written, Path]) -> None:
+def test_a_time_step_must_agree_with_the_file(case):
     _, written, path = case
     if written.time_step is not None:
         pytest.skip("the file does not state its time step")
@@ -190,9 +183,7 @@ def test_a_time_step_must_agree_with_the_file(case: tuple[str, Written, Path]) -
         ("usc", "UNITS ARE SEC AND", "UNITS ARE", "the header has no line 'UNITS ARE SEC AND'"),
     ],
 )
-def test_what_a_header_does_not_say_is_named(
-    name: str, found: str, instead: str, message: str, tmp_path: Path
-) -> None:
+def test_what_a_header_does_not_say_is_named(name, found, instead, message, tmp_path):
     text = WRITERS[name](motion(SIZE, STEP), STEP).text
     assert found in text
     path = tmp_path / "record"
@@ -201,7 +192,7 @@ def test_what_a_header_does_not_say_is_named(
         read_record(path, format=name.replace("_", "-"), component="#1", time_step=STEP)
 
 
-def test_times_beside_the_components_are_those_of_the_header(tmp_path: Path) -> None:
+def test_times_beside_the_components_are_those_of_the_header(tmp_path):
     text = WRITERS["cwb"](motion(SIZE, STEP), STEP).text
     path = tmp_path / "record"
     path.write_text(

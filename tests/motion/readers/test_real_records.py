@@ -1,7 +1,5 @@
 """Real records beside the checkout: counts, steps, PGA and mean period; and the damaged ones."""
 
-from __future__ import annotations
-
 from importlib.util import find_spec
 from typing import Any
 
@@ -22,7 +20,7 @@ pytestmark = pytest.mark.skipif(
 @pytest.mark.parametrize(
     "row", rows_of_index(), ids=lambda row: f"{row['file']}-{row['component']}"
 )
-def test_numbers_of_the_index(row: dict[str, str]) -> None:
+def test_numbers_of_the_index(row):
     if row["format"].startswith(("SAC", "miniSEED")) and find_spec("obspy") is None:
         pytest.skip("ObsPy reads SAC and miniSEED; it is not installed")
     data = read_row(row)
@@ -52,15 +50,13 @@ ODD: list[tuple[str, dict[str, Any], int, float, float]] = [
 
 
 @pytest.mark.parametrize(("name", "arguments", "size", "dt", "pga"), ODD)
-def test_odd_files_that_can_be_read(
-    name: str, arguments: dict[str, Any], size: int, dt: float, pga: float
-) -> None:
+def test_odd_files_that_can_be_read(name, arguments, size, dt, pga):
     data = read_record(FOLDER / "damaged" / name, **arguments)
     assert (data.acceleration.size, data.time_step) == (size, dt)
     assert np.max(np.abs(data.acceleration)) / STANDARD_GRAVITY == pytest.approx(pga, abs=0.5001e-4)
 
 
-def test_line_ends_do_not_change_the_motion() -> None:
+def test_line_ends_do_not_change_the_motion():
     odd = read_record(FOLDER / "damaged" / "01_crcrlf_line_ends.at2")
     good = read_record(FOLDER / "at2" / "ARL360.at2")
     np.testing.assert_array_equal(odd.acceleration, good.acceleration)
@@ -87,12 +83,12 @@ REFUSED: list[tuple[str, dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("name", "arguments", "message"), REFUSED)
-def test_damaged_files_are_refused(name: str, arguments: dict[str, Any], message: str) -> None:
+def test_damaged_files_are_refused(name, arguments, message):
     with pytest.raises(InputError, match=message) as caught:
         read_record(FOLDER / "damaged" / name, **arguments)
     assert all(name in problem for problem in caught.value.problems)
 
 
-def test_nothing_damaged_is_left_out() -> None:
+def test_nothing_damaged_is_left_out():
     files = {path.name for path in (FOLDER / "damaged").iterdir()} - {"README.md"}
     assert files == {name for name, *_ in ODD} | {name for name, *_ in REFUSED}

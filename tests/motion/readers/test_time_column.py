@@ -1,7 +1,5 @@
 """The step of printed times: right where one exists within their rounding, else refused."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -28,7 +26,7 @@ def cut(h: float, count: int, decimals: int, start: float = 0.0) -> list[str]:
     ]
 
 
-def test_512_hz_to_four_decimals_at_every_length() -> None:
+def test_512_hz_to_four_decimals_at_every_length():
     h = 1.0 / 512.0
     for count in range(75, 501):
         assert step(rounded(h, count, 4)) == h
@@ -41,19 +39,19 @@ def test_512_hz_to_four_decimals_at_every_length() -> None:
 @pytest.mark.parametrize(
     "h", [1 / 3, 3.0, 0.03, 0.005, 1 / 30, 1 / 128, 1 / 256, 0.00244, 0.01, 1 / 1024]
 )
-def test_steps_of_rounded_and_cut_times(written, h, decimals, start) -> None:
+def test_steps_of_rounded_and_cut_times(written, h, decimals, start):
     texts = written(h, 600, decimals, start)
     # Six hundred times fix the step to a unit of their last decimal in the sum.
     assert step(texts) == pytest.approx(h, abs=(1.03 * 10.0**-decimals + 2e-3 * h) / 599)
     assert step(texts, stated=h) == h
 
 
-def test_another_step_than_that_of_the_times_is_not_taken() -> None:
+def test_another_step_than_that_of_the_times_is_not_taken():
     assert step(rounded(0.01, 100, 2), stated=0.02) == 0.01
     assert step(["0.0", "0.1"], stated=0.2) == 0.1
 
 
-def test_times_in_another_unit() -> None:
+def test_times_in_another_unit():
     assert step(rounded(1000.0 / 512.0, 200, 1), unit=1e-3) == 1.0 / 512.0
 
 
@@ -68,6 +66,6 @@ def test_times_in_another_unit() -> None:
         (["2", "1", "0"], "does not increase"),
     ],
 )
-def test_uneven_times(texts: list[str], message: str) -> None:
+def test_uneven_times(texts, message):
     with pytest.raises(InputError, match=message):
         step(texts)

@@ -1,9 +1,6 @@
 """What stands beside samples: titles and their units, clocks, counts, steps, numbers of rows."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -119,7 +116,7 @@ COMPONENT_L = {"units": "g", "component": "L"}
         ("Time,RelTime(s),Acc(g)\n" + rows("{},{:.2f},{:.6f}", CLOCK, T, A), {}),
     ],
 )
-def test_read_as_what_it_is(tmp_path: Path, text: str, arguments: dict[str, Any]) -> None:
+def test_read_as_what_it_is(tmp_path, text, arguments):
     path = tmp_path / "a.txt"
     path.write_text(text)
     data = read_record(path, **arguments)
@@ -177,7 +174,7 @@ def test_read_as_what_it_is(tmp_path: Path, text: str, arguments: dict[str, Any]
         ),
     ],
 )
-def test_refused(tmp_path: Path, text: str, arguments: dict[str, Any], message: str) -> None:
+def test_refused(tmp_path, text, arguments, message):
     path = tmp_path / "a.txt"
     path.write_text(text)
     with pytest.raises(InputError, match=message):

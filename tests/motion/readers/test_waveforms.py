@@ -1,7 +1,5 @@
 """SAC and miniSEED through ObsPy, K-NET beside ObsPy's reader, and what is said without ObsPy."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import warnings
@@ -21,7 +19,7 @@ SAMPLES = motion(500, 0.01)
 
 
 @pytest.fixture
-def obspy() -> Any:
+def obspy():
     with warnings.catch_warnings(action="ignore"):
         return pytest.importorskip("obspy", reason="ObsPy, an optional extra, is not installed")
 
@@ -32,7 +30,7 @@ def trace(obspy: ModuleType, data: Any, channel: str = "HNE") -> Any:
 
 
 @pytest.mark.parametrize("byte_order", ["<", ">"])
-def test_sac_of_either_byte_order(obspy: Any, tmp_path: Path, byte_order: str) -> None:
+def test_sac_of_either_byte_order(obspy, tmp_path, byte_order):
     path = tmp_path / "a.bin"
     trace(obspy, SAMPLES.astype("f4")).write(str(path), format="SAC", byteorder=byte_order)
     with pytest.raises(UnstatedError, match="does not state its units"):
@@ -44,7 +42,7 @@ def test_sac_of_either_byte_order(obspy: Any, tmp_path: Path, byte_order: str) -
     assert data.time_step == pytest.approx(0.01, rel=6e-8)
 
 
-def test_sac_of_velocities_is_refused(obspy: Any, tmp_path: Path) -> None:
+def test_sac_of_velocities_is_refused(obspy, tmp_path):
     path = tmp_path / "a.sac"
     one = trace(obspy, SAMPLES.astype("f4"))
     one.stats.sac = {"idep": 7}
@@ -53,7 +51,7 @@ def test_sac_of_velocities_is_refused(obspy: Any, tmp_path: Path) -> None:
         read_record(path, units="m/s2")
 
 
-def test_miniseed_of_numbers_with_a_unit(obspy: Any, tmp_path: Path) -> None:
+def test_miniseed_of_numbers_with_a_unit(obspy, tmp_path):
     path = tmp_path / "a.mseed"
     stream = obspy.Stream([trace(obspy, SAMPLES), trace(obspy, -2.0 * SAMPLES, "HNN")])
     stream.write(str(path), format="MSEED")
@@ -63,7 +61,7 @@ def test_miniseed_of_numbers_with_a_unit(obspy: Any, tmp_path: Path) -> None:
     assert data.time_step == pytest.approx(0.01, rel=1e-12)
 
 
-def test_counts_need_a_sensitivity(obspy: Any, tmp_path: Path) -> None:
+def test_counts_need_a_sensitivity(obspy, tmp_path):
     path = tmp_path / "a.mseed"
     counts = np.rint(SAMPLES * 1e5).astype("i4")
     trace(obspy, counts).write(str(path), format="MSEED")
@@ -101,7 +99,7 @@ def write_response(obspy: Any, path: Path, units: str, value: float) -> None:
     inventory.write(str(path), format="STATIONXML")
 
 
-def test_a_trace_with_a_gap_is_refused(obspy: Any, tmp_path: Path) -> None:
+def test_a_trace_with_a_gap_is_refused(obspy, tmp_path):
     path = tmp_path / "a.mseed"
     second = trace(obspy, SAMPLES)
     second.stats.starttime += 100.0
@@ -110,7 +108,7 @@ def test_a_trace_with_a_gap_is_refused(obspy: Any, tmp_path: Path) -> None:
         read_record(path, units="m/s2")
 
 
-def test_knet_agrees_with_obspy(obspy: Any, tmp_path: Path) -> None:
+def test_knet_agrees_with_obspy(obspy, tmp_path):
     path = tmp_path / "a.ns2"
     path.write_text(WRITERS["knet"](motion(1000, 0.01), 0.01).text)
     data = read_record(path)
@@ -126,7 +124,7 @@ def test_knet_agrees_with_obspy(obspy: Any, tmp_path: Path) -> None:
     assert data.time_step == theirs.stats.delta
 
 
-def test_what_obspy_warns_of_at_its_import_stops_nobody(obspy: Any, tmp_path: Path) -> None:
+def test_what_obspy_warns_of_at_its_import_stops_nobody(obspy, tmp_path):
     path = tmp_path / "motion"
     trace(obspy, SAMPLES.astype("f4")).write(str(path), format="SAC")
     read = f"from eventpound.motion import read_record; read_record({str(path)!r}, units='m/s2')"
@@ -135,9 +133,7 @@ def test_what_obspy_warns_of_at_its_import_stops_nobody(obspy: Any, tmp_path: Pa
     assert (result.returncode, result.stderr) == (0, "")
 
 
-def test_without_obspy_it_says_what_to_install(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_obspy_it_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "obspy", None)
     path = tmp_path / "a"
     header = bytearray(632 + 8)
@@ -151,7 +147,7 @@ def test_without_obspy_it_says_what_to_install(
         read_record(path, units="m/s2")
 
 
-def test_a_response_is_only_for_counts(tmp_path: Path) -> None:
+def test_a_response_is_only_for_counts(tmp_path):
     path = tmp_path / "a.at2"
     path.write_text(WRITERS["at2"](SAMPLES, 0.01).text)
     with pytest.raises(InputError, match="'at2' holds accelerations, not counts"):

@@ -5,8 +5,6 @@ the text of a file with the layout of that agency's files; nothing in them is
 of a real record.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 

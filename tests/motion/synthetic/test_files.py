@@ -1,9 +1,6 @@
 """Files of synthetic motions: the same for the same seed, and read back as what they are."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +10,7 @@ from eventpound.motion.synthetic import synthetic_motion
 from eventpound.units import STANDARD_GRAVITY
 
 
-def test_same_seed_same_bytes() -> None:
+def test_same_seed_same_bytes():
     first, again = synthetic_motion(3, 2), synthetic_motion(3, 2)
     assert first.content == again.content
     assert first.name == "synthetic-3-0002.AT2"
@@ -21,7 +18,7 @@ def test_same_seed_same_bytes() -> None:
     assert synthetic_motion(4, 2).content != first.content
 
 
-def test_file_is_read_as_written_and_says_what_it_is(tmp_path: Path) -> None:
+def test_file_is_read_as_written_and_says_what_it_is(tmp_path):
     motion = synthetic_motion(1, 1)
     file = tmp_path / motion.name
     file.write_bytes(motion.content)
@@ -35,7 +32,7 @@ def test_file_is_read_as_written_and_says_what_it_is(tmp_path: Path) -> None:
     assert np.abs(data.acceleration - motion.acceleration).max() <= 0.5e-7 * largest * 1.01
 
 
-def test_ground_comes_to_rest() -> None:
+def test_ground_comes_to_rest():
     for number in (1, 2, 3):
         data = synthetic_motion(1, number).record
         record = Record(data.acceleration, data.time_step)
@@ -45,7 +42,7 @@ def test_ground_comes_to_rest() -> None:
         assert abs(float(record.velocity(np.array(record.end)))) < 1e-3 * speed
 
 
-def test_arias_intensity_is_the_one_drawn_on_average() -> None:
+def test_arias_intensity_is_the_one_drawn_on_average():
     """The ratio of a motion's own intensity to I_a, over 15 motions.
 
     It has the mean 1 less what the high-pass takes and the noise after the

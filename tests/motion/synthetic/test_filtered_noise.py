@@ -1,7 +1,5 @@
 """The filtered noise: its variance, its rate of zero crossings, and the ground at rest."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -22,7 +20,7 @@ def noise(count: int, seed: int) -> np.ndarray:
     return np.random.default_rng(seed).standard_normal(count)
 
 
-def test_process_is_the_sum_of_the_definition() -> None:
+def test_process_is_the_sum_of_the_definition():
     """The recursion against the sum over all impulses, formula by formula."""
     shape = Filter(20.0, -3.0, 1.0, 0.3)
     u = noise(200, 1)
@@ -38,7 +36,7 @@ def test_process_is_the_sum_of_the_definition() -> None:
         assert process[k] == pytest.approx(expected, rel=0.0, abs=8.0 * 200 * 2.3e-16)
 
 
-def test_variance_is_one_at_every_time() -> None:
+def test_variance_is_one_at_every_time():
     """Over m motions (m - 1) s^2 is chi-squared: its standard error is sqrt(2 / m)."""
     shape, runs = Filter(25.0, -1.0, 1.0, 0.25), 2000
     values = np.array([unit_process(shape, noise(60, seed), STEP) for seed in range(runs)])
@@ -48,7 +46,7 @@ def test_variance_is_one_at_every_time() -> None:
 
 
 @pytest.mark.parametrize(("hertz", "zeta"), [(2.0, 0.2), (5.0, 0.5)])
-def test_zero_crossings_follow_the_filter_frequency(hertz: float, zeta: float) -> None:
+def test_zero_crossings_follow_the_filter_frequency(hertz, zeta):
     """An oscillator under white noise crosses zero upward omega_f / (2 pi) times a second.
 
     That is the rate of the continuous process. Seen at steps of dt its sign changes
@@ -76,13 +74,13 @@ def test_zero_crossings_follow_the_filter_frequency(hertz: float, zeta: float) -
     assert np.mean(changes) / (2.0 * STEP) == pytest.approx(hertz, rel=0.12)
 
 
-def test_frequency_is_linear_in_time_and_bounded() -> None:
+def test_frequency_is_linear_in_time_and_bounded():
     shape = Filter(30.0, -2.0, 5.0, 0.2)
     assert shape.frequency(np.array([0.0, 5.0, 10.0])) == pytest.approx([40.0, 30.0, 20.0])
     assert float(shape.frequency(np.array(100.0))) == LEAST_FREQUENCY
 
 
-def test_a_step_dies_out_as_in_the_closed_form() -> None:
+def test_a_step_dies_out_as_in_the_closed_form():
     """z'' + 2 w z' + w^2 z = 1 from rest: z'' = (1 - w t) exp(-w t)."""
     t = STEP * np.arange(2000)
     # A ramp of one step stands for the jump that linear interpolation cannot have.

@@ -1,7 +1,5 @@
 """The modulating function has the intensity, duration and middle asked for, by quadrature."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -22,7 +20,7 @@ def intensity(modulation: Modulation, end: float) -> float:
 
 
 @pytest.mark.parametrize(("arias", "duration", "middle"), CASES)
-def test_intensity_duration_and_middle(arias: float, duration: float, middle: float) -> None:
+def test_intensity_duration_and_middle(arias, duration, middle):
     modulation = modulation_of(arias, duration, middle)
     start = middle - duration
     t_5 = modulation.time_of(0.05)
@@ -35,7 +33,7 @@ def test_intensity_duration_and_middle(arias: float, duration: float, middle: fl
     assert intensity(modulation, t_5 + duration) == pytest.approx(0.95 * arias, rel=1e-9)
 
 
-def test_begins_at_zero_and_has_one_peak() -> None:
+def test_begins_at_zero_and_has_one_peak():
     modulation = modulation_of(0.5, 12.0, 8.0)
     peak = (modulation.alpha_2 - 1.0) / modulation.alpha_3
     t = np.array([0.0, 0.999 * peak, peak, 1.001 * peak])
@@ -44,6 +42,6 @@ def test_begins_at_zero_and_has_one_peak() -> None:
     assert q[2] > max(q[1], q[3])
 
 
-def test_a_duration_too_long_for_its_middle_is_refused() -> None:
+def test_a_duration_too_long_for_its_middle_is_refused():
     with pytest.raises(InputError, match=r"D_5-95 = 40.0 s with t_mid = 8.0 s; accepted: a ratio"):
         modulation_of(1.0, 40.0, 8.0)

@@ -1,7 +1,5 @@
 """Parameters drawn for synthetic motions: distributions and regression as printed elsewhere."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -53,14 +51,14 @@ SHARES = (np.arange(2000) + 0.5) / 2000
 
 
 @pytest.fixture(scope="module")
-def quantiles() -> dict[str, np.ndarray]:
+def quantiles():
     nus = norm.ppf(SHARES)
     found = [parameters_of(np.full(6, nu)) for nu in nus]
     names = ("I_a", "D_5_95", "t_mid", "omega_mid", "omega_prime", "zeta_f")
     return {name: np.array([getattr(p, name) for p in found]) for name in names}
 
 
-def test_the_regression_is_that_of_an_independent_print() -> None:
+def test_the_regression_is_that_of_an_independent_print():
     """Ours has three decimals, it has four: each may be off by half a unit of its last."""
     ours = REGRESSION[1:, [0, 2, 1, 3, 4, 5, 6]]
     units = np.array([1.0, 7.0, 1.0, 25.0, 750.0, 1.0, 1.0])
@@ -68,7 +66,7 @@ def test_the_regression_is_that_of_an_independent_print() -> None:
     assert REGRESSION[0, 1:] == pytest.approx(PLATFORM_INTENSITY, abs=0.5e-3 + 0.5e-4)
 
 
-def test_constant_of_the_intensity_fits_the_other_five() -> None:
+def test_constant_of_the_intensity_fits_the_other_five():
     """The normal variables of the records behind a regression have a mean near zero.
 
     The five rows whose constants agree with the independent print give the mean F, M, R and V
@@ -86,7 +84,7 @@ def test_constant_of_the_intensity_fits_the_other_five() -> None:
 
 
 @pytest.mark.parametrize("name", FITTED)
-def test_moments(name: str, quantiles: dict[str, np.ndarray]) -> None:
+def test_moments(name, quantiles):
     mean, deviation, unit = FITTED[name]
     values = quantiles[name] / unit
     # The midpoint rule misses a little of the tails.
@@ -96,13 +94,13 @@ def test_moments(name: str, quantiles: dict[str, np.ndarray]) -> None:
     assert SAMPLE[name] == pytest.approx((mean, deviation), rel=0.08)
 
 
-def test_the_lognormal_intensity(quantiles: dict[str, np.ndarray]) -> None:
+def test_the_lognormal_intensity(quantiles):
     logarithms = np.log(quantiles["I_a"] / STANDARD_GRAVITY)
     assert np.mean(logarithms) == pytest.approx(-4.8255, abs=1e-9)
     assert np.std(logarithms) == pytest.approx(1.4318, rel=2e-3)
 
 
-def test_rate_of_frequency_has_its_density(quantiles: dict[str, np.ndarray]) -> None:
+def test_rate_of_frequency_has_its_density(quantiles):
     """The mean of the printed density, (area x mean of each side), is the published -0.089 Hz/s."""
     values = quantiles["omega_prime"] / (2.0 * math.pi)
     assert values.min() > -2.0
@@ -115,7 +113,7 @@ def test_rate_of_frequency_has_its_density(quantiles: dict[str, np.ndarray]) -> 
 @pytest.mark.parametrize("F", [0, 1])
 @pytest.mark.parametrize("R", [20.0, pytest.param(40.0, marks=pytest.mark.sweep)])
 @pytest.mark.parametrize("M", [6.5, 7.0, 7.5])
-def test_median_intensity_is_near_another_relation(M: float, R: float, F: int) -> None:
+def test_median_intensity_is_near_another_relation(M, R, F):
     """Travasarou, Bray and Abrahamson (2003, EESD 32, 1133-1155), stiff ground, a factor of 2.5.
 
     Their sigma is above a factor of 2.5; a slip of g or pi, or moments of the sample in the
@@ -137,7 +135,7 @@ def test_median_intensity_is_near_another_relation(M: float, R: float, F: int) -
     assert abs(float(np.mean(drawn)) - logarithm) < math.log(2.5)
 
 
-def test_draws_stay_in_their_ranges_and_are_reproducible() -> None:
+def test_draws_stay_in_their_ranges_and_are_reproducible():
     random, again = np.random.default_rng(5), np.random.default_rng(5)
     for _ in range(200):
         site = draw_site(random)
@@ -151,7 +149,7 @@ def test_draws_stay_in_their_ranges_and_are_reproducible() -> None:
         assert (site, parameters) == (draw_site(again), draw_parameters(site, again))
 
 
-def test_closer_is_stronger_and_larger_is_longer() -> None:
+def test_closer_is_stronger_and_larger_is_longer():
     def medians(site: Site) -> tuple[float, float]:
         random = np.random.default_rng(0)
         drawn = [draw_parameters(site, random) for _ in range(400)]

@@ -1,7 +1,5 @@
 """Small modules with kernels in folders of their own, and processes that import them."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Parts that another process compiles, and kernels that one makes while others wait."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import threading

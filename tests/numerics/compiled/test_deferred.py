@@ -1,7 +1,5 @@
 """Parts that are compiled when compiled code first calls them."""
 
-from __future__ import annotations
-
 import time
 from concurrent.futures import ThreadPoolExecutor
 

@@ -1,7 +1,5 @@
 """Entries and parts: one specialisation, nothing twice, others as ever."""
 
-from __future__ import annotations
-
 import pickle
 import signal
 import threading
