@@ -79,8 +79,6 @@ all masses; where a cycle makes it zero, rounding leaves EPS over that ratio.
 Masses of a ratio up to some 1e7 lie on the right side of both."""
 DEPENDENT = 1e-9
 """Part of its length below which what a row has beside the others is their rounding."""
-PIVOT = 0.1
-"""Part of the largest coefficient of an equation that one has at least for which it is solved."""
 TAKEN_OVER = 1e-3
 """Part of its bound by which friction that has just come to it is below it again where forces that
 are not unique are shared anew: far more than the error of a located force."""

@@ -40,17 +40,14 @@ from eventpound.contact.rest import (
 )
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import Clusters, form_clusters
-from eventpound.mechanics.contact_problem import Joints, delassus_matrix
-from eventpound.mechanics.followers import is_support
+from eventpound.mechanics.followers import is_support, rows_of
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers, put_numbers
-from eventpound.numerics.box import least_in_box
-from eventpound.numerics.box_by_matrix import unless_rounding
+from eventpound.numerics.box import BoxJoints, least_in_box, unless_rounding
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
-from eventpound.numerics.small_systems import dot
 from eventpound.tolerances import TAKEN_OVER
 
 
@@ -151,7 +148,6 @@ def _forces(members: Ints, touching: Touching, sliders: Ints, at: Instant) -> tu
     told by the way in which these are about to part.
     """
     own = at.gap.size - sliders.size
-    acceleration, noise = _accelerations(touching, at.compliance)
     low, high = np.zeros(members.size), np.full(members.size, np.inf)
     start = np.zeros(members.size)
     for i in range(members.size):
@@ -162,14 +158,15 @@ def _forces(members: Ints, touching: Touching, sliders: Ints, at: Instant) -> tu
             # What slips along its branch is pulled by that force.
             start[i] = low[i] * at.branch[link]
     ends = touching.left[members], touching.right[members]
-    joints = Joints(touching.left, touching.right, 1.0 / touching.mass, at.compliance)
-    G = delassus_matrix(joints, members if at.compliance.size > 0 else members[:0])
-    return least_in_box(ends, touching.mass, acceleration, noise, (low, high), start, G)
+    rows = rows_of(*ends, touching.mass.size, touching.weights)
+    acceleration, noise = _accelerations(touching, rows.shape[1])
+    mass = touching.mass[: noise.size]
+    return least_in_box(BoxJoints(rows, mass, acceleration, noise, low, high, start))
 
 
 @kernel
-def _accelerations(touching: Touching, compliance: Floats) -> tuple[Floats, Floats]:
-    """Accelerations of coordinates without contacts (m/s²), (i, N), and their rounding, (N,).
+def _accelerations(touching: Touching, bodies: int) -> tuple[Floats, Floats]:
+    """Accelerations of the bodies without contacts (m/s²), (i, bodies), and their rounding.
 
     Behind the first row stand the Taylor coefficients of those of supports, where not all vanish:
     they may be less than the rounding of a sum, and still tell who gives way.
@@ -182,20 +179,17 @@ def _accelerations(touching: Touching, compliance: Floats) -> tuple[Floats, Floa
     found = accelerations(y, system, ORDER if supports > 0 else 1, touching)
     rough = round_as_the_scene(system, touching.forcing)
     noise = noise_of(found, np.zeros(mass.size), rough, y, system, touching)
-    rows, count = np.zeros((1 + found.shape[0], mass.size)), 1
-    rows[0] = found[0]
+    rows, count = np.zeros((1 + found.shape[0], bodies)), 1
+    rows[0] = found[0, :bodies]
     for k in range(found.shape[0]):
         moves = False
         for b in range(supports):
             rows[count, b] = unless_rounding(found[k, b], noise[k, b])
             moves |= rows[count, b] != 0.0
-        for p in range(supports, compliance.shape[0]):
-            # Only points go along with a support where nothing rests.
-            rows[count, p] = dot(compliance[p, :supports], rows[count, :supports])
         if k == 0:
             rows[0, :supports] = rows[count, :supports]
         count += moves
-    return rows[:count], noise[0]
+    return rows[:count], noise[0, :bodies]
 
 
 @kernel

@@ -4,8 +4,7 @@ The coordinates of a scene are its bodies and its points (`eventpound.scene.poin
 mass: ``u_P = Σ w_b u_b``. A contact joins two coordinates, whatever they are. Those that rest make
 clusters of coordinates (`eventpound.mechanics.clusters`), each with one coordinate of its own; and
 then every point is an equation between these. So ``q = N y + q̂``, with N by elimination on the
-equations, as it is for pairs, where N has zeros and ones alone. In the place of a coordinate that
-has a large mass a light one is eliminated, as long as its coefficient is not small.
+equations (`eventpound.numerics.elimination`), as it is for pairs, where N has zeros and ones alone.
 
 Of N everybody wants the *compliance* ``A = N (Nᵀ M N)⁻¹ Nᵀ`` alone: clusters accelerate by
 ``q'' = A f - r a_g``, with ``r = A M 1``, which is 1 but where points lean on the ground; the
@@ -27,9 +26,10 @@ import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
+from eventpound.numerics.elimination import pivot_of, solve_for
 from eventpound.numerics.lcp import solve_dense
 from eventpound.numerics.small_systems import dot, solve_definite, solve_transposed
-from eventpound.tolerances import DEPENDENT, PIVOT, TIE_ROUNDING
+from eventpound.tolerances import DEPENDENT, TIE_ROUNDING
 
 
 class Rests(NamedTuple):
@@ -106,8 +106,11 @@ def felt_mass(c: int, mass: Floats, compliance: Floats) -> float:
 @deferred_kernel
 def examine_rests(rests: Rests, mass: Floats, weights: Floats) -> None:
     """Fill in which contacts carry, are locked and have unique forces, and their forces."""
-    rows = _rows(rests, mass, weights)
-    R, first = rows.shape[0], weights.shape[1] - weights.shape[0]
+    rows = rows_of(rests.left, rests.right, mass.size, weights)
+    R, first = rows.shape
+    for b in range(first):
+        # What moves as it is told to no force moves.
+        rows[:, b] *= not is_support(b, mass)
     basis, parts, order = np.zeros(rows.shape), np.zeros((R, R)), np.zeros(R, np.int64)
     count = 0
     for turn in (True, False):
@@ -150,19 +153,17 @@ def examine_rests(rests: Rests, mass: Floats, weights: Floats) -> None:
 
 
 @kernel
-def _rows(rests: Rests, mass: Floats, weights: Floats) -> Floats:
-    """Directions of the gaps in the bodies that forces move, shape (R, bodies)."""
-    first = weights.shape[1] - weights.shape[0]
-    rows = np.zeros((rests.left.size, first))
-    for i in range(rests.left.size):
-        for end, sign in ((rests.left[i], -1.0), (rests.right[i], 1.0)):
+def rows_of(left: Ints, right: Ints, coordinates: int, weights: Floats) -> Floats:
+    """Directions in the bodies of what is between these coordinates, shape (R, bodies)."""
+    first = coordinates - weights.shape[0]
+    rows = np.zeros((left.size, first))
+    for i in range(left.size):
+        for end, sign in ((left[i], -1.0), (right[i], 1.0)):
             if end >= first:
                 for b in range(first):
                     rows[i, b] += sign * weights[end - first, b]
             elif end >= 0:
                 rows[i, end] += sign
-    for b in range(first):
-        rows[:, b] *= not is_support(b, mass)
     return rows
 
 
@@ -278,32 +279,13 @@ def _eliminate(ties: Floats, mass: Floats) -> Ints:
 
     Groups without mass first, which must not be left; none that is given.
     """
-    groups = mass.size
-    row_of, done = np.full(groups, -1, np.int64), np.zeros(ties.shape[0], np.bool_)
+    row_of, done = np.full(mass.size, -1, np.int64), np.zeros(ties.shape[0], np.bool_)
     for turn in range(2):
         for e in range(done.size):
-            largest, best = 0.0, -1
-            for c in range(groups):
-                largest = max(largest, 0.0 if is_support(c, mass) else abs(ties[e, c]))
-            for c in range(groups):
-                able = abs(ties[e, c]) > PIVOT * largest and not is_support(c, mass)
-                if able and (best < 0 or mass[c] < mass[best]):
-                    best = c
-            if done[e] or largest <= DEPENDENT or (turn == 0 and mass[best] > 0.0):
-                continue
-            row_of[best], done[e] = e, True
-            ties[e] /= ties[e, best]
-            for f in range(done.size):
-                factor = ties[f, best]
-                if f != e and factor != 0.0:
-                    for c in range(groups + 1):
-                        change = factor * ties[e, c]
-                        size = abs(ties[f, c]) + abs(change)
-                        ties[f, c] -= change
-                        # What has cancelled is nothing: its rounding must not become a pivot.
-                        if c < groups and abs(ties[f, c]) <= TIE_ROUNDING * size:
-                            ties[f, c] = 0.0
-                    ties[f, best] = 0.0
+            best = -1 if done[e] else pivot_of(ties[e], mass)
+            if best >= 0 and (turn == 1 or mass[best] == 0.0):
+                row_of[best], done[e] = e, True
+                solve_for(ties, e, best, mass.size)
     return row_of
 
 

@@ -1,8 +1,8 @@
 """Least forces in bounds, beside every corner, edge and face tried, and Gauss's function in full.
 
 Problems are of joints between bodies, whose masses reach a ratio of 1e9, and where forces are not
-unique: joints between the same two, along cycles, to supports, with bounds that are equal, infinite
-or of a few digits, so that some are exactly reached.
+unique: joints between the same two, along cycles, to supports, at points, with bounds that are
+equal, infinite or of a few digits, so that some are exactly reached.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, lsq_linear
 
-from eventpound.numerics.box import least_in_box
+from eventpound.numerics.box import BoxJoints, least_in_box
 
 SMALL = 1e-4
+NONE = Fraction(0)
 ROUNDING = 1e-13
 """Part of its terms by which a rate, and of its own by which a value, may miss."""
 
 
 class _Box(NamedTuple):
-    """k joints between n bodies, ends (2, k), W (n, k), a (m, n), low, high, start (k,)."""
+    """k joints between n bodies, W (n, k), a (m, n), low, high, start (k,)."""
 
-    ends: np.ndarray
     W: np.ndarray
     mass: np.ndarray
     a: np.ndarray
@@ -33,12 +33,12 @@ class _Box(NamedTuple):
     high: np.ndarray
     start: np.ndarray
 
-    def least(self, *, by_matrix: bool = False) -> tuple[np.ndarray, bool]:
+    def least(self) -> tuple[np.ndarray, bool]:
         """What is tested."""
-        G = self.W.T / self.mass @ self.W if by_matrix else np.zeros((0, 0))
-        ends, none = (self.ends[0], self.ends[1]), np.zeros(self.mass.size)
-        box = self.low, self.high
-        x, found = least_in_box(ends, self.mass, self.a, none, box, self.start, G)
+        none = np.zeros(self.mass.size)
+        x, found = least_in_box(
+            BoxJoints(self.W.T.copy(), self.mass, self.a, none, self.low, self.high, self.start)
+        )
         return x, bool(found)
 
 
@@ -49,7 +49,7 @@ def _box(mass: list[float], ends: np.ndarray, a: np.ndarray, bound: np.ndarray) 
         W[[left] if left >= 0 else [], i] -= 1.0
         W[[right] if right >= 0 else [], i] += 1.0
     low = np.where(np.isinf(bound), 0.0, -bound)
-    return _Box(ends, W, np.array(mass), np.atleast_2d(a), low, bound, low.copy())
+    return _Box(W, np.array(mass), np.atleast_2d(a), low, bound, low.copy())
 
 
 def _some(rng: np.random.Generator, *, digits: bool) -> _Box:
@@ -67,6 +67,19 @@ def _some(rng: np.random.Generator, *, digits: bool) -> _Box:
     bound[rng.random(k) < rng.choice([0.0, 0.3, 0.8])] = np.inf
     a = rng.integers(-1, 2, n) if rng.random() < 0.5 else rng.normal(size=n)
     return _box(list(mass), ends.T.copy(), a * 10.0 ** rng.uniform(-wide, wide), bound)
+
+
+def _at_points(rng: np.random.Generator, box: _Box) -> _Box:
+    """Half of the joints with ends at points between two bodies each."""
+    W, n = box.W.copy(), box.mass.size
+    for i in np.flatnonzero(rng.random(W.shape[1]) < (0.5 if n > 1 else 0.0)):
+        for sign in (-1.0, 1.0):
+            own, part = W[:, i] == sign, rng.choice([0.5, 0.25, 1.0 / 3.0, 1.0 / 6.0, 0.9])
+            W[own, i] = 0.0
+            W[rng.choice(n, 2, replace=False), i] += sign * np.array([part, 1.0 - part])
+    # What is between supports alone no force moves.
+    still = (W[np.isfinite(box.mass)] == 0.0).all(axis=0)
+    return box._replace(W=np.where(still, box.W, W))
 
 
 def _has_none(box: _Box) -> bool:
@@ -87,17 +100,17 @@ def _could_fall(box: _Box, x: np.ndarray) -> tuple[float, float]:
 
     A convex function is above its tangent, whose least value in the box is at a corner.
     """
-    a, terms = [Fraction(0)], [0.0]
-    for b in range(box.mass.size):
-        pulls = [(int(box.W[b, i]), i) for i in range(x.size) if box.W[b, i]]
-        move = sum((w * (Fraction(x[i]) - Fraction(box.start[i])) for w, i in pulls), Fraction(0))
+    W, a, terms = [[Fraction(w) for w in row] for row in box.W], [], []
+    for b, row in enumerate(W):
+        move = sum((w * (Fraction(x[i]) - Fraction(box.start[i])) for i, w in enumerate(row)), NONE)
+        sizes = float(np.abs(box.W[b]) @ (np.abs(x) + np.abs(box.start)))
         free = np.isfinite(box.mass[b])
-        sizes = sum(abs(x[i]) + abs(box.start[i]) for _, i in pulls)
         a.append(Fraction(box.a[0, b]) + (move / Fraction(box.mass[b]) if free else 0))
         terms.append(abs(box.a[0, b]) + (sizes / box.mass[b] if free else 0.0))
-    fall, allowed = Fraction(0), 0.0
-    for i, (left, right) in enumerate(box.ends.T + 1):
-        w, level = a[right] - a[left], ROUNDING * (terms[right] + terms[left])
+    fall, allowed = NONE, 0.0
+    for i in range(x.size):
+        w = sum((row[i] * part for row, part in zip(W, a, strict=True)), NONE)
+        level = ROUNDING * float(np.abs(box.W[:, i]) @ terms)
         corner = box.low[i] if w > 0 else box.high[i]
         if np.isinf(corner):
             assert abs(w) <= level
@@ -107,17 +120,15 @@ def _could_fall(box: _Box, x: np.ndarray) -> tuple[float, float]:
     return float(fall), allowed
 
 
-@pytest.mark.parametrize("by_matrix", [False, True])
+@pytest.mark.parametrize("points", [False, True])
 @pytest.mark.parametrize("digits", [False, True])
-def test_no_other_forces_are_less(*, digits: bool, by_matrix: bool) -> None:
+def test_no_other_forces_are_less(*, digits: bool, points: bool) -> None:
     rng = np.random.default_rng(9)
     seen = none = 0
     for _ in range(400):
         box = _some(rng, digits=digits)
-        if by_matrix and np.ptp(np.log10(box.mass[np.isfinite(box.mass)])) > 3.0:
-            # By a matrix digits are lost to the ratio of the masses.
-            continue
-        x, found = box.least(by_matrix=by_matrix)
+        box = _at_points(rng, box) if points else box
+        x, found = box.least()
         assert ((x >= box.low) & (x <= box.high)).all()
         if not found:
             none += 1
@@ -126,7 +137,8 @@ def test_no_other_forces_are_less(*, digits: bool, by_matrix: bool) -> None:
         fall, allowed = _could_fall(box, x)
         assert fall <= allowed
         free = np.isfinite(box.mass)
-        if (box.low < box.high).all() and not box.a[0, ~free].any():
+        # At points bvls may end elsewhere; that there is nothing less is shown above.
+        if (box.low < box.high).all() and not (points or box.a[0, ~free].any()):
             seen += 1
             A = box.W[free] / np.sqrt(box.mass[free])[:, None]
             b = A @ box.start - np.sqrt(box.mass[free]) * box.a[0, free]
@@ -135,7 +147,7 @@ def test_no_other_forces_are_less(*, digits: bool, by_matrix: bool) -> None:
             size = np.linalg.norm(np.abs(A) @ np.abs(np.column_stack((x, other, box.start)))) + 1.0
             assert np.linalg.norm(A @ (x - other)) <= 1e-7 * size
             assert np.linalg.norm(A @ x - b) <= np.linalg.norm(A @ other - b) + 1e-12 * size
-    assert seen > 50
+    assert points or seen > 50
     assert none > 3
 
 
