@@ -48,8 +48,11 @@ def _locked(members: Ints, every: Floats, model: Model) -> Bools:
     """Which of these contacts at rest cannot open."""
     if model.weights.size > 0:
         return in_python(held_closed)(every[members])
-    # All barriers are one node, which stands behind the bodies.
-    tail, head = (side[members] % (model.bodies + 1) for side in (model.left, model.right))
+    # All barriers, and supports, are one node, which stands behind the bodies.
+    tail, head = (
+        np.where(side < model.supports, model.bodies, side)
+        for side in (model.left[members], model.right[members])
+    )
     return in_python(on_directed_cycles)(tail, head, model.bodies + 1)
 
 

@@ -8,20 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
-from itertools import permutations, product
 
 import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.supported import lowered, moving_supports, support_motion
 from eventpound.numerics.arrays import Floats
-from eventpound.scene.contact import BARRIER, Contact, weights_of
+from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Energy, History, Recording, SupportHistory, Task
 from eventpound.tolerances import OF_ROWS, OF_SUPPORT, SOON
 
-LINES = 4
+LINES = 5
 """Lines of the history before that instant at which contacts are looked at."""
 
 
@@ -153,54 +152,74 @@ def _closed_in(recording: Recording, task: Task) -> ComputationError | None:
     """
     scene, history = task.scene, recording.history
     supports = moving_supports(scene)
-    if len(supports) == 0 or not scene.contacts or history.t.size == 0:
+    if len(supports) == 0 or not scene.contacts:
         return None
-    said = np.column_stack([support_motion(s, scene.motion, history.t)[1] for s in supports])
-    apart = np.abs(history.v[:, : len(supports)] - said).max(axis=1)
-    largest = max(np.abs(history.v).max(), np.finfo(float).tiny)
-    where = np.flatnonzero(~(apart <= OF_SUPPORT * largest))
+    # The last state, too: a run that fails at its start has no history.
+    t, u, v = (
+        np.append(history.t, recording.t),
+        *(
+            np.vstack((rows.reshape(-1, last.size), last))
+            for rows, last in ((history.u, recording.u), (history.v, recording.v))
+        ),
+    )
+    said = np.column_stack([support_motion(s, scene.motion, t)[1] for s in supports])
+    apart = np.abs(v[:, : len(supports)] - said).max(axis=1)
+    where = np.flatnonzero(~(apart <= OF_SUPPORT * max(np.abs(v).max(), np.finfo(float).tiny)))
     if where.size == 0 and recording.success:
         return None
-    first = int(where[0]) if where.size else history.t.size - 1
-    t = float(history.t[first]) if where.size else recording.t
+    first = int(where[0]) if where.size else t.size - 1
     # What begins to move at an instant has no speed there yet.
-    soon = t + np.array([0.0, SOON * (task.end - task.start)])
+    soon = t[first] + np.array([0.0, SOON * (task.end - task.start)])
     speed = {s.name: support_motion(s, scene.motion, soon)[1] for s in scene.supports}
-    speed[BARRIER] = np.zeros(soon.size)
     fastest = max(np.abs(v).max() for v in (said[: first + 1], *speed.values()))
-    shut = _shut(recording, scene, slice(max(0, first - LINES), first + 1))
-    for left, right in permutations(speed, 2):
-        row = _row(left, right, shut, speed)
-        approach = (speed[left] - speed[right]).max() > OF_ROWS * fastest
-        if row and (approach or recording.success):
-            return ComputationError(
-                f"supports close in on what contacts hold between them ({', '.join(row)}) and "
-                "leave it no motion; give the contacts wider gaps, or put springs in their place",
-                t,
-                own_part(recording, scene),
-            )
-    return None
+    shut = _shut(u[max(0, first - LINES) : first + 1], scene, np.abs(u).max())
+    held = _squeezed(shut, {name: v / (fastest or 1.0) for name, v in speed.items()})
+    if not held and recording.success:
+        held = [c.name for c in shut]
+    if not held:
+        return None
+    return ComputationError(
+        f"supports close in on what contacts hold between them ({', '.join(held)}) and "
+        "leave it no motion; give the contacts wider gaps, or put springs in their place",
+        float(t[first]),
+        own_part(recording, scene),
+    )
 
 
-def _shut(recording: Recording, scene: Scene, rows: slice) -> list[Contact]:
-    """Contacts that are closed at one of these lines of the history."""
-    gap = np.abs(recording.history.gap[rows]).min(axis=0)
-    near = OF_SUPPORT * max(np.abs(recording.history.u).max(), np.finfo(float).tiny)
-    return [c for c, g in zip(scene.contacts, gap, strict=True) if g <= near]
+def _shut(u: Floats, scene: Scene, largest: float) -> list[Contact]:
+    """Contacts that are closed at one of these displacements (n, N), the largest of all known."""
+    names = [end.name for ends in (moving_supports(scene), scene.bodies) for end in ends]
+    moving = dict(zip(names, u.T, strict=True))
+    near = OF_SUPPORT * max(largest, np.finfo(float).tiny)
+    return [
+        c
+        for c in scene.contacts
+        if np.abs(c.gap + sum(w * moving[name] for name, w in c.direction if name in moving)).min()
+        <= near
+    ]
 
 
-def _row(left: str, right: str, shut: list[Contact], fixed: Collection[str]) -> list[str]:
-    """Contacts by which bodies are in a row from a support, or the barrier, to one on its right."""
-    ends = [tuple({name for name, _ in weights_of(end)} for end in (c.left, c.right)) for c in shut]
-    pairs = {pair for of_left, of_right in ends for pair in product(of_left, of_right)}
-    onward = _reached(left, pairs, {GROUND, *fixed})
-    back = _reached(right, {(b, a) for a, b in pairs}, {GROUND, *fixed})
-    return [c.name for c, (a, b) in zip(shut, ends, strict=True) if a & onward and b & back]
+def _squeezed(shut: list[Contact], speed: Mapping[str, Floats]) -> list[str]:
+    """Contacts that supports close in on; none where bodies have a way out.
 
+    There is none just where some pressures x >= 0, in balance on all bodies, are worked against:
+    ``Σ x_j W_j = 0`` on these, and of the speeds that are given, parts of the largest at some
+    instants, ``Σ x_j W_j v < 0`` (Farkas).
+    """
+    from scipy.optimize import nnls
 
-def _reached(start: str, pairs: Collection[tuple[str, str]], fixed: Collection[str]) -> set[str]:
-    """What pairs lead to from one end, over bodies alone, and that end."""
-    reached = {start}
-    for _ in pairs:
-        reached |= {b for a, b in pairs if a in reached and b not in fixed}
-    return reached
+    bodies = sorted({name for c in shut for name in c.ends} - {BARRIER, GROUND, *speed})
+    rows = np.zeros((len(bodies) + 1, len(shut)))
+    for instant in range(2 if shut else 0):
+        rows[:] = 0.0
+        for j, contact in enumerate(shut):
+            for name, weight in contact.direction:
+                if name in bodies:
+                    rows[bodies.index(name), j] += weight
+                elif name in speed:
+                    rows[-1, j] += weight * speed[name][instant]
+        x, missed = nnls(rows, np.append(np.zeros(len(bodies)), -1.0))
+        # What cannot be worked against is missed whole; what is not found has no digits.
+        if missed < 0.5 and x.max() < 1.0 / OF_ROWS:
+            return [c.name for c, part in zip(shut, x / x.max(), strict=True) if part > OF_ROWS]
+    return []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +13,9 @@ from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.followers import held_closed
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.pressures import press_locked, smallest_pressures
-from eventpound.scene import BARRIER, Body, Contact, Point, Scene
+from eventpound.mechanics.supported import lowered
+from eventpound.motion import NoMotion, Sine
+from eventpound.scene import BARRIER, Body, Contact, Point, Scene, Support
 from tests.numerics.problems import graph
 
 
@@ -91,3 +94,14 @@ def test_what_is_not_locked_keeps_its_forces(at_point: bool) -> None:
     expected = [[0.0, 3.0, 7.0, 0.0, 0.0], [0.0, 2.0, 0.0, 0.0, 0.0]]
     np.testing.assert_allclose(force, expected, atol=1e-15)
     assert (contact_rows(model)[0] == [1.0, 0.0, 0.0, 0.0]).all()
+
+
+def test_what_two_supports_lock_is_pressed_as_between_barriers() -> None:
+    row = ("pier", "a", "b", "wall")
+    contacts = tuple(Contact(x + y, x, y, 0.0, 0.5) for x, y in pairwise(row))
+    scene = Scene((Body("a", 1.0), Body("b", 2.0)), contacts=contacts, motion=Sine(1.0, 1.0))
+    still = tuple(Support(name, motion=NoMotion()) for name in ("pier", "wall"))
+    model = assemble(lowered(replace(scene, supports=still), 0.0))
+    force = np.array([[-3.0, 1.0, 2.0]])
+    press_locked(np.zeros((1, 3)), force, np.zeros(3, bool), model)
+    np.testing.assert_allclose(force, [[0.0, 4.0, 5.0]], atol=1e-15)

@@ -658,7 +658,7 @@ def test_what_supports_squeeze_without_a_way_out_is_refused_by_name(solver: str)
         motion=NoMotion(),
         supports=(Support("pier", motion=Sine(1.0, 1.0, reverse=True)),),
     )
-    with pytest.raises(ComputationError, match="could not be found: 'joint', 'wall', 'bearing'; "):
+    with pytest.raises(ComputationError, match=r"supports close in .*joint, wall"):
         simulate(scene, solver, duration=1.0)
 
 

@@ -28,6 +28,7 @@ from eventpound.scene import (
     Dashpot,
     Force,
     Linear,
+    Point,
     Scene,
     Spring,
     Support,
@@ -597,6 +598,28 @@ def test_supports_that_close_in() -> None:
     for solver in ("cvode", "fast"):
         with pytest.raises(ComputationError, match=r"at t = .*close in.*left, right.*no\s+motion"):
             run(scene, 2.0, solver, 1e-9)
+
+
+@pytest.mark.parametrize("way", ["squeezed", "free", "apart"])
+def test_supports_close_in_on_levers(way: str) -> None:
+    """A point half on the pier, half on a body that the ground holds, presses another at a wall."""
+    contacts = (
+        Contact("lever", Point({"pier": 0.5, "held": 0.5}), "a", 0.0, 0.0),
+        Contact("wall", "a", BARRIER, 0.0, 0.0),
+        Contact("hold", BARRIER, "held", 0.0 if way == "squeezed" else 9.0, 0.0),
+        Contact("beside", "held", "b", 0.0, 0.0),
+    )
+    scene = Scene(
+        tuple(Body(name, 1.0) for name in ("a", "held", "b")),
+        contacts=contacts,
+        motion=NoMotion(),
+        supports=(Support("pier", motion=Sine(1.0, 1.0, reverse=way == "apart")),),
+    )
+    if way != "squeezed":
+        assert response_of(scene, "fast", 1e-6, duration=0.2).recording.success
+        return
+    with pytest.raises(ComputationError, match=r"close in .*\(lever, wall, hold\)"):
+        response_of(scene, "fast", 1e-6, duration=0.2)
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
