@@ -278,14 +278,14 @@ def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
     laws = ", ".join(f"{c.name!r} ({c.law.kind})" for c in scene.contacts if c.law is not None)
     unknown = unknown_springs(solver, scene).items()
     springs = ", ".join(f"{spring!r} ({law})" for spring, law in unknown)
-    points = ", ".join(repr(c.name) for c in scene.contacts if c.at_point)
+    points = ", ".join(scene.at_points)
     kinds = (("supports", scene.supports), ("forces", scene.forces))
     loads = " and ".join(word for word, given in kinds if given)
     name = solver.name
     problems = {
         knows_laws: f"{name} does not know the laws of contacts {laws}",
         knows_springs: f"{name} does not know the laws of springs {springs}",
-        takes_points: f"{name} does not take contacts at a point between bodies ({points})",
+        takes_points: f"{name} does not take ends at a point between bodies ({points})",
         takes_loads: f"name: the solver {name!r} cannot take {loads}",
         lists_springs: f"{name} does not list events of springs",
     }

@@ -147,7 +147,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
 SHARED_AT_POINTS = {
     f"{_MECHANICS}.followers": "what follows from what at points, forces of contacts there",
 }
-"""What routes of a scene with contacts at points between bodies share besides."""
+"""What routes of a scene with ends at points between bodies share besides."""
 SHARED_WITH_LAWS = {
     f"{_MECHANICS}.contact_laws": "contact laws and their constants",
     f"{_MECHANICS}.contact_elements": "contact laws as links of the scene",
@@ -215,7 +215,7 @@ def shared_code(routes: tuple[Route, ...], scene: Scene) -> dict[str, str]:
     shared = {module: what for module, what, formulations in SHARED if len(formulations & used) > 1}
     if used <= set(BY_METHOD.values()):
         shared |= SHARED_BY_METHODS
-    if any(contact.at_point for contact in scene.contacts):
+    if scene.at_points:
         shared |= SHARED_AT_POINTS
     if any(contact.law is not None for contact in scene.contacts):
         shared |= SHARED_WITH_LAWS

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 
+from eventpound.case.elements import OF_LINK, ends_of
 from eventpound.case.frequency import agree, frequency_or_period
 from eventpound.case.spring_stiffness import held_mass
 from eventpound.case.table import Table
@@ -17,6 +18,7 @@ from eventpound.errors import InputError
 from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.damping import ratio_coefficient
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.ends import End
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import Spring
 from eventpound.units import Dimension, quantity
@@ -51,7 +53,7 @@ def read_dashpot(
     Dashpot
         Its coefficient is NaN where it could not be read.
     """
-    between = table.pair("between", 'two bodies, or a body and "ground"')
+    between = ends_of(table, OF_LINK)
     coefficient = table.optional_quantity("coefficient", Dimension.DAMPING)
     if table.has("ratio"):
         mass = held_mass(ends_on_ground(between, supports), masses)
@@ -83,7 +85,7 @@ def given_ratios(tables: Iterable[Table]) -> list[tuple[str, float]]:
 
 
 def _from_ratio(
-    table: Table, between: tuple[str, str], mass: float | None, springs: Iterable[Spring]
+    table: Table, between: tuple[End, End], mass: float | None, springs: Iterable[Spring]
 ) -> float:
     """Coefficient for the ratio of a table (N s/m); NaN with a problem noted where undefined.
 
@@ -108,10 +110,10 @@ def _from_ratio(
 
 
 def _referred_stiffness(
-    table: Table, refers_to: object, between: tuple[str, str], springs: Iterable[Spring]
+    table: Table, refers_to: object, between: tuple[End, End], springs: Iterable[Spring]
 ) -> float:
     """Stiffness between two ends (N/m); without `refers_to`, where there is only one."""
-    parallel = [spring for spring in springs if set(spring.between) == set(between)]
+    parallel = [spring for spring in springs if set(spring.sides) == set(between)]
     if not parallel:
         table.reject("ratio", "coefficient; no spring has the same ends, refer to a frequency")
         return math.nan

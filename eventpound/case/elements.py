@@ -8,17 +8,18 @@ from collections.abc import Sequence
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.scene.body import Body
-from eventpound.scene.contact import Contact, End
+from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw
+from eventpound.scene.ends import End, label_of
 from eventpound.scene.point import Point
 from eventpound.scene.seat import Seat
 from eventpound.units import Dimension
 
-_ENDS = (
-    'the left and the right body; "barrier" may be one of them, or a point between bodies, '
-    "{ B2 = 0.4, B3 = 0.6 }"
-)
+_POINT = "a point between bodies, { B2 = 0.4, B3 = 0.6 }"
+_OF_CONTACT = f'the left and the right body; "barrier" may be one of them, or {_POINT}'
 """What a contact is between."""
+OF_LINK = f'two bodies, or a body and "ground"; or {_POINT}'
+"""What a spring or dashpot is between."""
 _LAW_KEYS = ("stiffness", "damping", "tension")
 """Keys of a contact with a law."""
 
@@ -41,8 +42,8 @@ def read_body(table: Table) -> Body:
 
 def read_contacts(tables: Sequence[Table]) -> tuple[Contact, ...]:
     """Contacts from the ``[[contact]]`` tables, those without a name named after their bodies."""
-    ends = [_read_ends(table) for table in tables]
-    names = read_names(tables, [(_label(left), _label(right)) for left, right in ends])
+    ends = [ends_of(table, _OF_CONTACT) for table in tables]
+    names = read_names(tables, ends)
     contacts = []
     for table, (left, right), name in zip(tables, ends, names, strict=True):
         gap = table.quantity("gap", Dimension.LENGTH)
@@ -61,11 +62,11 @@ def read_seats(tables: Sequence[Table]) -> tuple[Seat, ...]:
     return tuple(map(Seat, names, ends))
 
 
-def _read_ends(table: Table) -> tuple[End, End]:
-    """Left and right end of a contact; empty names where they are missing or wrong."""
+def ends_of(table: Table, accepted: str) -> tuple[End, End]:
+    """Both ends of what is between them; empty names where they are missing or wrong."""
     given = table.data["between"] if table.has("between") else None
     if not (isinstance(given, list) and any(isinstance(end, dict) for end in given)):
-        return table.pair("between", _ENDS)
+        return table.pair("between", accepted)
     ends: list[End] = []
     for end in given:
         try:
@@ -74,13 +75,9 @@ def _read_ends(table: Table) -> tuple[End, End]:
             table.report("between", str(error))
             return "", ""
     if len(ends) != 2 or not all(isinstance(end, str | dict) for end in given):
-        table.reject("between", _ENDS)
+        table.reject("between", accepted)
         return "", ""
     return ends[0], ends[1]
-
-
-def _label(end: End) -> str:
-    return end.label if isinstance(end, Point) else end
 
 
 def _read_law(table: Table) -> tuple[float | None, ContactLaw | None]:
@@ -106,14 +103,14 @@ def _read_law(table: Table) -> tuple[float | None, ContactLaw | None]:
     return restitution, ContactLaw(word, stiffness, damping, tension)
 
 
-def read_names(tables: Sequence[Table], ends: Sequence[tuple[str, str]]) -> list[str]:
+def read_names(tables: Sequence[Table], ends: Sequence[tuple[End, End]]) -> list[str]:
     """Names of springs or contacts.
 
     Parameters
     ----------
     tables : sequence of Table
         May have the key ``name``.
-    ends : sequence of tuple of str
+    ends : sequence of tuple
         What each of them is between.
 
     Returns
@@ -127,7 +124,7 @@ def read_names(tables: Sequence[Table], ends: Sequence[tuple[str, str]]) -> list
     names = []
     for name, (first, second) in zip(given, ends, strict=True):
         if name is None:
-            stem = f"{first}-{second}"
+            stem = f"{label_of(first)}-{label_of(second)}"
             number = 2
             name = stem
             while name in taken:

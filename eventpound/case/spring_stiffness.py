@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from eventpound.case.frequency import agree, optional_omega, optional_period
 from eventpound.case.table import Table
 from eventpound.case.written_out import weight_share
+from eventpound.scene.ends import End
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import GROUND, Spring
 from eventpound.units import STANDARD_GRAVITY, Dimension
@@ -38,7 +39,7 @@ class Stiffnesses:
         Masses of the bodies (kg).
     """
 
-    def __init__(self, table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> None:
+    def __init__(self, table: Table, between: tuple[End, End], masses: Mapping[str, float]) -> None:
         self._table = table
         self._mass = _swinging(table, between, masses)
         self._used = False
@@ -137,17 +138,18 @@ def masses_carried(
     return found
 
 
-def _swinging(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> float | None:
+def _swinging(table: Table, between: tuple[End, End], masses: Mapping[str, float]) -> float | None:
     """The mass that a frequency or period is one of (kg); None where there is none."""
     named = _named_mass(table, masses)
     return held_mass(between, masses) if named is None else named
 
 
-def held_mass(between: tuple[str, str], masses: Mapping[str, float]) -> float | None:
-    """Mass (kg) of the one body that something joins to the ground, None between two bodies."""
+def held_mass(between: tuple[End, End], masses: Mapping[str, float]) -> float | None:
+    """Mass (kg) of the one body that something joins to the ground, None between others."""
     if GROUND not in between:
         return None
-    return masses.get(between[1] if between[0] == GROUND else between[0], math.nan)
+    end = between[1] if between[0] == GROUND else between[0]
+    return masses.get(end, math.nan) if isinstance(end, str) else None
 
 
 def _named_mass(table: Table, masses: Mapping[str, float]) -> float | None:

@@ -9,11 +9,12 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 
-from eventpound.case.elements import read_names
+from eventpound.case.elements import OF_LINK, ends_of, read_names
 from eventpound.case.spring_stiffness import Stiffnesses
 from eventpound.case.table import Table, read_numbers
 from eventpound.errors import InputError
 from eventpound.scene.bouc_wen_parameters import OF_LAW, Parameter, bouc_wen_parameters
+from eventpound.scene.ends import End
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import (
     Backfill,
@@ -100,7 +101,7 @@ def read_springs(
     tuple of Spring
         One a table; those without a name are named after their ends.
     """
-    ends = [table.pair("between", 'two bodies, or a body and "ground"') for table in tables]
+    ends = [ends_of(table, OF_LINK) for table in tables]
     names = read_names(tables, ends)
     return tuple(
         _read_spring(table, name, between, masses, supports)
@@ -111,7 +112,7 @@ def read_springs(
 def _read_spring(
     table: Table,
     name: str,
-    between: tuple[str, str],
+    between: tuple[End, End],
     masses: Mapping[str, float],
     supports: Sequence[str],
 ) -> Spring:

@@ -9,7 +9,7 @@ from typing import Any
 
 from eventpound.case.run_options import DEFAULTS, RunOptions
 from eventpound.case.solver_options import SolverOptions
-from eventpound.scene.contact import Contact, written
+from eventpound.scene.contact import Contact
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import law_keys, storey_keys
 
@@ -60,7 +60,7 @@ def understood_case(
         ],
         "spring": [
             {
-                "between": list(spring.between),
+                "between": spring.written,
                 "name": spring.name,
                 **storey_keys(spring),
                 **law_keys(spring.law),
@@ -68,12 +68,12 @@ def understood_case(
             for spring in scene.springs
         ],
         "dashpot": [
-            {"between": list(dashpot.between), "coefficient": dashpot.coefficient}
+            {"between": dashpot.written, "coefficient": dashpot.coefficient}
             for dashpot in scene.dashpots
         ],
         "contact": [
             {
-                "between": [written(contact.left), written(contact.right)],
+                "between": contact.written,
                 "name": contact.name,
                 "gap": contact.gap,
                 **contact_law_keys(contact),

@@ -224,12 +224,15 @@ def _tables(parts: Frame) -> dict[str, list[object]]:
     return {
         "body": [{"name": body.name, "mass": body.mass} for body in parts.bodies],
         "spring": [
-            {"between": list(s.between), "name": s.name, **storey_keys(s), **law_keys(s.law)}
+            {
+                "between": s.written,
+                "name": s.name,
+                **storey_keys(s),
+                **law_keys(s.law),
+            }
             for s in parts.springs
         ],
-        "dashpot": [
-            {"between": list(d.between), "coefficient": d.coefficient} for d in parts.dashpots
-        ],
+        "dashpot": [{"between": d.written, "coefficient": d.coefficient} for d in parts.dashpots],
     }
 
 

@@ -8,7 +8,7 @@ from eventpound.mechanics.link_law import CLOSED, YIELDING
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
-from eventpound.tolerances import LENGTH, SPEED, TOGETHER
+from eventpound.tolerances import DEPENDENT, LENGTH, SPEED, TOGETHER
 
 
 @scalar_kernel
@@ -58,6 +58,17 @@ def _first_branch(a: int, side: float, at: Instant) -> int:
 
 
 @scalar_kernel
+def _with_ground(end: int, at: Instant) -> float:
+    """By how much an end, -1 the ground's, goes with the ground as its bodies stay behind."""
+    first, part = at.mass.size - at.weights.shape[0], 1.0 if end < 0 else 0.0
+    if end >= first:
+        part = 1.0
+        for b in range(first):
+            part -= at.weights[end - first, b]
+    return part if abs(part) > DEPENDENT else 0.0
+
+
+@scalar_kernel
 def choose_branches(acceleration: Floats, ground: float, onset: float, at: Instant) -> None:
     """Side of the kink of every link that has none yet.
 
@@ -86,7 +97,7 @@ def choose_branches(acceleration: Floats, ground: float, onset: float, at: Insta
             side = acceleration[second] if second >= 0 else ground
             side -= acceleration[first] if first >= 0 else ground
         if side == 0.0:
-            side = (0.0 if second >= 0 else onset) - (0.0 if first >= 0 else onset)
+            side = onset * (_with_ground(second, at) - _with_ground(first, at))
         at.branch[a] = _first_branch(a, -1.0 if side < 0.0 else 1.0, at)
         at.now[0].stale = True
 

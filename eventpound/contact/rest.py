@@ -23,7 +23,7 @@ from eventpound.mechanics.contact_problem import (
     solve_contacts,
 )
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
-from eventpound.mechanics.followers import felt_mass, is_support
+from eventpound.mechanics.followers import is_support
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import (
@@ -375,10 +375,23 @@ def _pass_on(
             if c >= 0:
                 error = max(error, rounding[order, c])
         for c in system.ends[a]:
-            if c >= 0:
-                part = error / (felt_mass(c, system.mass, system.compliance) * (order + 2))
-                rounding[order + 1, c] += damping[a] * part
-                rounding[order + 2, c] += stiffness[a] * part / (order + 3)
+            if c < 0 or is_support(c, system.mass):
+                continue
+            if system.compliance.size == 0:
+                part = error / (system.mass[c] * (order + 2))
+                _pass_to(c, part, order, rounding, stiffness[a], damping[a])
+            for d in range(system.compliance.shape[0]):
+                part = error * abs(system.compliance[d, c]) / (order + 2)
+                _pass_to(d, part, order, rounding, stiffness[a], damping[a])
+
+
+@scalar_kernel
+def _pass_to(
+    c: int, part: float, order: int, rounding: Floats, stiffness: float, damping: float
+) -> None:
+    """The same to cluster c, whose coefficient a force of 1 N for an error of 1 moves by `part`."""
+    rounding[order + 1, c] += damping * part
+    rounding[order + 2, c] += stiffness * part / (order + 3)
 
 
 @kernel

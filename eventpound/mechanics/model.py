@@ -4,12 +4,12 @@ Equation of motion, coordinates u relative to the ground:
 
     M u'' + C u' + Σ_s B_s F_s(B_sᵀ u, z_s) - W λ = -M 1 a_g(t)
 
-The coordinates are the bodies, and behind them the points between bodies that contacts are at
-(`eventpound.scene.point`), without mass, whose ``u = Σ w_b u_b`` follows. A *link* joins two
-of them, or one and the ground (index -1), and carries a spring, a dashpot or both: its elongation
-is ``x = u_second - u_first`` and its force (`eventpound.mechanics.elements`) pulls the ends
-together. Springs come first, in the order of the scene, then dashpots that stand alone, then links
-without force, each of which has the second number of a memory as its z.
+The coordinates are the bodies, and behind them the points that links and contacts are at
+(`eventpound.mechanics.coordinates`), without mass, whose ``u = Σ w_b u_b`` follows. A *link*
+joins two of them, or one and the ground (index -1), and carries a spring, a dashpot or both: its
+elongation is ``x = u_second - u_first`` and its force (`eventpound.mechanics.elements`) pulls the
+ends together. Springs come first, in the order of the scene, then dashpots that stand alone, then
+links without force, each of which has the second number of a memory as its z.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements, elements_of
+from eventpound.mechanics.coordinates import numbered, parts_on_ground
 from eventpound.mechanics.link_law import (
     KIND,
     SLIDER,
@@ -30,10 +31,9 @@ from eventpound.mechanics.link_law import (
 )
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.scene.contact import BARRIER, End, weights_of
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, Hysteretic
+from eventpound.scene.spring import BilinearElastic, Hysteretic
 
 _SLACK = BilinearElastic(0.0, 0.0)
 WORK_OF_SUPPORTS = 3
@@ -52,6 +52,8 @@ class Model:
         Initial displacement (m) and velocity (m/s).
     link_ends : ndarray of int, shape (L, 2)
         First and second end of each link; -1 is the ground.
+    on_ground : ndarray, shape (L,)
+        What of the force of each link counts in the base shear.
     law : LinkLaw
         Laws of the links beside their elastic parts.
     elastic : ElasticLaws
@@ -83,6 +85,7 @@ class Model:
     u0: Floats
     v0: Floats
     link_ends: Ints
+    on_ground: Floats
     law: LinkLaw
     elastic: ElasticLaws
     hysteretic: Ints
@@ -145,6 +148,16 @@ class Model:
         places = np.full(self.links, -1, np.int64)
         places[self.hysteretic] = np.arange(self.hysteretic.size)
         return places
+
+    @property
+    def felt_mass(self) -> Floats:
+        """What a force at each coordinate has to move (kg), shape (N,), ``1/m = Σ w²/m_b``."""
+        mass = self.mass.copy()
+        if self.weights.size > 0:
+            with np.errstate(divide="ignore"):
+                each = self.weights[:, : self.bodies] ** 2 / mass[: self.bodies]
+                mass[self.bodies :] = 1.0 / each.sum(axis=1)
+        return mass
 
     def with_points(self, values: Floats) -> Floats:
         """Values of the bodies, with or without those of points behind, with those of points."""
@@ -214,6 +227,8 @@ def with_elements(model: Model) -> Model:
     return replace(
         model,
         link_ends=np.vstack((model.link_ends, ends)),
+        # Forces of contact elements on a barrier are no base shear.
+        on_ground=np.append(model.on_ground, nothing),
         law=LinkLaw(*map(np.concatenate, zip(model.law, added, strict=True))),
         elastic=ElasticLaws(
             *map(np.append, model.elastic, (elements.stiffness[laws], nothing, -model.gap[laws]))
@@ -262,40 +277,18 @@ def assemble(scene: Scene) -> Model:
     Model
         A dashpot shares the link of a spring between the same ends.
     """
-    index = {body.name: i for i, body in enumerate(scene.bodies)} | {GROUND: -1, BARRIER: -1}
-    index |= {support.name: -1 for support in scene.supports}
-    ends = [(index[s.between[0]], index[s.between[1]]) for s in scene.springs]
+    at = numbered(scene)
+    ends = at.springs + at.dashpots
     damping = [0.0] * len(ends)
-    for dashpot in scene.dashpots:
-        pair = (index[dashpot.between[0]], index[dashpot.between[1]])
-        place = next((i for i, e in enumerate(ends) if e in (pair, pair[::-1])), None)
-        if place is None:
-            ends.append(pair)
-            damping.append(dashpot.coefficient)
-        else:
-            damping[place] += dashpot.coefficient
+    for link, dashpot in zip(at.of_dashpot, scene.dashpots, strict=True):
+        damping[link] += dashpot.coefficient
     laws = [spring.acting for spring in scene.springs]
     loops = {i: law for i, law in enumerate(laws) if isinstance(law, Hysteretic)}
     two = [i for i, law in loops.items() if law.second]
     further = dict(zip(two, range(len(ends), len(ends) + len(two)), strict=True))
     ends += [ends[i] for i in two]
     damping += [0.0] * len(two)
-    points: dict[tuple[tuple[str, float], ...], int] = {}
-
-    def coordinate(end: End) -> int:
-        if isinstance(end, str):
-            return index[end]
-        if all(index[name] < 0 for name, _ in weights_of(end)):
-            return -1
-        return points.setdefault(weights_of(end), len(scene.bodies) + len(points))
-
-    at = [(coordinate(c.left), coordinate(c.right)) for c in scene.contacts]
-    weights = np.zeros((len(points), len(scene.bodies) + len(points) + 1))
-    for row, own in zip(weights, points, strict=True):
-        for name, weight in own:
-            # The ground's, whose index is -1, is left out.
-            row[index[name]] += weight
-    weights = np.ascontiguousarray(weights[:, :-1])
+    weights = at.weights
     motion = scene.motion
     if isinstance(motion, LoadedMotion):
         ends += [(load.body, -1) for load in motion.loads]
@@ -304,7 +297,7 @@ def assemble(scene: Scene) -> Model:
     def column(values: list[float]) -> Floats:
         return np.array(values, dtype=np.float64)
 
-    no_mass = [0.0] * len(points)
+    no_mass = [0.0] * len(weights)
     mass, u0, v0 = (
         column([getattr(b, key) for b in scene.bodies] + no_mass)
         for key in ("mass", "displacement", "velocity")
@@ -315,12 +308,13 @@ def assemble(scene: Scene) -> Model:
         values[first:] = np.cumsum(weights[:, :first] * values[:first], axis=1)[:, -1]
     link_ends = np.array(ends, np.int64).reshape(-1, 2)
     start = differences(u0, *link_ends.T)
-    left, right = np.array(at, np.int64).reshape(-1, 2).T.copy()
+    left, right = np.array(at.contacts, np.int64).reshape(-1, 2).T.copy()
     return Model(
         mass=mass,
         u0=u0,
         v0=v0,
         link_ends=link_ends,
+        on_ground=parts_on_ground(ends, first, at.on_ground),
         law=link_law(laws, damping, further),
         elastic=as_arrays(laws + [_SLACK] * (len(ends) - len(laws))),
         hysteretic=np.array([*loops, *further.values()], np.int64),
@@ -348,5 +342,6 @@ def shape_of(model: Model) -> tuple[object, ...]:
     """
     sizes = model.bodies, model.springs, model.supports, model.loads
     kinds = model.law.memory[:, KIND]
-    ends = model.link_ends, model.hysteretic, kinds, model.left, model.right, model.weights
-    return (*sizes, *((each.size, each.tobytes()) for each in ends))
+    links = model.link_ends, model.on_ground, model.hysteretic, kinds
+    arrays = *links, model.left, model.right, model.weights
+    return (*sizes, *((each.size, each.tobytes()) for each in arrays))

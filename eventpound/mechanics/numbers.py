@@ -14,13 +14,14 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.mechanics.coordinates import numbered
 from eventpound.mechanics.link_law import CONSTANTS, LinkLaw
 from eventpound.mechanics.model import Model, assemble, with_sliders
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.elastic_laws import ElasticLaws, reduced
 from eventpound.scene.parameters import WEIGHT, Place, with_values
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BoucWen, Linear, Series
+from eventpound.scene.spring import BoucWen, Linear, Series
 
 OF_CONTACTS = ("gap", "restitution")
 OF_MODEL = ("mass", "u0", "v0", "z0", *OF_CONTACTS)
@@ -74,7 +75,7 @@ def put_numbers(
     for key in ("u0", "v0"):
         rows[key][:] = model.with_points(rows[key])
     _put_series(scene, values, rows)
-    _put_dashpots(scene, model, values, rows)
+    _put_dashpots(scene, values, rows)
 
 
 def _softened(scene: Scene, place: Place, column: Floats, values: Mapping[Place, Floats]) -> Floats:
@@ -130,19 +131,12 @@ def _put_series(scene: Scene, values: Mapping[Place, Floats], rows: Mapping[str,
                 rows[key][i, s] = getattr(whole, key)
 
 
-def _put_dashpots(
-    scene: Scene, model: Model, values: Mapping[Place, Floats], rows: Mapping[str, Floats]
-) -> None:
+def _put_dashpots(scene: Scene, values: Mapping[Place, Floats], rows: Mapping[str, Floats]) -> None:
     """Dampings of the links, summed in the order of `assemble`."""
     changed = {place.index: column for place, column in values.items() if place.kind == "dashpot"}
     if not changed:
         return
-    index = {body.name: i for i, body in enumerate(scene.bodies)} | {GROUND: -1}
-    ends = [tuple(pair) for pair in model.link_ends.tolist()]
-    links = []
-    for dashpot in scene.dashpots:
-        pair = (index[dashpot.between[0]], index[dashpot.between[1]])
-        links.append(next(i for i, e in enumerate(ends) if e in (pair, pair[::-1])))
+    links = numbered(scene).of_dashpot
     for link in {links[d] for d in changed}:
         rows["damping"][:, link] = 0.0
         for d, dashpot in enumerate(scene.dashpots):

@@ -32,6 +32,7 @@ from eventpound.tolerances import EPS
 class Bodies(NamedTuple):
     """Arrays of a mode at the level of coordinates (N), links (L), contacts (K), rests (R).
 
+    on_ground (L,): what of their forces counts in the base shear.
     z_of_link: below -1 the code of a closed contact element. laws (P,): contacts whose elements
     are the last P links. weights (D, N): of the `Model`. compliance, carried: of the `Reduced`.
     sliders (J,): links of sliders, whose contacts are the last J.
@@ -39,6 +40,7 @@ class Bodies(NamedTuple):
 
     mass: Floats
     link_ends: Ints
+    on_ground: Floats
     stiffness: Floats
     preload: Floats
     damping: Floats
@@ -108,6 +110,7 @@ def bodies_of(
     return Bodies(
         mass=model.mass,
         link_ends=model.link_ends,
+        on_ground=model.on_ground,
         stiffness=stiffness,
         preload=preload,
         damping=damping,
@@ -222,10 +225,7 @@ def initial_gaps(model: Model, length: float) -> Floats:
 
 @kernel
 def _link_forces(bodies: Bodies, out: Observed) -> None:
-    """Force of every link and what the links put on each body, with rates.
-
-    Forces of contact elements on a barrier are no base shear.
-    """
+    """Force of every link and what the links put on each body, with rates."""
     pull, plain = out.pull, bodies.stiffness.size - bodies.laws.size
     pull[:] = 0.0
     out.shear[:] = 0.0
@@ -249,9 +249,8 @@ def _link_forces(bodies: Bodies, out: Observed) -> None:
             if end >= 0:
                 pull[0, end] += sign * force
                 pull[1, end] += sign * force_rate
-            elif link < plain:
-                out.shear[0] += sign * force
-                out.shear[1] += sign * force_rate
+        out.shear[0] += bodies.on_ground[link] * force
+        out.shear[1] += bodies.on_ground[link] * force_rate
 
 
 @kernel
@@ -333,7 +332,7 @@ def _contact_forces(bodies: Bodies, out: Observed) -> None:
 
 @kernel
 def observe_friction(
-    sliders: Ints, z_of_link: Ints, memory: Floats, link_ends: Ints, out: Observed
+    sliders: Ints, z_of_link: Ints, memory: Floats, on_ground: Floats, out: Observed
 ) -> None:
     """Take the forces of the contacts of sliders (J,) from those of slips: what friction is."""
     first = out.gap.shape[1] - sliders.size
@@ -344,10 +343,7 @@ def observe_friction(
         out.z[0, h], out.z[1, h] = (slip - stick[0]) / abs(slip), -stick[1] / abs(slip)
         for row in range(2):
             out.force[row, link] -= stick[row]
-            if link_ends[link, 0] < 0:
-                out.shear[row] -= stick[row]
-            elif link_ends[link, 1] < 0:
-                out.shear[row] += stick[row]
+            out.shear[row] -= on_ground[link] * stick[row]
 
 
 @kernel
@@ -419,7 +415,7 @@ def _observe_on_ground(
     _accelerations(bodies, out)
     _contact_forces(bodies, out)
     if bodies.sliders.size > 0:
-        observe_friction(bodies.sliders, bodies.z_of_link, bodies.memory, bodies.link_ends, out)
+        observe_friction(bodies.sliders, bodies.z_of_link, bodies.memory, bodies.on_ground, out)
     observe_gaps(bodies, out)
     # Bodies in one cluster differ by constants: what is left of their gap is the rounding of these.
     for i in range(bodies.resting.size):

@@ -17,7 +17,8 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.runs import Runs
-from eventpound.scene.contact import BARRIER, Contact, End
+from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.ends import End
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
 

@@ -23,6 +23,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.loops import z_by_x
 from eventpound.quantities.owners import owners_of
 from eventpound.quantities.rows import Rerun, close_times, first_step, settled, warn_unsettled
+from eventpound.scene.ends import Joining, opening
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
 from eventpound.scene.structures import structures_of
@@ -163,7 +164,7 @@ def works_of(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:
         law = spring.law
         if isinstance(law, BoucWen) and not law.beyond_bouc_wen:
             z = h.z[:, scene.hysteretic_springs.index(spring.name)]
-            rate, second = _elongating(spring.between, motions)
+            rate, second = _elongating(spring, motions)
             own = link_law([law], [0.0]).memory
             slope = z_by_x(own, z, rate) * rate**2 + z * second
             (force,), (yields,) = yielding(own).force, yielding(own).displacement
@@ -171,7 +172,7 @@ def works_of(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:
             stored = 0.5 * force * yields * (z[-1] ** 2 - z[0] ** 2)
             found[f"springs.{spring.name}.dissipated_energy"] = cells, stored
     for name, dashpot in zip(owners_of(scene, "dashpot"), scene.dashpots, strict=True):
-        rate, second = _elongating(dashpot.between, motions)
+        rate, second = _elongating(dashpot, motions)
         cells = dashpot.coefficient * _cells(h.t, rate**2, 2.0 * rate * second)
         found[f"dashpots.{name}.dissipated_energy"] = cells, 0.0
     return {
@@ -209,8 +210,8 @@ def _motions(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:
 
 
 def _elongating(
-    between: tuple[str, str], motions: Mapping[str, tuple[Floats, Floats]]
+    link: Joining, motions: Mapping[str, tuple[Floats, Floats]]
 ) -> tuple[Floats, Floats]:
     """Rate of an elongation (m/s), and the rate of that (m/s^2)."""
-    (v, a), (v_2, a_2) = motions[between[0]], motions[between[1]]
-    return v_2 - v, a_2 - a
+    rates, seconds = ({end: of[i] for end, of in motions.items()} for i in range(2))
+    return np.asarray(opening(link, 0.0, rates)), np.asarray(opening(link, 0.0, seconds))

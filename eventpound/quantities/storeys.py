@@ -22,7 +22,7 @@ def has_height(scene: Scene, i: int) -> bool:
 def storeys_of_structure(scene: Scene, i: int) -> list[int]:
     """Springs of structure i that are storeys."""
     group = set(structures_of(scene)[i])
-    own = (k for k, spring in enumerate(scene.springs) if group.intersection(spring.between))
+    own = (k for k, spring in enumerate(scene.springs) if group.intersection(spring.ends))
     return [k for k in own if is_storey(scene, k)]
 
 
@@ -41,7 +41,7 @@ def roof_drift(many: Runs, i: int) -> Floats:
     """Largest displacement of the floors of structure i that carry no storey (m)."""
     scene = many.scene
     level = distances([GROUND, *(s.name for s in scene.supports)], neighbours(scene.springs))
-    storeys = [scene.springs[k].between for k in storeys_of_structure(scene, i)]
+    storeys = [scene.springs[k].ends for k in storeys_of_structure(scene, i)]
     # The end that is farther from the ground stands on the other, in whichever order they are.
     pairs = [sorted(ends, key=lambda end: level.get(end, len(level))) for ends in storeys]
     carrying = {low for low, _ in pairs}

@@ -12,6 +12,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import SIX, Value, over_capacity, path_of_owner
 from eventpound.quantities.runs import Runs
 from eventpound.scene.elastic_laws import elastic_force, reduced
+from eventpound.scene.ends import opening
 from eventpound.scene.joints import joints_of
 from eventpound.scene.parameters import number_places, told_of_variants
 from eventpound.scene.scene import Scene
@@ -146,8 +147,9 @@ def slip_path(many: Runs, i: int) -> Floats:
 
 def motion_of_spring(scene: Scene, run: Recording, i: int) -> Floats:
     """Elongation of spring i (m) and its rate (m/s) at every row of the history, shape (2, n)."""
-    first, second = scene.springs[i].between
-    return _motion_of(second, scene, run) - _motion_of(first, scene, run)
+    spring = scene.springs[i]
+    motions = {end: _motion_of(end, scene, run) for end in spring.ends}
+    return np.asarray(opening(spring, 0.0, motions))
 
 
 def _motion_of(end: str, scene: Scene, run: Recording) -> Floats:
@@ -198,14 +200,13 @@ def impacts_faster(many: Runs, _: int) -> Floats:
 
 def moves_with_bodies(scene: Scene, i: int) -> bool:
     """Whether no end of spring i is a support, which may move on at the end."""
-    return not {support.name for support in scene.supports}.intersection(scene.springs[i].between)
+    return not {support.name for support in scene.supports}.intersection(scene.springs[i].ends)
 
 
 def residual_elongation(many: Runs, i: int) -> Floats:
     """Elongation of spring i at the end (m)."""
     u = {body.name: many.u[:, k] for k, body in enumerate(many.scene.bodies)} | {GROUND: 0.0}
-    first, second = many.scene.springs[i].between
-    return np.asarray(u[second] - u[first])
+    return np.asarray(opening(many.scene.springs[i], 0.0, u))
 
 
 def seat_used(many: Runs, i: int) -> Floats:
@@ -310,8 +311,8 @@ def elastic_force_of(many: Runs, i: int) -> Extremes:
 def stands_apart(scene: Scene, i: int) -> bool:
     """Whether a structure is one of several, and held by the ground."""
     groups = structures_of(scene)
-    joints = [spring.between for spring in scene.springs]
-    joints += [dashpot.between for dashpot in scene.dashpots]
+    joints = [spring.ends for spring in scene.springs]
+    joints += [dashpot.ends for dashpot in scene.dashpots]
     grounded = any(GROUND in ends and set(ends) & set(groups[i]) for ends in joints)
     return grounded and len(groups) > 1
 

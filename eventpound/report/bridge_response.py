@@ -19,7 +19,8 @@ from eventpound.report.loops import draw_loop
 from eventpound.report.markers import draw_circles, draw_rests, event_legend
 from eventpound.report.style import DASHED, PALETTE, legend_above, new_figure, styled, zero_lines
 from eventpound.report.view import DrawnSpring, View
-from eventpound.scene.contact import BARRIER, Contact, End
+from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.ends import End
 from eventpound.scene.spring import GROUND
 
 # Periods 2 pi / omega_g that are shown before the first and after the last event.
@@ -95,7 +96,7 @@ def _draw_distance(axes: Axes, view: View, contact: Contact) -> None:
 
 def _holding(view: View, body: End) -> DrawnSpring:
     """The hysteretic spring between a body and the ground, else any of its springs."""
-    own = [spring for spring in view.springs if set(spring.between) == {GROUND, body}]
+    own = [spring for spring in view.springs if set(spring.sides) == {GROUND, body}]
     hysteretic = [spring for spring in own if spring.law.hysteretic]
     if not own:
         raise InputError(f"[figure]: bridge-response needs a spring from the ground to {body}")

@@ -11,7 +11,8 @@ import numpy as np
 from eventpound.quantities.base import least_governs
 from eventpound.results.tables import Cells, cell_text, headed
 from eventpound.results.trade import Trade
-from eventpound.scene.contact import Contact, weights_of
+from eventpound.scene.contact import Contact
+from eventpound.scene.ends import weights_of
 from eventpound.scene.joints import joints_of
 from eventpound.scene.scene import Scene
 from eventpound.study.demands import NEEDED

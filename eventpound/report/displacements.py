@@ -207,7 +207,7 @@ def _draw_drifts(axes: Axes, view: View) -> None:
     style.zero_lines(axes)
     for spring in storeys:
         # The body that a storey carries: of a structure it comes later.
-        upper = max(set(spring.between) - {GROUND}, key=view.bodies.index)
+        upper = max(set(spring.ends) - {GROUND}, key=view.bodies.index)
         values = drifts[spring.name] / unit.size
         axes.plot(view.t, values, color=shades[upper], label=spring.name, zorder=3)
     axes.set_ylabel(f"drift ({unit.name})")

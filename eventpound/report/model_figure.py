@@ -25,6 +25,7 @@ from eventpound.report.model_layout import (
     WIDE,
     Box,
     Layout,
+    face_of,
     layout_of,
     without_couplings,
 )
@@ -32,8 +33,9 @@ from eventpound.report.model_links import WALL, LinkPath, links_drawn
 from eventpound.report.style import PALETTE, arrow, literal, new_figure, say, styled
 from eventpound.results.trade import Trade
 from eventpound.scene.body import Body
-from eventpound.scene.contact import BARRIER, Contact, End, weights_of
+from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.ends import End
 from eventpound.scene.grounded import grounded
 from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
@@ -179,8 +181,11 @@ def _draw(
     """All parts of a scene on one ground."""
     for route in routes:
         _link(axes, route, names)
+        for end, place in zip(route.link.sides, (route.corners[0], route.corners[-1]), strict=True):
+            if not isinstance(end, str):
+                _column_at(axes, layout, end, place)
     # A wall beside a body may have a spring and a contact.
-    level = [route.link.between for route in routes if not route.upright]
+    level = [route.link.sides for route in routes if not route.upright]
     joined = {frozenset(BARRIER if end == GROUND else end for end in ends) for ends in level}
     for joint in _joints(scene):
         _contact(axes, layout, joint, _UP * (frozenset(joint[0].ends) in joined), names)
@@ -206,9 +211,9 @@ def _feet(
     found: dict[tuple[str, float], float] = {}
     for route in routes:
         if id(route.link) in support_of:
-            (x, y), first, second = route.corners[0], *route.link.between
+            (x, y), first, second = route.corners[0], *route.link.sides
             if y == 0.0:
-                x = layout.boxes[first if second == GROUND else second].x
+                x = face_of(layout, first if second == GROUND else second, 0.0)[0]
             found[support_of[id(route.link)], x] = y - (0.3 if route.upright else 0.35)
     for contact in standing.contacts:
         if id(contact) in support_of:
@@ -221,8 +226,8 @@ def _parts(scene: Scene) -> list[tuple[object, tuple[End, ...]]]:
     """Springs, dashpots and contacts with their ends."""
     links: list[Spring | Dashpot] = [*scene.springs, *scene.dashpots]
     return [
-        *((link, link.between) for link in links),
-        *((contact, (contact.left, contact.right)) for contact in scene.contacts),
+        *((link, link.sides) for link in links),
+        *((contact, contact.sides) for contact in scene.contacts),
     ]
 
 
@@ -249,9 +254,9 @@ def _link(axes: Axes, route: LinkPath, names: _Names) -> None:
         axes.plot(*_zigzag(a, b).T, color=color, linewidth=1.2, solid_joinstyle="miter", zorder=2)
     else:
         _dashpot(axes, a, b)
-    if GROUND in route.link.between and not route.upright:
+    if GROUND in route.link.sides and not route.upright:
         _still(axes, (a[0], a[0]), (a[1] - 0.35, a[1] + 0.55), away=np.sign(a[0] - b[0]))
-    elif GROUND in route.link.between and a[1] > 0.0:
+    elif GROUND in route.link.sides and a[1] > 0.0:
         _still(axes, (a[0] - 0.4, a[0] + 0.4), (a[1], a[1]))
     room = float(np.hypot(*(b - a))) + (0.0 if route.upright else 0.6)
     if names.shown and route.label and names.has_room(route.label, room):
@@ -321,10 +326,10 @@ def _contact(
     """Two faces with the gap between them."""
     contact = joint[0]
     (x_1, y_1), (x_2, y_2) = faces = [(x, y + up) for x, y in _faces(layout, contact)]
-    for end, (x, y), side in zip((contact.left, contact.right), faces, (-1.0, 1.0), strict=True):
+    for end, (x, y), side in zip(contact.sides, faces, (-1.0, 1.0), strict=True):
         if end == BARRIER:
             _still(axes, (x, x), (y - up - 0.5, y - up + 0.6), away=side)
-        elif isinstance(end, Point):
+        elif not isinstance(end, str):
             _column_at(axes, layout, end, (x, y))
     middle, level = 0.5 * (x_1 + x_2), 0.5 * (y_1 + y_2)
     for x, y, side in ((x_1, y_1, -1.0), (x_2, y_2, 1.0)):
@@ -359,19 +364,12 @@ def _label_of(layout: Layout, joint: Sequence[Contact], names: _Names) -> tuple[
 def _faces(layout: Layout, contact: Contact) -> tuple[tuple[float, float], tuple[float, float]]:
     """Where the two sides of a contact are; a barrier stands beside the body that it meets."""
     if contact.left == BARRIER:
-        x, y = _face_of(layout, contact.right, -1.0)
+        x, y = face_of(layout, contact.right, -1.0)
         return (x - WALL, y), (x, y)
-    first = _face_of(layout, contact.left, 1.0)
+    first = face_of(layout, contact.left, 1.0)
     if contact.right == BARRIER:
         return first, (first[0] + WALL, first[1])
-    return first, _face_of(layout, contact.right, -1.0)
-
-
-def _face_of(layout: Layout, end: End, side: float) -> tuple[float, float]:
-    """The face of a body, or a point on the columns between bodies and the ground."""
-    found = [(layout.boxes.get(name), weight) for name, weight in weights_of(end)]
-    x = next(box.x + 0.5 * side * box.wide for box, _ in found if box is not None)
-    return x, sum(weight * box.y for box, weight in found if box is not None)
+    return first, face_of(layout, contact.right, -1.0)
 
 
 def _column_at(axes: Axes, layout: Layout, point: Point, place: tuple[float, float]) -> None:

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from eventpound.report.towers import storey_heights
-from eventpound.scene.contact import weights_of
+from eventpound.scene.ends import End, weights_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Backfill, BilinearElastic, Linear, Series, Spring
 from eventpound.scene.structures import distances, joined_groups, neighbours
@@ -85,6 +85,13 @@ class Layout:
     lowest: frozenset[str]
 
 
+def face_of(layout: Layout, end: End, side: float) -> tuple[float, float]:
+    """The face of a body, or a point on the columns between bodies and the ground."""
+    found = [(layout.boxes.get(name), weight) for name, weight in weights_of(end)]
+    x = next(box.x + 0.5 * side * box.wide for box, _ in found if box is not None)
+    return x, sum(weight * box.y for box, weight in found if box is not None)
+
+
 def kinked(member: object) -> bool:
     """Whether it is a spring with a kink, or soil: to the ground it stands beside its body."""
     law = member.law if isinstance(member, Spring) else None
@@ -101,8 +108,8 @@ def without_couplings(scene: Scene) -> Scene:
         return scene
     links, gone = list[Spring](), set[frozenset[str]]()
     for name, couplings in frames.items():
-        gone |= {frozenset(spring.between) for spring in couplings}
-        heights = {spring.between: spring.height for spring in couplings}
+        gone |= {frozenset(spring.ends) for spring in couplings}
+        heights = {spring.sides: spring.height for spring in couplings}
         # Couplings to what a frame stands on come first, and begin there.
         upper = {high for _, high in heights}
         base = dict.fromkeys(low for low, _ in heights if low not in upper)
@@ -113,13 +120,13 @@ def without_couplings(scene: Scene) -> Scene:
     return replace(
         scene,
         springs=(*(s for s in scene.springs if s.frame is None), *links),
-        dashpots=tuple(d for d in scene.dashpots if frozenset(d.between) not in gone),
+        dashpots=tuple(d for d in scene.dashpots if d.at_point or frozenset(d.ends) not in gone),
     )
 
 
 def layout_of(scene: Scene) -> Layout:
     """Columns of bodies from the left, each from the ground up; carriers below what they carry."""
-    standing = [spring for spring in scene.springs if not kinked(spring)]
+    standing = [each for each in scene.springs if not (kinked(each) or each.at_point)]
     beside = neighbours(standing)
     meeting = [set(contact.ends) for contact in scene.contacts if not contact.at_point]
     chains = [_chain(beside, body.name) for body in scene.bodies]
@@ -209,8 +216,7 @@ def _in_order(
     before: list[set[int]] = [set() for _ in columns]
     for contact in scene.contacts:
         left, right = (
-            {at[name] for name, _ in weights_of(end) if name in at}
-            for end in (contact.left, contact.right)
+            {at[name] for name, _ in weights_of(end) if name in at} for end in contact.sides
         )
         for column in right - left:
             before[column] |= left
@@ -265,7 +271,7 @@ def _place_below(
 
 def _heights(springs: Sequence[Spring], tower: Sequence[str]) -> tuple[float, ...]:
     """Heights of the storeys of a tower (m), zero of isolators; empty where one is not given."""
-    given = {frozenset(s.between): s.height for s in springs if s.height is not None}
+    given = {frozenset(s.sides): s.height for s in springs if s.height is not None}
     return storey_heights([given.get(frozenset(ends)) for ends in pairwise([GROUND, *tower])])
 
 

@@ -10,8 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from eventpound.report.model_layout import HIGH, LEVEL, Box, Layout, kinked
+from eventpound.report.model_layout import HIGH, LEVEL, Box, Layout, face_of, kinked
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.ends import End
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Spring
 from eventpound.scene.structures import joined_groups
@@ -78,16 +79,16 @@ def _bundles(scene: Scene, layout: Layout) -> Iterator[Sequence[Link]]:
     all_joined = _all_joined(scene)
     links: list[Link] = [*scene.springs, *scene.dashpots]
     for link in links:
-        ends = frozenset(link.between)
+        ends = frozenset(link.sides)
         low = GROUND in ends and ends - {GROUND} <= layout.lowest
         if isinstance(link, Dashpot) and ends in all_joined and ends not in found:
             continue
-        if GROUND not in ends or (low and not kinked(link)):
+        if GROUND not in ends or link.at_point or (low and not kinked(link)):
             key: object = ends
         elif isinstance(link, Spring):
-            key = (link.between, kinked(link))
+            key = (link.sides, kinked(link))
         else:
-            sides = [(b, False) for b in (link.between, link.between[::-1]) if (b, False) in found]
+            sides = [(b, False) for b in (link.sides, link.sides[::-1]) if (b, False) in found]
             if not sides:
                 continue
             key = sides[0]
@@ -98,7 +99,8 @@ def _bundles(scene: Scene, layout: Layout) -> Iterator[Sequence[Link]]:
 def _all_joined(scene: Scene) -> set[frozenset[str]]:
     """Pairs of bodies in structures of three or more of which dashpots join every two."""
     names = [body.name for body in scene.bodies]
-    ends = [dashpot.between for dashpot in scene.dashpots if GROUND not in dashpot.between]
+    beside = [d for d in scene.dashpots if not d.at_point and GROUND not in d.ends]
+    ends = [dashpot.ends for dashpot in beside]
     pairs, found = set(map(frozenset, ends)), set[frozenset[str]]()
     for group in joined_groups(names, ends):
         own = {pair for pair in pairs if pair <= set(group)}
@@ -108,8 +110,10 @@ def _all_joined(scene: Scene) -> set[frozenset[str]]:
 
 
 def _corners(layout: Layout, link: Link, shift: float) -> tuple[Corner, ...]:
-    first, second = link.between
-    if GROUND in link.between:
+    first, second = link.sides
+    if not (isinstance(first, str) and isinstance(second, str)):
+        return _at_points(layout, first, second, shift)
+    if GROUND in link.sides:
         name = second if first == GROUND else first
         side = -1.0 if first == GROUND else 1.0
         return _to_ground(layout, name, link, side, shift)
@@ -134,6 +138,17 @@ def _corners(layout: Layout, link: Link, shift: float) -> tuple[Corner, ...]:
         return (low.left, low.y), (x, low.y), (x, high.y), (high.left, high.y)
     y = max(box.top for box in layout.boxes.values() if near.x <= box.x <= far.x) + _ROUND + shift
     return (near.x, near.top), (near.x, y), (far.x, y), (far.x, far.top)
+
+
+def _at_points(layout: Layout, first: End, second: End, shift: float) -> tuple[Corner, Corner]:
+    """Between the faces of columns and bodies, or from one of them to a wall."""
+    if GROUND in (first, second):
+        x, y = face_of(layout, second if first == GROUND else first, 1.0)
+        return (x + WALL, y + shift), (x, y + shift)
+    middles = [face_of(layout, end, 0.0)[0] for end in (first, second)]
+    way = 1.0 if middles[0] <= middles[1] else -1.0
+    (x_1, y_1), (x_2, y_2) = face_of(layout, first, way), face_of(layout, second, -way)
+    return (x_1, y_1 + shift), (x_2, y_2 + shift)
 
 
 def _to_ground(

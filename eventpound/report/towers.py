@@ -62,11 +62,11 @@ def storey_heights(given: Sequence[float | None]) -> tuple[float, ...]:
 
 def _below(group: Sequence[str], springs: Sequence[DrawnSpring]) -> tuple[DrawnSpring, ...] | None:
     """The spring below each body; None where they do not stand on one another."""
-    own = [spring for spring in springs if set(spring.between) & set(group)]
+    own = [spring for spring in springs if set(spring.sides) & set(group)]
     wanted = [{low, high} for low, high in zip([GROUND, *group], group, strict=False)]
     if len(own) != len(group):
         return None
-    found = [[spring for spring in own if set(spring.between) == ends] for ends in wanted]
+    found = [[spring for spring in own if set(spring.sides) == ends] for ends in wanted]
     return tuple(one[0] for one in found) if all(len(one) == 1 for one in found) else None
 
 

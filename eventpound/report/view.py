@@ -15,8 +15,9 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.quantities.loops import loop_of
 from eventpound.results import StoredResults
 from eventpound.results.trade import Unit, unit_by_size
-from eventpound.scene.contact import BARRIER, Contact, End
+from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import ContactLaw
+from eventpound.scene.ends import End, Joining, direction_of
 from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, LawName
@@ -28,22 +29,27 @@ _CLOSED = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class DrawnSpring:
+class DrawnSpring(Joining):
     """A spring as far as a figure needs it.
 
     Parameters
     ----------
     name : str
         Its name.
-    between : tuple of str
+    between : tuple of End
         First and second end.
     law : LawName
         Kind of its law.
     """
 
     name: str
-    between: tuple[str, str]
+    between: tuple[End, End]
     law: LawName
+
+    @property
+    def sides(self) -> tuple[End, End]:
+        """Its first and its second end."""
+        return self.between
 
 
 @dataclass(frozen=True)
@@ -146,7 +152,8 @@ class View:
     def structures(self) -> list[list[str]]:
         """Bodies that springs and dashpots join, by structures."""
         scene = self.results.summary["scene"]
-        joints = [tuple(part["between"]) for part in (*scene["springs"], *scene["dashpots"])]
+        links = (*scene["springs"], *scene["dashpots"])
+        joints = [[name for name, _ in direction_of(_sides(link))] for link in links]
         return joined_groups(self.bodies, joints)
 
     @property
@@ -158,7 +165,7 @@ class View:
     def springs(self) -> list[DrawnSpring]:
         """Springs in the order of the scene."""
         return [
-            DrawnSpring(entry["name"], tuple(entry["between"]), LawName(entry["law"]))
+            DrawnSpring(entry["name"], _sides(entry), LawName(entry["law"]))
             for entry in self.results.summary["scene"]["springs"]
         ]
 
@@ -177,8 +184,8 @@ class View:
 
     def _of_end(self, end: End, of_body: str, of_support: str) -> Floats:
         """Columns of one kind of a body or a support, together those of a point, or zero, (n,)."""
-        if isinstance(end, Point):
-            parts = [w * self._of_end(name, of_body, of_support) for name, w in end.weights]
+        if not isinstance(end, str):
+            parts = [w * self._of_end(name, of_body, of_support) for name, w in end.parts]
             return np.sum(parts, axis=0)
         if end in (GROUND, BARRIER):
             return np.zeros(self.t.size)
@@ -191,20 +198,20 @@ class View:
 
     def elongation(self, spring: DrawnSpring) -> Floats:
         """U of the second end minus u of the first (m), shape (n,)."""
-        first, second = spring.between
+        first, second = spring.sides
         return self.displacement(second) - self.displacement(first)
 
     def loop(self, spring: DrawnSpring) -> tuple[Floats, Floats]:
         """Elongation (m) and force (N) of a spring, between rows too where the scene is known."""
         x, columns = self.elongation(spring), set(self.results.history_columns)
-        moving = [end for end in spring.between if end != GROUND]
+        moving = [end for end in spring.ends if end != GROUND]
         wanted = {f"sv.{end}" if end in self.supports else f"v.{end}" for end in moving}
         memory = [] if self.scene is None else self.scene.memory
         own = [f"{name}.{of}" for of, name in memory if of == spring.name]
         if self.scene is None or x.size < 2 or not wanted.union(own) <= columns:
             return x, self.column(f"force.{spring.name}")
         law = next(each.acting for each in self.scene.springs if each.name == spring.name)
-        first, second = (self._of_end(end, "v", "sv") for end in spring.between)
+        first, second = (self._of_end(end, "v", "sv") for end in spring.sides)
         return loop_of(law, self.column("t"), x, second - first, *map(self.column, own))
 
     def impact_times(self, contact: str) -> Floats:
@@ -227,6 +234,12 @@ class View:
         each = zip(events["t"], events["contact"], events["kind"], strict=True)
         times = [t for t, name, kind in each if name == contact and kind in kinds]
         return np.array(times, np.float64) / self.time_unit.size
+
+
+def _sides(entry: Mapping[str, Any]) -> tuple[End, End]:
+    """Ends of a spring or a dashpot from its lines in a summary."""
+    first, second = (end if isinstance(end, str) else Point(end) for end in entry["between"])
+    return first, second
 
 
 def _contact(entry: Mapping[str, Any]) -> Contact:

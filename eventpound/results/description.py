@@ -8,7 +8,9 @@ from hashlib import sha256
 import numpy as np
 
 from eventpound.motion.base import GroundMotion
-from eventpound.scene.contact import Contact, written
+from eventpound.scene.contact import Contact
+from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.ends import written
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Spring, law_keys, storey_keys
 
@@ -32,11 +34,16 @@ def describe_scene(scene: Scene) -> dict[str, object]:
     return {
         "bodies": [asdict(body) for body in scene.bodies],
         "springs": [describe_spring(spring) for spring in scene.springs],
-        "dashpots": [asdict(dashpot) for dashpot in scene.dashpots],
+        "dashpots": [_dashpot(dashpot) for dashpot in scene.dashpots],
         "contacts": [_contact(contact) for contact in scene.contacts],
         "motion": scene.motion.kind,
         **driven(scene),
     }
+
+
+def _dashpot(dashpot: Dashpot) -> dict[str, object]:
+    """Its ends and coefficient."""
+    return {"between": dashpot.written, "coefficient": dashpot.coefficient}
 
 
 def _contact(contact: Contact) -> dict[str, object]:
@@ -98,4 +105,9 @@ def describe_spring(spring: Spring) -> dict[str, object]:
         ``name``, ``between``, ``law`` and the parameters of the law (SI).
     """
     keys = law_keys(spring.law)
-    return {"name": spring.name, "between": spring.between, **storey_keys(spring), **keys}
+    return {
+        "name": spring.name,
+        "between": spring.written,
+        **storey_keys(spring),
+        **keys,
+    }

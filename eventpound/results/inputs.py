@@ -23,7 +23,7 @@ from eventpound.mechanics.supported import peak_of, support_motion
 from eventpound.motion.base import moves
 from eventpound.motion.record import Record
 from eventpound.scene.at_rest import at_rest, stiffness_of, theta_at_rest, told_at_rest
-from eventpound.scene.contact import Contact, written
+from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import Element
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.modes import modes_of
@@ -100,11 +100,11 @@ def inputs_of(case: Case) -> dict[str, Any]:
 def _frames(scene: Scene) -> dict[str, list[Row]]:
     """Frames by their matrices, a row each; nothing of a scene that has none."""
     rows: dict[str, Row] = {}
-    own = {spring.between[1] for spring in scene.springs if spring.frame is not None}
+    own = {spring.sides[1] for spring in scene.springs if spring.frame is not None}
     for spring in scene.springs:
         if spring.frame is not None:
             row = rows.setdefault(spring.frame, {"name": spring.frame, "couplings": 0, "held": 0})
-            row["couplings" if spring.between[0] in own else "held"] += 1
+            row["couplings" if spring.sides[0] in own else "held"] += 1
     return {"frames": [*rows.values()]} if rows else {}
 
 
@@ -158,14 +158,18 @@ def _run(run: RunOptions) -> Row:
 def _mass_on(case: Case, spring: Spring) -> float | None:
     """The mass a case names for a spring, else what swings on it (kg)."""
     given = case.carried.get(spring.name)
-    own = [body.mass for body in case.scene.bodies if body.name in spring.between]
+    own = [body.mass for body in case.scene.bodies if body.name in spring.ends]
     # A case that names none has the mass of the spring's own body here.
     return given if given is not None and given not in own else mass_on(case.scene, spring)
 
 
 def _spring(spring: Spring, at_rest: float, mass: float | None) -> Row:
     law = spring.law
-    row: Row = {"name": spring.name, "between": list(spring.between), "law": law.word.value}
+    row: Row = {
+        "name": spring.name,
+        "between": spring.written,
+        "law": law.word.value,
+    }
     row |= storey_keys(spring)
     if isinstance(law, BilinearElastic | Series):
         return row | asdict(reduced(law)) | {"at_rest": at_rest}
@@ -190,8 +194,9 @@ def _spring(spring: Spring, at_rest: float, mass: float | None) -> Row:
 def _dashpots(scene: Scene, carried: Mapping[str, float | None]) -> list[Row]:
     rows = []
     for dashpot in scene.dashpots:
-        row: Row = {"between": list(dashpot.between), "coefficient": dashpot.coefficient}
-        beside = [s for s in scene.springs if set(s.between) == set(dashpot.between)]
+        ends = dashpot.written
+        row: Row = {"between": ends, "coefficient": dashpot.coefficient}
+        beside = [s for s in scene.springs if set(s.sides) == set(dashpot.sides)]
         masses = {carried[s.name] for s in beside}
         mass = masses.pop() if len(masses) == 1 else None
         for word, yielded in (("ratio_initial", False), ("ratio_post_yield", True)):
@@ -206,7 +211,7 @@ def _dashpots(scene: Scene, carried: Mapping[str, float | None]) -> list[Row]:
 
 def _contact(scene: Scene, contact: Contact) -> Row:
     """A contact; of one with a law its constants, ``c`` that of a dashpot (N s/m)."""
-    ends = [written(contact.left), written(contact.right)]
+    ends = contact.written
     row: Row = {"name": contact.name, "between": ends, "gap": contact.gap}
     row |= contact_law_keys(contact)
     law = contact.law
@@ -229,9 +234,7 @@ def _structure(scene: Scene, group: list[str]) -> Row:
     row: Row = {"bodies": group}
     if len(group) > MOST_BODIES:
         return row
-    hysteretic = any(
-        isinstance(s.law, BoucWen) and set(s.between) & set(group) for s in scene.springs
-    )
+    hysteretic = any(isinstance(s.law, BoucWen) and set(s.ends) & set(group) for s in scene.springs)
     for key, yielded in (("initial", False), ("post_yield", True)):
         if yielded and not hysteretic:
             continue

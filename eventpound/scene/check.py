@@ -14,8 +14,9 @@ from eventpound.basics.given import accepted_numbers, numbers_of
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.scene.at_rest import stiffness_of
-from eventpound.scene.contact import BARRIER, Contact, opening
+from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
+from eventpound.scene.ends import End, opening, weights_of
 from eventpound.scene.grounded import grounded
 from eventpound.scene.linkage import starts_of_supports
 from eventpound.scene.periods import joined
@@ -181,7 +182,17 @@ def _some(names: Sequence[str], others: Sequence[str] = ()) -> str:
 
 
 def _end_problems(
-    element: _Element, between: tuple[str, str], scene: Scene, fixed: str
+    element: _Element, sides: tuple[End, End], scene: Scene, fixed: str
+) -> Iterator[Problem]:
+    """What is wrong with two ends; `fixed` is what the ground is called there."""
+    if all(isinstance(end, str) for end in sides):
+        yield from _name_end_problems(element, tuple(map(str, sides)), scene, fixed)
+    else:
+        yield from _point_problems(element, sides, scene, fixed)
+
+
+def _name_end_problems(
+    element: _Element, between: Sequence[str], scene: Scene, fixed: str
 ) -> Iterator[Problem]:
     """Two different ends, each a body or one that is fixed, not both of those."""
     names = [body.name for body in scene.bodies]
@@ -196,11 +207,41 @@ def _end_problems(
         yield element.problem("between", list(between), "a body at one end at least")
 
 
+def _point_problems(
+    element: _Element, sides: tuple[End, End], scene: Scene, fixed: str
+) -> Iterator[Problem]:
+    """Ends of which one is a point between bodies."""
+    known, held = {b.name for b in scene.bodies}, [support.name for support in scene.supports]
+    names = [body.name for body in scene.bodies]
+    for end in sides:
+        if isinstance(end, str):
+            if end not in (known | {fixed, *held}):
+                some = _some(names, [fixed, *held])
+                yield element.problem("between", end, f"one of {some}, or a point")
+            continue
+        for name, weight in end.weights:
+            if name not in (known | {GROUND, *held}):
+                some = _some(names, [GROUND, *held])
+                accepted = f"points between bodies and the ground: {some}"
+                yield element.problem("between", name, accepted)
+            elif not 0.0 < weight <= 1.0 + WHOLE:
+                accepted = "positive weights, 1 in sum"
+                yield element.problem("between", f"{name} = {weight!r}", accepted)
+        if not abs(end.total - 1.0) <= WHOLE:
+            yield element.problem("between", end.total, "weights of a point that are 1 in sum")
+    ends = [name for end in sides for name, _ in weights_of(end)]
+    twice = sorted(name for name in known if ends.count(name) > 1)
+    if twice:
+        yield element.problem("between", twice[0], "no body at both ends, or twice at one")
+    elif not known & {*ends}:
+        yield element.problem("between", ends, "a body at one end at least")
+
+
 def _spring_problems(scene: Scene) -> Iterator[Problem]:
     elements = [_Element("spring", i, spring.name) for i, spring in enumerate(scene.springs, 1)]
     yield from _name_problems(elements)
     for element, spring in zip(elements, scene.springs, strict=True):
-        yield from _end_problems(element, spring.between, scene, GROUND)
+        yield from _end_problems(element, spring.sides, scene, GROUND)
         yield from _law_problems(element, spring.law)
         yield from element.numbers(spring)
         if spring.weight is not None:
@@ -269,7 +310,7 @@ def _dashpot_problems(scene: Scene) -> Iterator[Problem]:
     found = list[Problem]()
     for position, dashpot in enumerate(scene.dashpots, 1):
         element = _Element("dashpot", position, "")
-        found += _end_problems(element, dashpot.between, scene, GROUND)
+        found += _end_problems(element, dashpot.sides, scene, GROUND)
         found += element.numbers(dashpot)
     yield from found
     negative = [i for i, d in enumerate(scene.dashpots) if d.coefficient < 0.0]
@@ -284,7 +325,7 @@ def _dashpot_problems(scene: Scene) -> Iterator[Problem]:
 
 def _dissipates(scene: Scene) -> bool:
     """Whether the damping matrix is positive semidefinite, but for rounding."""
-    links = [(d.between, d.coefficient) for d in grounded(scene).dashpots]
+    links = [(d.direction, d.coefficient) for d in grounded(scene).dashpots]
     matrix = joined([body.name for body in scene.bodies], links)
     values = np.linalg.eigvalsh(matrix)
     return bool(values[0] >= -values.size * EPS * values[-1])
@@ -344,10 +385,10 @@ def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
     yield from _name_problems(elements)
     penetrated = {} if start is None else _overlaps(scene, start)
     for i, (element, contact) in enumerate(zip(elements, scene.contacts, strict=True)):
-        if isinstance(contact.left, str) and isinstance(contact.right, str):
-            yield from _end_problems(element, (contact.left, contact.right), scene, BARRIER)
-        else:
-            yield from _point_problems(element, contact, scene)
+        yield from _end_problems(element, contact.sides, scene, BARRIER)
+        if contact.at_point and contact.law is not None:
+            accepted = f"{NEWTON} alone for a contact at a point between bodies"
+            yield element.problem("law", contact.law.kind, accepted)
         if contact.law is None:
             yield from _restitution(element, contact)
         else:
@@ -359,36 +400,6 @@ def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
                 f"is {penetrated[i]:.6g} m open"
             )
             yield element.problem("gap", contact.gap, accepted)
-
-
-def _point_problems(element: _Element, contact: Contact, scene: Scene) -> Iterator[Problem]:
-    """What is wrong with a contact at a point between bodies."""
-    known, held = {b.name for b in scene.bodies}, [support.name for support in scene.supports]
-    names = [body.name for body in scene.bodies]
-    for end in (contact.left, contact.right):
-        if isinstance(end, str):
-            if end not in (known | {BARRIER, *held}):
-                some = _some(names, [BARRIER, *held])
-                yield element.problem("between", end, f"one of {some}, or a point")
-            continue
-        for name, weight in end.weights:
-            if name not in (known | {GROUND, *held}):
-                some = _some(names, [GROUND, *held])
-                accepted = f"points between bodies and the ground: {some}"
-                yield element.problem("between", name, accepted)
-            elif not 0.0 < weight <= 1.0 + WHOLE:
-                accepted = "positive weights, 1 in sum"
-                yield element.problem("between", f"{name} = {weight!r}", accepted)
-        if not abs(end.total - 1.0) <= WHOLE:
-            yield element.problem("between", end.total, "weights of a point that are 1 in sum")
-    twice = sorted(name for name in known & {*contact.ends} if contact.ends.count(name) > 1)
-    if twice:
-        yield element.problem("between", twice[0], "no body at both ends, or twice at one")
-    elif not known & {*contact.ends}:
-        yield element.problem("between", list(contact.ends), "a body at one end at least")
-    if contact.law is not None:
-        accepted = f"{NEWTON} alone for a contact at a point between bodies"
-        yield element.problem("law", contact.law.kind, accepted)
 
 
 def _restitution(element: _Element, contact: Contact) -> Iterator[Problem]:

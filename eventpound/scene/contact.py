@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from typing import Annotated
 
 from eventpound.basics.given import (
@@ -15,19 +13,15 @@ from eventpound.basics.given import (
     default,
     read_fields,
 )
-from eventpound.errors import told_of
-from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact_law import ContactLaw, damping_constant
-from eventpound.scene.point import Point
+from eventpound.scene.ends import End, GivenEnd, Joining, read_ends
 from eventpound.units import Dimension
 
 BARRIER = "barrier"
-End = str | Point
-"""An end of a contact: the name of a body, ``"barrier"``, or a point between bodies."""
 
 
 @converting
-class Contact:
+class Contact(Joining):
     """A gap that can close: ``g = gap + u_right - u_left``.
 
     A barrier moves with the ground, so its displacement is zero: with a
@@ -55,18 +49,15 @@ class Contact:
     """
 
     name: str
-    left: Given[End, End | Mapping[str, float | str]]
-    right: Given[End, End | Mapping[str, float | str]]
+    left: Given[End, GivenEnd]
+    right: Given[End, GivenEnd]
     gap: Annotated[Number, Dimension.LENGTH, Accepted("a length (m)")]
     restitution: Annotated[OptionalNumber, Dimension.NUMBER] = default(None)
     law: ContactLaw | None = None
 
     def __post_init__(self) -> None:
         for side in ("left", "right"):
-            end = getattr(self, side)
-            if isinstance(end, Mapping):
-                with told_of(f"Contact: {side}: "):
-                    object.__setattr__(self, side, Point(end))
+            read_ends(self, side)
         read_fields(self)
 
     @property
@@ -79,53 +70,6 @@ class Contact:
         return damping_constant(self.law.element, self.restitution or 0.0)
 
     @property
-    def at_point(self) -> bool:
-        """Whether an end of it is a point between bodies."""
-        return isinstance(self.left, Point) or isinstance(self.right, Point)
-
-    @property
-    def ends(self) -> tuple[str, ...]:
-        """Names of all that it is between, those of the left end first."""
-        return tuple(name for end in (self.left, self.right) for name, _ in weights_of(end))
-
-    @property
-    def direction(self) -> tuple[tuple[str, float], ...]:
-        """By how much each of its `ends` opens it: a column of W, as pairs."""
-        return tuple(
-            (name, sign * weight)
-            for end, sign in ((self.left, -1.0), (self.right, 1.0))
-            for name, weight in weights_of(end)
-        )
-
-
-def written(end: End) -> str | dict[str, float]:
-    """An end as a case writes it."""
-    return dict(end.weights) if isinstance(end, Point) else end
-
-
-def weights_of(end: End) -> tuple[tuple[str, float], ...]:
-    """Names and weights, 1 in sum, of an end of a contact; of a body or barrier the one it is."""
-    if isinstance(end, str):
-        return ((end, 1.0),)
-    # One to rounding, so that a motion of all bodies together leaves the gap as it is.
-    return tuple((name, weight / (end.total or 1.0)) for name, weight in end.weights)
-
-
-def opening(
-    contact: Contact, gap: Floats | float, displacements: Mapping[str, Floats | float]
-) -> Floats | float:
-    """Opening of a contact (m), numbers or columns; NaN at ends that have no displacement.
-
-    Parameters
-    ----------
-    contact : Contact
-        What is between which ends.
-    gap : float or ndarray
-        Its opening at zero displacements (m).
-    displacements : mapping
-        Of its ends, by their names (m).
-    """
-    # The right end first, as everywhere: rounding is the same.
-    for end, weight in contact.direction[::-1]:
-        gap = gap + weight * displacements.get(end, math.nan)
-    return gap
+    def sides(self) -> tuple[End, End]:
+        """Its left and its right end."""
+        return self.left, self.right

@@ -15,7 +15,8 @@ from eventpound.basics.given import number
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.check import check_scene
-from eventpound.scene.contact import BARRIER, opening
+from eventpound.scene.contact import BARRIER
+from eventpound.scene.ends import opening
 from eventpound.scene.linkage import starts_of_supports
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Hysteretic
@@ -64,8 +65,9 @@ def continued(scene: Scene, final: FinalState, start: float = 0.0) -> Scene:
     for spring in scene.springs:
         law = spring.law
         if isinstance(law, Hysteretic):
-            first, second = (places.get(end, 0.0) for end in spring.between)
-            law = law.going_on(second - first, state[spring.name])
+            # What moves with the ground has no place of its own.
+            at = dict.fromkeys(spring.ends, 0.0) | places
+            law = law.going_on(float(opening(spring, 0.0, at)), state[spring.name])
         springs.append(replace(spring, law=law))
     later = replace(scene, bodies=tuple(bodies), springs=tuple(springs))
     check_scene(later, start)

@@ -122,4 +122,4 @@ def dashpots_beside(springs: Iterable[Spring], coefficient: float) -> tuple[Dash
 def springs_of_group(names: Collection[str], springs: Iterable[Spring]) -> list[Spring]:
     """Springs with both ends among `names` and the ground."""
     ends = {GROUND, *names}
-    return [spring for spring in springs if ends.issuperset(spring.between)]
+    return [spring for spring in springs if ends.issuperset(spring.ends)]

@@ -19,6 +19,7 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.ends import direction_of
 from eventpound.scene.spring import GROUND, Linear, Spring
 from eventpound.scene.stability import motion_of_links, told
 from eventpound.units import Dimension, quantity
@@ -153,7 +154,8 @@ def _check_matrix(key: str, matrix: Floats, ends: Sequence[str]) -> None:
             f"at ({ends[j]}, {ends[i]}); accepted: a matrix that is symmetric to rounding (where "
             "this is rounding, give (K + K')/2)"
         )
-    moves = motion_of_links(ends, [*_links(matrix, ends, GROUND)])
+    links = [(direction_of(pair), k) for pair, k in _links(matrix, ends, GROUND)]
+    moves = motion_of_links(ends, links)
     if moves is not None:
         raise InputError(
             f"{key}: found a matrix that is not positive semidefinite: {told(ends, moves)}; "

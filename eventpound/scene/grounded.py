@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 
-from eventpound.scene.contact import BARRIER, End
-from eventpound.scene.point import Point
+from eventpound.scene.contact import BARRIER
+from eventpound.scene.ends import End, renamed
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 
@@ -36,14 +36,18 @@ def grounded(scene: Scene, names: Collection[str] | None = None) -> Scene:
     )
 
 
+def on_ground(end: End, fixed: Collection[str]) -> End:
+    """An end with the ground in the place of what stands still."""
+    return renamed(end, dict.fromkeys(fixed, GROUND))
+
+
+def ends_on_ground(between: tuple[End, End], fixed: Collection[str]) -> tuple[End, End]:
+    """Ends of a spring or dashpot with the ground in the place of what stands still."""
+    return on_ground(between[0], fixed), on_ground(between[1], fixed)
+
+
 def _at_barrier(end: End, supports: Collection[str]) -> End:
     """An end of a contact with a barrier, of a point with the ground, in the place of supports."""
     if isinstance(end, str):
         return BARRIER if end in supports else end
-    return Point(tuple((GROUND if b in supports else b, weight) for b, weight in end.weights))
-
-
-def ends_on_ground(between: tuple[str, str], supports: Collection[str]) -> tuple[str, str]:
-    """Ends of a spring or dashpot with the ground in the place of supports."""
-    first, second = (GROUND if end in supports else end for end in between)
-    return first, second
+    return on_ground(end, supports)

@@ -17,7 +17,7 @@ from eventpound.scene.structures import joined_groups
 
 _Sides = tuple[frozenset[str], frozenset[str]]
 """What is left and what is right of a contact."""
-_Links = tuple[tuple[str, str], ...]
+_Links = tuple[tuple[str, ...], ...]
 
 
 def joints_of(scene: Scene) -> Sequence[Sequence[int]]:
@@ -35,7 +35,7 @@ def joints_of(scene: Scene) -> Sequence[Sequence[int]]:
         )
         for contact in scene.contacts
     )
-    links = *(s.between for s in scene.springs), *(d.between for d in scene.dashpots)
+    links = *(s.ends for s in scene.springs), *(d.ends for d in scene.dashpots)
     return _joints(tuple(body.name for body in scene.bodies), links, sides)
 
 

@@ -117,7 +117,7 @@ def linkage_of(scene: Scene, start: float) -> Linkage:
             by_supports.append(moved)
         return np.array(of_bodies).reshape(-1, len(index)), np.array(by_supports)
 
-    B, moved = rows(zip(s.between, (-1.0, 1.0), strict=True) for s in scene.springs)
+    B, moved = rows(spring.direction for spring in scene.springs)
     W, shifted = rows(contact.direction for contact in scene.contacts)
     gap = np.array([c.gap for c in scene.contacts], float) + shifted
     load = np.zeros(len(index))

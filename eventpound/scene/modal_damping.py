@@ -115,7 +115,7 @@ def modal_dashpots(
         for spring in springs_on(names, springs, fixed)
         if stiffness_of(spring) != 0.0
     ]
-    if len(names) > MOST_BODIES or len(joined_groups(names, [s.between for s in own])) != 1:
+    if len(names) > MOST_BODIES or len(joined_groups(names, [s.ends for s in own])) != 1:
         raise InputError(
             f"bodies: found {len(names)}; accepted: up to {MOST_BODIES}, which springs that "
             "resist at rest join to one structure"
@@ -134,7 +134,7 @@ def springs_on(
 ) -> list[Spring]:
     """Springs inside a group and to what it stands on."""
     group, all_ends = set(names), {*names, *fixed}
-    return [s for s in springs if group.intersection(s.between) and all_ends.issuperset(s.between)]
+    return [s for s in springs if group.intersection(s.ends) and all_ends.issuperset(s.ends)]
 
 
 def _matrix(bodies: Sequence[Body], springs: Sequence[Spring], ratios: Sequence[float]) -> Floats:

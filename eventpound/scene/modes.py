@@ -85,9 +85,9 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
     scene = grounded(at_rest(scene))
     mass = np.array([b.mass for name in bodies for b in scene.bodies if b.name == name])
     ends = {GROUND, *bodies}
-    springs = [s for s in scene.springs if ends.issuperset(s.between)]
-    dashpots = [d for d in scene.dashpots if ends.issuperset(d.between)]
-    damping = joined(bodies, [(d.between, d.coefficient) for d in dashpots])
+    springs = [s for s in scene.springs if ends.issuperset(s.ends)]
+    dashpots = [d for d in scene.dashpots if ends.issuperset(d.ends)]
+    damping = joined(bodies, [(d.direction, d.coefficient) for d in dashpots])
     root = np.sqrt(mass)
     squares, vectors = np.linalg.eigh(over_mass(bodies, springs, root, yielded))
     # Rounding leaves some of a rigid motion; its square is zero.
@@ -270,8 +270,8 @@ def coefficient_at_mode(
         Where there is no such mode, or the springs have too small a part in it.
     """
     chosen = [spring for spring in springs if spring.name in set(damped)]
-    ends = {end for spring in chosen for end in spring.between}
-    structures = joined_groups([body.name for body in bodies], [s.between for s in springs])
+    ends = {end for spring in chosen for end in spring.ends}
+    structures = joined_groups([body.name for body in bodies], [s.ends for s in springs])
     joined_by = [group for group in structures if ends.intersection(group)]
     if len(joined_by) != 1:
         raise InputError(f"found {mode!r} of {len(joined_by)} structures; accepted: springs of one")

@@ -107,11 +107,11 @@ def number_places(scene: Scene) -> dict[str, Place]:
         if isinstance(spring.law, Series):
             for number, part in enumerate(spring.law.parts):
                 add(f"{key}.parts.{number + 1}", "spring", i, part, number)
-    pairs = [dashpot.between for dashpot in scene.dashpots]
+    labels = [dashpot.label for dashpot in scene.dashpots]
     for i, dashpot in enumerate(scene.dashpots):
-        earlier = pairs[:i].count(dashpot.between)
+        earlier = labels[:i].count(dashpot.label)
         which = f".{earlier + 1}" if earlier else ""
-        add(f"dashpot.{'-'.join(dashpot.between)}{which}", "dashpot", i, dashpot)
+        add(f"dashpot.{dashpot.label}{which}", "dashpot", i, dashpot)
     for i, contact in enumerate(scene.contacts):
         add(f"contact.{contact.name}", "contact", i, contact)
         add(f"contact.{contact.name}", "contact", i, contact.law)

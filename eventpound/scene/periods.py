@@ -15,6 +15,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.at_rest import at_rest, stiffness_of
+from eventpound.scene.ends import Direction
 from eventpound.scene.grounded import ends_on_ground, grounded
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Spring
@@ -61,7 +62,7 @@ def over_mass(
     bodies: Sequence[str], springs: Iterable[Spring], root_mass: Floats, yielded: bool
 ) -> Floats:
     """Stiffnesses at rest over roots of masses, whose eigenvalues are omega^2, shape (N, N)."""
-    stiffness = joined(bodies, [(s.between, stiffness_of(s, yielded)) for s in springs])
+    stiffness = joined(bodies, [(s.direction, stiffness_of(s, yielded)) for s in springs])
     with np.errstate(all="ignore"):
         matrix = stiffness / np.outer(root_mass, root_mass)
     if not np.isfinite(matrix).all():
@@ -100,15 +101,15 @@ def period_called(scene: Scene, word: str) -> float:
         name = word.removeprefix(f"{T_1} of ")
         if name not in names:
             raise InputError(f"found {word!r}; accepted: {T_1}, or {T_1} of {', '.join(names)}")
-        resisting = [s.between for s in scene.springs if stiffness_of(s) != 0.0]
+        resisting = [s.ends for s in scene.springs if stiffness_of(s) != 0.0]
         held = {end for between in resisting if GROUND in between for end in between}
         joints = [between for between in resisting if not held.issuperset(between)]
         group = next(set(each) for each in joined_groups(names, joints) if name in each)
     others = set(names) - group
     springs = [
-        replace(s, between=ends)
+        replace(s, between=ends_on_ground(s.between, others))
         for s in scene.springs
-        if set(ends := ends_on_ground(s.between, others)) != {GROUND}
+        if group.intersection(s.ends)
     ]
     bodies = tuple(body for body in scene.bodies if body.name in group)
     period = longest_period(Scene(bodies, tuple(springs)))
@@ -117,7 +118,7 @@ def period_called(scene: Scene, word: str) -> float:
     return period
 
 
-def joined(bodies: Sequence[str], links: Iterable[tuple[tuple[str, str], float]]) -> Floats:
+def joined(bodies: Sequence[str], links: Iterable[tuple[Direction, float]]) -> Floats:
     """Stiffness or damping matrix of bodies, shape (N, N).
 
     Parameters
@@ -125,19 +126,15 @@ def joined(bodies: Sequence[str], links: Iterable[tuple[tuple[str, str], float]]
     bodies : sequence of str
         Their names.
     links : iterable
-        Ends of each link, bodies or the ground, and its stiffness or coefficient.
+        Direction of each link, in bodies and the ground, and its stiffness or coefficient.
     """
     index = {name: i for i, name in enumerate(bodies)}
     matrix = np.zeros((len(index), len(index)))
-    for between, k in links:
-        ends = [
-            (index[end], sign)
-            for end, sign in zip(between, (-1.0, 1.0), strict=True)
-            if end != GROUND
-        ]
-        for i, sign_i in ends:
-            for j, sign_j in ends:
-                matrix[i, j] += sign_i * sign_j * k
+    for direction, k in links:
+        ends = [(index[end], weight) for end, weight in direction if end != GROUND]
+        for i, weight_i in ends:
+            for j, weight_j in ends:
+                matrix[i, j] += weight_i * weight_j * k
     return matrix
 
 
@@ -151,7 +148,7 @@ def local_periods(scene: Scene) -> dict[str, float]:
     scene = grounded(at_rest(scene))
     held = dict.fromkeys((body.name for body in scene.bodies), 0.0)
     for spring in scene.springs:
-        for end in spring.between:
+        for end, weight in spring.direction:
             if end != GROUND:
-                held[end] += stiffness_of(spring)
+                held[end] += weight**2 * stiffness_of(spring)
     return {body.name: period_of(body.mass, held[body.name]) for body in scene.bodies}

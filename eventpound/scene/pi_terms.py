@@ -162,8 +162,9 @@ def own_spring(scene: Scene, body: str) -> Spring | None:
     own = [
         spring
         for spring in scene.springs
-        if body in spring.between
-        and not fixed.isdisjoint(spring.between)
+        if body in spring.ends
+        and not spring.at_point
+        and not fixed.isdisjoint(spring.ends)
         and isinstance(spring.law, Linear | BoucWen)
         and spring.weight is None
         and spring.frame is None

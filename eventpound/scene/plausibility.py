@@ -149,7 +149,7 @@ def _spring_doubts(scene: Scene) -> Iterator[Doubt]:
         law = spring.law
         if not isinstance(law, BoucWen):
             continue
-        mass = max(masses.get(end, 0.0) for end in spring.between)
+        mass = max(masses.get(end, 0.0) for end in spring.ends)
         yield_force = law.yield_force
         part = yield_force / (mass * STANDARD_GRAVITY)
         if part > LARGEST_YIELD_FORCE:
@@ -197,11 +197,11 @@ def _load_doubts(scene: Scene) -> Iterator[Doubt]:
     """Loads of sliders, where bodies stand on them and on nothing else."""
     names = [GROUND, *(body.name for body in scene.bodies)]
     bearings = [
-        ({*spring.between}, law.normal_force)
+        ({*spring.ends}, law.normal_force)
         for spring in scene.springs
         if isinstance(law := spring.law, Slider)
     ]
-    beside = [s.between for s in scene.springs if not isinstance(s.law, Slider | Backfill)]
+    beside = [s.ends for s in scene.springs if not isinstance(s.law, Slider | Backfill)]
     for group in joined_groups(names, beside):
         under = [force for ends, force in bearings if len(ends.intersection(group)) == 1]
         if GROUND in group or not under:
@@ -231,11 +231,13 @@ def _damping_doubts(scene: Scene) -> Iterator[Doubt]:
     damped = dict.fromkeys((body.name for body in scene.bodies), 0.0)
     held = dict(damped)
     for dashpot in scene.dashpots:
-        for end in set(dashpot.between) - {GROUND}:
-            damped[end] += dashpot.coefficient
+        for end, weight in dashpot.direction:
+            if end != GROUND:
+                damped[end] += weight**2 * dashpot.coefficient
     for spring in scene.springs:
-        for end in set(spring.between) - {GROUND}:
-            held[end] += stiffness_of(spring)
+        for end, weight in spring.direction:
+            if end != GROUND:
+                held[end] += weight**2 * stiffness_of(spring)
     for body in (body for body in scene.bodies if body.name not in of_frames(scene)):
         critical = ratio_coefficient(1.0, max(held[body.name], 0.0), body.mass)
         if damped[body.name] > critical > 0.0:
@@ -248,8 +250,8 @@ def _damping_doubts(scene: Scene) -> Iterator[Doubt]:
 
 def _isolation_doubts(scene: Scene) -> Iterator[Doubt]:
     """Bodies above isolators that a dashpot joins to the ground and no spring does."""
-    damped = {end for d in scene.dashpots if GROUND in d.between for end in d.between}
-    past = damped - {end for s in scene.springs if GROUND in s.between for end in s.between}
+    damped = {end for d in scene.dashpots if GROUND in d.ends for end in d.ends}
+    past = damped - {end for s in scene.springs if GROUND in s.ends for end in s.ends}
     for name in sorted(past & isolated(scene)) if past else ():
         yield (
             "isolation",

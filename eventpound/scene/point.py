@@ -1,4 +1,4 @@
-"""A point between bodies, as of a column between two floors, that a contact may be at."""
+"""A point between bodies, as of a column between two floors, that an end may be at."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from eventpound.basics.given import Given, converting, number, read_fields
 from eventpound.units import Dimension
 
 _Pair = tuple[str, Annotated[float, Dimension.NUMBER]]
-_Weights = Mapping[str, float | str] | Iterable[tuple[str, float | str]]
+_Given = Mapping[str, float | str] | Iterable[tuple[str, float | str]]
+Weights = tuple[tuple[str, float], ...]
+"""Names and the parts that they have in something."""
 
 WHOLE = 1e-9
 """What the weights of a point may miss 1 by, since thirds have no end in decimals."""
@@ -29,7 +31,7 @@ class Point:
         Kept as a tuple of pairs.
     """
 
-    weights: Given[tuple[_Pair, ...], _Weights]
+    weights: Given[tuple[_Pair, ...], _Given]
 
     def __post_init__(self) -> None:
         given: object = self.weights
@@ -43,8 +45,23 @@ class Point:
 
     @property
     def label(self) -> str:
-        """Its bodies, as a name of a contact has them."""
+        """Its bodies, as a name of what it is an end of has them."""
         return "+".join(name for name, _ in self.weights)
+
+    @property
+    def parts(self) -> Weights:
+        """Names and weights, 1 in sum."""
+        # One to rounding, so that a motion of all bodies together opens nothing.
+        return tuple((name, weight / (self.total or 1.0)) for name, weight in self.weights)
+
+    @property
+    def written(self) -> dict[str, float]:
+        """Itself as a case writes it."""
+        return dict(self.weights)
+
+    def renamed(self, names: Mapping[str, str]) -> Point:
+        """The same point with other names for some of its own."""
+        return Point(tuple((names.get(name, name), weight) for name, weight in self.weights))
 
     @property
     def total(self) -> float:

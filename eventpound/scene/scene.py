@@ -63,6 +63,13 @@ class Scene:
         return [spring.name for spring in self.springs if isinstance(spring.law, Hysteretic)]
 
     @property
+    def at_points(self) -> list[str]:
+        """What has an end at a point between bodies, as messages call it."""
+        kinds = (("spring", self.springs), ("contact", self.contacts))
+        found = [f"{kind} {x.name!r}" for kind, every in kinds for x in every if x.at_point]
+        return found + [f"dashpot {d.label!r}" for d in self.dashpots if d.at_point]
+
+    @property
     def memory(self) -> list[tuple[str, str]]:
         """Spring and name of each internal variable, in the order of z."""
         found = [(name, "z") for name in self.hysteretic_springs]

@@ -28,9 +28,11 @@ from eventpound.basics.given import (
     default,
     not_negative,
     number,
+    read_fields,
 )
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.ends import End, GivenEnd, Joining, read_ends
 from eventpound.units import STANDARD_GRAVITY, Dimension
 
 GROUND = "ground"
@@ -686,15 +688,16 @@ def storey_keys(spring: Spring) -> dict[str, object]:
 
 
 @converting
-class Spring:
-    """A law between two bodies or a body and the ground.
+class Spring(Joining):
+    """A law between two bodies, points between bodies, or one and the ground.
 
     Parameters
     ----------
     name : str
         Unique among the springs of the scene.
-    between : tuple of str
-        Names of the first and the second end; one may be ``"ground"``.
+    between : tuple of str or Point
+        Names of the first and the second end; one may be ``"ground"``. Or points between bodies;
+        a mapping of names to weights, ``{"B2": 0.4, "B3": 0.6}``, is one.
     law : Law
         Force as a function of the elongation (and, for Bouc-Wen, its history).
     height : float, optional
@@ -714,11 +717,20 @@ class Spring:
     """
 
     name: str
-    between: Given[tuple[str, str], Sequence[str]]
+    between: Given[tuple[End, End], Sequence[GivenEnd]]
     law: Law
     height: Annotated[OptionalNumber, Dimension.LENGTH, _LONG] = default(None)
     weight: Annotated[OptionalNumber, Dimension.FORCE, _PULL] = default(None)
     frame: str | None = None
+
+    def __post_init__(self) -> None:
+        read_ends(self, "between")
+        read_fields(self)
+
+    @property
+    def sides(self) -> tuple[End, End]:
+        """Its first and its second end."""
+        return self.between
 
     @property
     def geometric_stiffness(self) -> float:

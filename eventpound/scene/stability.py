@@ -16,6 +16,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.at_rest import at_rest, stiffness_of
+from eventpound.scene.ends import Direction
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import joined
 from eventpound.scene.scene import Scene
@@ -52,11 +53,11 @@ def unstable(scene: Scene, start: float = 0.0) -> Unstable | None:
         return None
     springs = grounded(at_rest(scene, start)).springs
     stiffness = [stiffness_of(spring) for spring in springs]
-    for group in joined_groups([b.name for b in scene.bodies], [s.between for s in springs]):
-        own = [i for i, spring in enumerate(springs) if not {*group}.isdisjoint(spring.between)]
+    for group in joined_groups([b.name for b in scene.bodies], [s.ends for s in springs]):
+        own = [i for i, spring in enumerate(springs) if not {*group}.isdisjoint(spring.ends)]
         if all(stiffness[i] >= 0.0 for i in own):
             continue
-        links = [(springs[i].between, stiffness[i]) for i in own]
+        links = [(springs[i].direction, stiffness[i]) for i in own]
         moves = motion_of_links(group, links)
         if moves is not None:
             u = dict(zip(group, moves.tolist(), strict=True))
@@ -66,7 +67,7 @@ def unstable(scene: Scene, start: float = 0.0) -> Unstable | None:
 
 
 def motion_of_links(
-    bodies: Sequence[str], links: Sequence[tuple[tuple[str, str], float]]
+    bodies: Sequence[str], links: Sequence[tuple[Direction, float]]
 ) -> Floats | None:
     """A motion, the largest part 1, in which links do negative work; None where none is.
 
@@ -75,9 +76,9 @@ def motion_of_links(
     bodies : sequence of str
         Their names.
     links : sequence
-        Ends of each link, bodies or the ground, and its stiffness or coefficient.
+        Direction of each link, in bodies and the ground, and its stiffness or coefficient.
     """
-    sizes = joined(bodies, [(between, abs(k)) for between, k in links]).diagonal()
+    sizes = joined(bodies, [(direction, abs(k)) for direction, k in links]).diagonal()
     return gives_way(joined(bodies, links), sizes)
 
 
@@ -105,6 +106,6 @@ def gives_way(stiffness: Floats, sizes: Floats) -> Floats | None:
     return np.asarray(u / u[np.argmax(np.abs(u))])
 
 
-def _work(u: dict[str, float], between: tuple[str, str], stiffness: float) -> float:
-    x = u.get(between[1], 0.0) - u.get(between[0], 0.0)
+def _work(u: dict[str, float], direction: Direction, stiffness: float) -> float:
+    x = sum(weight * u.get(end, 0.0) for end, weight in direction)
     return stiffness * x * x

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
+from itertools import pairwise, product
 from typing import TypeVar
 
+from eventpound.scene.ends import weights_of
 from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Spring
@@ -33,8 +35,8 @@ def mass_on(scene: Scene, spring: Spring) -> float | None:
         to the ground, and None of a spring between two bodies.
     """
     scene = grounded(scene)
-    between = next(s.between for s in scene.springs if s.name == spring.name)
-    others = [s.between for s in scene.springs if set(s.between) != set(between)]
+    between = next(s.ends for s in scene.springs if s.name == spring.name)
+    others = [s.ends for s in scene.springs if set(s.ends) != set(between)]
     held, *loose = joined_groups([GROUND, *(body.name for body in scene.bodies)], others)
     hanging = [group for group in loose if not set(between).isdisjoint(group)]
     # On one end a group that nothing else holds; or both ends are held, or neither.
@@ -57,24 +59,24 @@ def structures_of(scene: Scene) -> list[list[str]]:
     list of list of str
         A structure is called after its first body.
     """
-    joints = [spring.between for spring in scene.springs]
-    joints += [dashpot.between for dashpot in scene.dashpots]
+    joints = [spring.ends for spring in scene.springs]
+    joints += [dashpot.ends for dashpot in scene.dashpots]
     return joined_groups([body.name for body in scene.bodies], joints)
 
 
-def joined_groups(bodies: Sequence[str], joints: Iterable[tuple[str, str]]) -> list[list[str]]:
+def joined_groups(bodies: Sequence[str], joints: Iterable[Sequence[str]]) -> list[list[str]]:
     """Groups of bodies that joints connect; those to the ground or a support connect none.
 
     Parameters
     ----------
     bodies : sequence of str
         Names; groups and their members keep the order.
-    joints : iterable of tuple of str
-        Ends of each.
+    joints : iterable of sequence of str
+        Ends of each, all that it has at its points.
     """
     beside: dict[str, list[str]] = {name: [] for name in bodies}
-    for first, second in joints:
-        if first in beside and second in beside:
+    for ends in joints:
+        for first, second in pairwise(end for end in ends if end in beside):
             beside[first].append(second)
             beside[second].append(first)
     position = {name: i for i, name in enumerate(beside)}
@@ -89,26 +91,32 @@ def joined_groups(bodies: Sequence[str], joints: Iterable[tuple[str, str]]) -> l
 
 
 def is_storey(scene: Scene, i: int) -> bool:
-    """Whether spring i has a height and is a storey: no pier, alone below what bearings carry."""
+    """Whether spring i has a height and is a storey: no pier, alone below what bearings carry.
+
+    What has an end at a point is a brace or a damper, whatever its height.
+    """
     spring, bodies = scene.springs[i], {body.name for body in scene.bodies}
-    if spring.height is None or spring.frame is not None:
-        return spring.height is not None
-    own = bodies.intersection(spring.between)
-    beside = [s for k, s in enumerate(scene.springs) if k != i and own.intersection(s.between)]
-    carries = any(bodies.intersection(s.between) - own for s in beside if s.frame is None)
+    if spring.height is None or spring.at_point:
+        return False
+    if spring.frame is not None:
+        return True
+    own = bodies.intersection(spring.ends)
+    beside = [s for k, s in enumerate(scene.springs) if k != i and own.intersection(s.ends)]
+    carries = any(bodies.intersection(s.ends) - own for s in beside if s.frame is None)
     return any(s.height is not None for s in beside) or not carries
 
 
 def of_frames(scene: Scene) -> set[str]:
     """Bodies of frames: how a floor swings while all others are held is no mode that matters."""
-    return {end for spring in scene.springs if spring.frame is not None for end in spring.between}
+    return {end for spring in scene.springs if spring.frame is not None for end in spring.ends}
 
 
 def neighbours(springs: Iterable[Spring]) -> dict[str, list[str]]:
     """What springs join to each end of one, each once and in their order."""
     found: dict[str, dict[str, None]] = {}
     for spring in springs:
-        for here, there in (spring.between, spring.between[::-1]):
+        first, second = ([name for name, _ in weights_of(end)] for end in spring.sides)
+        for here, there in (*product(first, second), *product(second, first)):
             found.setdefault(here, {})[there] = None
     return {name: list(others) for name, others in found.items()}
 
@@ -143,11 +151,11 @@ def isolated(scene: Scene) -> set[str]:
     for spring in scene.springs:
         law = spring.law
         if isinstance(law, BoucWen) and law.yields:
-            ends = frozenset(spring.between)
+            ends = frozenset(spring.ends)
             force = law.yield_force
             yields[ends] = yields.get(ends, 0.0) + force
     names = [GROUND, *(body.name for body in scene.bodies)]
-    joints = [spring.between for spring in scene.springs]
+    joints = [spring.ends for spring in scene.springs]
     elastic = [ends for ends in joints if frozenset(ends) not in yields]
     # What the ground holds without a spring that yields: piers, abutments, footings.
     held = set(joined_groups(names, elastic)[0])

@@ -105,8 +105,8 @@ def unusual(scene: Scene, given: Mapping[str, tuple[str, float]]) -> list[str]:
             found.setdefault(key, f"{said}; usual is {usual}: {row.why}")
     for kind, text in _beside_others(grounded(scene)):
         found.setdefault(kind, text)
-    names = {end for spring in scene.springs for end in spring.between}
-    names |= {end for dashpot in scene.dashpots for end in dashpot.between}
+    names = {end for spring in scene.springs for end in spring.ends}
+    names |= {end for dashpot in scene.dashpots for end in dashpot.ends}
     names |= {end for contact in scene.contacts for end in contact.ends}
     for support in scene.supports:
         if support.name not in names:
@@ -154,7 +154,7 @@ def _forces(scene: Scene) -> Iterator[tuple[str, tuple[str, ...], float]]:
             for key, dimension in numbers_of(type(owner)).items():
                 if dimension is Dimension.FORCE:
                     size = float(getattr(owner, key) or 0.0)
-                    yield f"spring '{spring.name}': {key}", spring.between, size
+                    yield f"spring '{spring.name}': {key}", spring.ends, size
     for force in scene.forces:
         history = force.history
         sizes = (getattr(history, key, None) for key in ("value", "amplitude", "peak"))
@@ -173,9 +173,7 @@ def _beside_others(scene: Scene) -> Iterator[tuple[str, str]]:
             part = f"a mass of {value:.4g} kg beside one of {heaviest:.4g} kg"
             yield "lightest", f"body '{name}': {part}; usual is from {LEAST_OF_HEAVIEST:g} of it"
     pairs: list[tuple[str, tuple[str, ...], float]] = [
-        (f"spring '{s.name}'", s.between, _stiffest(s.law))
-        for s in scene.springs
-        if s.frame is None
+        (f"spring '{s.name}'", s.ends, _stiffest(s.law)) for s in scene.springs if s.frame is None
     ]
     stiffest = max((k for *_, k in pairs), default=0.0)
     pairs += [

@@ -49,9 +49,8 @@ def knows_laws(solver: Solver, scene: Scene) -> bool:
 
 
 def takes_points(solver: Solver, scene: Scene) -> bool:
-    """Whether a solver takes contacts at points between bodies, if there are any."""
-    at_points = any(contact.at_point for contact in scene.contacts)
-    return not at_points or getattr(solver, "takes_points", False)
+    """Whether a solver takes ends at points between bodies, if there are any."""
+    return not scene.at_points or getattr(solver, "takes_points", False)
 
 
 def unknown_springs(solver: Solver, scene: Scene) -> dict[str, LawName]:

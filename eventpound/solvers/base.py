@@ -372,7 +372,7 @@ class Solver(Protocol):
     any other is never given one. One that takes scenes with supports and forces says so by
     ``takes_supports = True``. One that knows laws of contacts besides Newton's names them in
     an attribute ``contact_laws``, a collection of `eventpound.scene.contact_law.ContactLaw` kinds;
-    scenes with others are refused. One that takes contacts at points between bodies, with more
+    scenes with others are refused. One that takes ends at points between bodies, with more
     than two bodies in a column of W, says so by ``takes_points = True``. One that knows spring laws
     whose memory has branches or a second number (`eventpound.scene.spring.Hysteretic`) has their
     words in an attribute ``memories``. One that keeps `Recording.sticks`, and in the history the

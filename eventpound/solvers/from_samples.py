@@ -142,9 +142,7 @@ def _history(task: Task, model: Model, rows: tuple[Floats, Floats, Floats, Float
 
 def _base_shear(model: Model, full: History) -> Floats:
     """Sum of the forces of springs and dashpots on the ground (N), shape (n, 1)."""
-    force = model.link_forces(full.u, full.v, full.z)[1]
-    first, second = (model.link_ends[:, end] == -1 for end in (0, 1))
-    shear: Floats = force[:, first].sum(axis=1) - force[:, second].sum(axis=1)
+    shear: Floats = model.link_forces(full.u, full.v, full.z)[1] @ model.on_ground
     return shear[:, None]
 
 

@@ -15,6 +15,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.supported import lowered, moving_supports, support_motion
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.ends import Joining, opening
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Energy, History, Recording, SupportHistory, Task
@@ -120,18 +121,17 @@ def link_force_on(
     """
     total = np.zeros(force.shape[0])
 
-    def sign(between: tuple[str, str]) -> int:
+    def part(link: Joining) -> float:
         # What pulls the first end to the right pulls the second to the left.
-        counts = others is None or {*between} <= {*ends, *others}
-        return ((between[0] in ends) - (between[1] in ends)) * counts
+        counts = others is None or {*link.ends} <= {*ends, *others}
+        return counts * -sum(weight for end, weight in link.direction if end in ends)
 
     for i, spring in enumerate(scene.springs):
-        if way := sign(spring.between):
-            total += way * force[:, i]
+        if own := part(spring):
+            total += own * force[:, i]
     for dashpot in scene.dashpots:
-        if way := sign(dashpot.between):
-            first, second = dashpot.between
-            total += way * (dashpot.coefficient * (rate[second] - rate[first]))
+        if own := part(dashpot):
+            total += own * (dashpot.coefficient * opening(dashpot, 0.0, rate))
     return total
 
 

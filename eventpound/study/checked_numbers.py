@@ -16,7 +16,8 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
 from eventpound.scene.check import TOGETHER, check_scene
-from eventpound.scene.contact import BARRIER, opening
+from eventpound.scene.contact import BARRIER
+from eventpound.scene.ends import opening
 from eventpound.scene.parameters import Place, value_at, with_values
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND

@@ -11,6 +11,7 @@ from eventpound import (
     Contact,
     ContactLaw,
     Cosine,
+    Dashpot,
     DegradingBoucWen,
     Force,
     InputError,
@@ -24,7 +25,7 @@ from eventpound import (
 from eventpound.case.case import SolverOptions
 from eventpound.case.solver_options import OWN_SOLVERS
 from eventpound.scene.check import check_scene
-from eventpound.scene.contact import End
+from eventpound.scene.ends import End
 from eventpound.scene.spring import Law
 from eventpound.simulation import check_solver
 from tests.models import DOCS
@@ -56,7 +57,9 @@ SCENES = {
     "supports that move otherwise than the ground": replace(_PLAIN, supports=(_SUPPORT,)),
     "forces on bodies": replace(_PLAIN, forces=(Force("a", "1 kN"),)),
     "contacts with a law of their own": _scene(Linear(1e6), kind=ContactLaw("hertz", 1e9)),
-    "contacts at points between floors": _scene(Linear(1e6), _POINT),
+    "springs and contacts at points between floors": replace(
+        _scene(Linear(1e6), _POINT), dashpots=(Dashpot((_POINT, "b"), "1 kN s/m"),)
+    ),
     "the same beside friction bearings": _scene(_SLIDER, _POINT),
     "the same on supports": replace(_scene(Linear(1e6), _POINT), supports=(_SUPPORT,)),
 }

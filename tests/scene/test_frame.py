@@ -67,9 +67,9 @@ def test_the_frame_has_couplings_of_either_sign() -> None:
 def test_its_springs_and_dashpots_are_the_matrices() -> None:
     parts = frame("T", K, np.diag([MASS] * N), C)
     names = [body.name for body in parts.bodies]
-    of_springs = joined(names, [(s.between, s.law.stiffness) for s in parts.springs])  # type: ignore[union-attr]
+    of_springs = joined(names, [(s.direction, s.law.stiffness) for s in parts.springs])  # type: ignore[union-attr]
     assert of_springs == pytest.approx(K, rel=1e-12, abs=1e-14 * K.max())
-    of_dashpots = joined(names, [(d.between, d.coefficient) for d in parts.dashpots])
+    of_dashpots = joined(names, [(d.direction, d.coefficient) for d in parts.dashpots])
     assert of_dashpots == pytest.approx(C, rel=1e-12, abs=1e-14 * C.max())
     squares = eigh(K, MASS * np.eye(N), eigvals_only=True)
     period = modes_of(Scene(parts.bodies, parts.springs), names).period
@@ -231,7 +231,7 @@ def test_a_frame_stands_on_bearings_under_a_slab() -> None:
     )
     # The slab is between: what the frame puts on it is what its links to the ground were.
     names = [body.name for body in scene.bodies]
-    links = [(s.between, s.law.stiffness) for s in parts.springs]  # type: ignore[union-attr]
+    links = [(s.direction, s.law.stiffness) for s in parts.springs]  # type: ignore[union-attr]
     whole = joined(names, links)
     assert whole[1:, 1:] == pytest.approx(K, rel=1e-12, abs=1e-14 * K.max())
     assert np.abs(whole.sum(axis=0)).max() < 1e-12 * K.max()

@@ -49,8 +49,8 @@ def frame(count: int) -> Frame:
 def matrices(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """M, C, K of a scene, K initial."""
     names = [body.name for body in scene.bodies]
-    damping = joined(names, [(d.between, d.coefficient) for d in scene.dashpots])
-    stiffness = joined(names, [(s.between, stiffness_of(s)) for s in scene.springs])
+    damping = joined(names, [(d.direction, d.coefficient) for d in scene.dashpots])
+    stiffness = joined(names, [(s.direction, stiffness_of(s)) for s in scene.springs])
     return np.diag([body.mass for body in scene.bodies]), damping, stiffness
 
 

@@ -134,7 +134,7 @@ def own_scales(
     lengths, speeds = np.minimum(length, reach), np.minimum(speed, swift)
     for d, weights in enumerate(links.weights, mass.shape[-1] - links.weights.shape[0]):
         for sizes in (lengths, speeds):
-            sizes[..., d] = sizes[..., weights > 0.0].min(axis=-1)
+            sizes[..., d] = sizes[..., weights != 0.0].min(axis=-1)
     return lengths, speeds
 
 
@@ -148,11 +148,23 @@ def _held(links: Attached, mass: Floats) -> _LinkSums:
     held = np.zeros((len(of_link), *mass.shape))
     each = np.empty((len(of_link), *of_link[0].shape))
     each[:] = of_link
+    bodies = mass.shape[-1] - links.weights.shape[0]
     for i, ends in enumerate(links.ends.tolist()):
         for b in ends:
-            if b >= 0:
+            if b >= bodies:
+                _add_at_point(each[..., i], links.weights[b - bodies], held)
+            elif b >= 0:
                 held[..., b] += each[..., i]
     return _LinkSums(*held)
+
+
+def _add_at_point(each: Floats, weights: Floats, held: Floats) -> None:
+    """Add what a link at a point does to its bodies, `each` of `_LinkSums`, to `held`."""
+    for b in np.flatnonzero(weights):
+        # Of the point's displacement, and of the force there, a body has a part w each.
+        w = abs(weights[b])
+        parts = np.array([w * w, w * w, w, w * w, 1.0])
+        held[..., b] += parts.reshape(-1, *(1,) * (each.ndim - 1)) * each
 
 
 def _reach(load: Floats, held: _LinkSums) -> Floats:
@@ -293,7 +305,7 @@ def scales_without(model: Model, duration: float, push: float) -> tuple[float, f
 
 def _elastic_time(model: Model) -> float:
     """Smallest sqrt(m/k) over the links, inf where nothing is stiff."""
-    masses = np.append(model.mass, np.inf)
+    masses = np.append(model.felt_mass, np.inf)
     smallest, memory = np.inf, yielding(model.law.memory).stiffness
     for i in range(model.plain):
         k = max(model.elastic.compression[i], model.elastic.extension[i])

@@ -58,6 +58,7 @@ def links_of(model: Model) -> Links:
             grounded[model.link_ends[link].max()] = h
     return Links(
         ends=model.link_ends,
+        on_ground=model.on_ground,
         law=model.law,
         compression=model.elastic.compression,
         extension=model.elastic.extension,

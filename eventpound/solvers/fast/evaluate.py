@@ -70,7 +70,7 @@ def _link_forces(ground: float, run: FastRun) -> None:
         if links.z_of_link[a] >= 0:
             observed.z[links.z_of_link[a]] = z
         observed.force[a] = force
-        add_pull(a, force + law.damping[a] * x_rate, links.ends, observed)
+        add_pull(a, force + law.damping[a] * x_rate, links, observed)
 
 
 @compiled_deferred

@@ -203,7 +203,8 @@ def _last_of_others(order: int, power: float, over: float, run: FastRun) -> floa
         for side in range(2):
             b = links.ends[a, side]
             if b >= 0 and _moves_with_others(b, plan.mass, series):
-                last = max(last, power * over * of_link / plan.mass[b])
+                felt = felt_mass(b, plan.mass, series.free)
+                last = max(last, power * over * of_link / felt)
     return max(of_z, last * limits.time**2 / (LOCAL_SHARE * limits.rtol * limits.length))
 
 

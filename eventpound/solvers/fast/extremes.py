@@ -323,21 +323,17 @@ def _add_acceleration_rate(c: int, factor: float, order: int, series: FastSeries
 @compiled
 def _base_shear(order: int, plan: FastPlan, series: FastSeries) -> float:
     """Sum of the forces of links to the ground (N); its rate goes into `series.d`."""
-    F, d, ends = series.F, series.d, plan.links.ends
+    F, d, on_ground = series.F, series.d, plan.links.on_ground
     value = 0.0
     for k in range(order - 2):
         d[k] = 0.0
-    for a in range(ends.shape[0]):
-        sign = 0.0
-        if ends[a, 0] < 0:
-            sign += 1.0
-        if ends[a, 1] < 0:
-            sign -= 1.0
-        value += sign * F[a, 0]
+    for a in range(on_ground.size):
+        part = on_ground[a]
+        value += part * F[a, 0]
         # The force of a link at rest does not change.
-        if sign != 0.0 and series.ends[a, 0] != series.ends[a, 1]:
+        if part != 0.0 and series.ends[a, 0] != series.ends[a, 1]:
             for k in range(order - 2):
-                d[k] += sign * (k + 1) * F[a, k + 1]
+                d[k] += part * (k + 1) * F[a, k + 1]
     return value
 
 

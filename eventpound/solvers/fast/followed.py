@@ -150,7 +150,7 @@ def observe_followed(tau: float, order: int, run: FastRun) -> None:
         observed.z[h] += change
         force = pull_per_z(a, series.memory) * change
         observed.force[a] += force
-        add_pull(a, force, links.ends, observed)
+        add_pull(a, force, links, observed)
     of.defect[0] = 0.0
     # After all z have moved, since the rate of one may ask for another.
     for i in range(of.sigma.size):

@@ -105,17 +105,14 @@ def link_force(a: int, x: float, run: FastRun) -> tuple[float, float]:
 
 
 @compiled
-def add_pull(a: int, force: float, ends: Ints, observed: FastObserved) -> None:
-    """Add what a force (N) of link a puts on its bodies, and on the ground, to `observed`."""
-    first, second = ends[a, 0], ends[a, 1]
+def add_pull(a: int, force: float, links: Links, observed: FastObserved) -> None:
+    """Add what a force (N) of link a puts on its ends, and on the ground, to `observed`."""
+    first, second = links.ends[a, 0], links.ends[a, 1]
     if first >= 0:
         observed.body_force[first] += force
-    else:
-        observed.base[1] += force
     if second >= 0:
         observed.body_force[second] -= force
-    else:
-        observed.base[1] -= force
+    observed.base[1] += links.on_ground[a] * force
 
 
 @compiled

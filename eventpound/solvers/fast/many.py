@@ -68,8 +68,8 @@ def _ground_of(i: int, motions: Motions) -> Ground:
 
 _SHARED = frozenset(
     (
-        *("links.ends", "links.z_of_link", "links.springs", "links.grounded"),
-        "links.sliders",
+        *("links.ends", "links.on_ground", "links.z_of_link", "links.springs"),
+        *("links.grounded", "links.sliders"),
         *("hysteresis.link", "hysteresis.tables", "hysteresis.followed"),
         *("contacts.left", "contacts.right", "contacts.weights"),
         *("limits.rtol", "limits.order", "limits.ledger", "output_times"),

@@ -49,12 +49,13 @@ MOST_HALVINGS = 60
 class Links(NamedTuple):
     """Links: ends (L, 2), laws, elastic branches (L,), and which z (L,), -1 for none.
 
-    `springs`: the first of them; `kinked`: whether one has a kink. `grounded` (N,): the z of a
-    link from the ground to the body, -1 for none. `sliders` (J,): those that slide, whose contacts
-    are the last J.
+    `on_ground` (L,): what of their forces counts in the base shear. `springs`: the first of them;
+    `kinked`: whether one has a kink. `grounded` (N,): the z of a link from the ground to the
+    coordinate, -1 for none. `sliders` (J,): those that slide, whose contacts are the last J.
     """
 
     ends: Ints
+    on_ground: Floats
     law: LinkLaw
     compression: Floats
     extension: Floats

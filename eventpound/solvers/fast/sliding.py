@@ -114,7 +114,7 @@ def observe_slider_forces(run: FastRun) -> None:
         a = _link_of(j, run)
         # Friction is what the slip would give less what sticking takes of it: f = σ F - λ.
         observed.force[a] -= observed.contact_force[j]
-        observed.base[1] -= _to_ground(a, run) * observed.contact_force[j]
+        observed.base[1] -= links.on_ground[a] * observed.contact_force[j]
 
 
 @compiled_deferred
@@ -127,23 +127,16 @@ def observe_slider_z(run: FastRun) -> None:
         observed.z[z] = (slip - observed.contact_force[j]) / abs(slip)
 
 
-@compiled
-def _to_ground(a: int, run: FastRun) -> float:
-    """By what the force of link a counts in the base shear."""
-    ends = run.plan.links.ends
-    return (1.0 if ends[a, 0] < 0 else 0.0) - (1.0 if ends[a, 1] < 0 else 0.0)
-
-
 @compiled_deferred
 def add_stick_shear(order: int, run: FastRun) -> float:
     """What sliders that stick add to the base shear (N), and to its rate in `series.d`."""
     links, series, value = run.plan.links, run.series, 0.0
     first = run.state.gap.size - links.sliders.size
     for i in range(links.sliders.size):
-        sign = _to_ground(links.sliders[i], run)
-        if run.state.resting[first + i] and sign != 0.0:
+        part = links.on_ground[links.sliders[i]]
+        if run.state.resting[first + i] and part != 0.0:
             force = series.contact_force[first + i]
-            value -= sign * force[0]
+            value -= part * force[0]
             for k in range(order - 2):
-                series.d[k] -= sign * (k + 1) * force[k + 1]
+                series.d[k] -= part * (k + 1) * force[k + 1]
     return value

@@ -43,6 +43,7 @@ from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.model import Model
 from eventpound.scene.contact_law import BY_WORD, Element, damping_constant
 from eventpound.scene.elastic_laws import reduced
+from eventpound.scene.ends import label_of, opening
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, BoucWen, Spring
 from eventpound.solvers.settings import Settings, number, word
@@ -199,7 +200,7 @@ def elements_of(scene: Scene, model: Model, choice: ContactChoice, step: float) 
     problems = [problem for spring in scene.springs for problem in _problems(spring, scene)]
     problems += _law_problems(scene, model)
     problems += [
-        f"dashpot {' - '.join(d.between)}: its Viscous material is not negative"
+        f"dashpot {' - '.join(map(label_of, d.sides))}: its Viscous material is not negative"
         for d in scene.dashpots
         if d.coefficient < 0.0
     ]
@@ -235,11 +236,11 @@ def _problems(spring: Spring, scene: Scene) -> list[str]:
     if not isinstance(law, BoucWen):
         return []
     place = {body.name: body.displacement for body in scene.bodies}
-    first, second = (place.get(end, 0.0) for end in spring.between)
+    x = opening(spring, 0.0, dict.fromkeys(spring.ends, 0.0) | place)
     found = []
     if law.initial_z != 0.0:
         found.append(f"spring {spring.name}: its Bouc-Wen material starts from z = 0")
-    if first != second:
+    if x != 0.0:
         found.append(f"spring {spring.name}: its Bouc-Wen material starts from no elongation")
     if math.log10(law.yield_displacement) * -law.exponent > math.log10(OPENSEES_LARGEST):
         found.append(f"spring {spring.name}: 1/u_y^n is too large a number for it")
