@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from eventpound.case.figure import Figure
-from eventpound.case.record_scaling import LARGEST_SCALE
+from eventpound.case.record_scaling import LARGEST_SCALE, RecordScaling
 from eventpound.case.run_options import DEFAULTS, RunOptions
 from eventpound.case.solver_options import SolverOptions
 from eventpound.case.suite import Member, Suite
@@ -96,9 +96,9 @@ class Case:
         return () if self.suite is None else tuple(self.suite.members(self.directory))
 
     @property
-    def scaling(self) -> str:
-        """What is done to the size of every record of its suite, in words; empty for nothing."""
-        return "" if self.suite is None else self.suite.options.scaling
+    def size(self) -> RecordScaling:
+        """How large every record of its suite is made."""
+        return RecordScaling() if self.suite is None else self.suite.options.size
 
     def apart(self, scene: Scene) -> Case:
         """The same of another scene, of which nothing is asked beyond what it gives."""

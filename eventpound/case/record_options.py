@@ -78,11 +78,6 @@ class RecordOptions:
         """The ground motion of a file that was read."""
         return self.size.of(data, self.reverse, self.start)
 
-    @property
-    def scaling(self) -> str:
-        """What is done to the size of every record, in words; empty where nothing is."""
-        return self.size.words()
-
     def of_file(self, file: str, data: RecordData) -> dict[str, object]:
         """``[excitation]`` of one file that was read, in SI with the defaults filled in."""
         read = {"format": data.format, "units": data.units, "time_step": data.time_step}

@@ -16,7 +16,7 @@ from eventpound.errors import InputError, told_of
 if TYPE_CHECKING:
     from eventpound.case import Case
     from eventpound.report.style import Paper
-    from eventpound.study.plan import Base
+    from eventpound.study.plan import Base, Plan
     from eventpound.study.reading import StudyCase
 
 T = TypeVar("T")
@@ -203,6 +203,42 @@ def loaded_study(path: Path) -> StudyCase:
     return case
 
 
+def by_kind(
+    path: Path,
+    one: Callable[[Case], T],
+    study: Callable[[StudyCase], T] | None = None,
+    suite: Callable[[Case], T] | None = None,
+    *,
+    records: str | None = None,
+) -> T:
+    """What is made of a case, which is loaded, by what it holds.
+
+    Parameters
+    ----------
+    path : Path
+        Its directory.
+    one : callable
+        Makes it of a run.
+    study, suite : callable, optional
+        Make it of a study, which is refused by default, and of a suite, by default as of a run.
+    records : str, optional
+        Others, which make a suite of a run.
+    """
+    from eventpound.study.kinds import kind_of
+
+    def of_case() -> T:
+        return one(loaded_case(path))
+
+    def of_suite() -> T:
+        return (suite or one)(loaded_case(path, records))
+
+    def of_study() -> T:
+        return of_case() if study is None else study(loaded_study(path))
+
+    run = of_suite if records else of_case
+    return kind_of(path)[0].choose(run=run, suite=of_suite, study=of_study, folder=of_case)()
+
+
 def case_of_results(manifest: Mapping[str, Any], out: Path, options: Options) -> Case:
     """The case as it was run, whatever became of its file since."""
     from eventpound.case.loading import CASE_FILE, read_case
@@ -219,16 +255,16 @@ def show_warnings(warnings: Iterable[str]) -> None:
         complain(f"warning: {warning}")
 
 
-def complain_of_scales(given: Case | Sequence[Base]) -> None:
-    """Warn of records of a suite, or of the scenes of a study, that are scaled by much."""
+def complain_of_scales(bases: Sequence[Base]) -> None:
+    """Warn of records that are scaled by much."""
     from eventpound.study.large_scales import large_scales_of
 
-    if text := large_scales_of(given):
+    if text := large_scales_of(bases):
         complain(f"warning: {text}")
 
 
 def check_solver_of(case: Case, in_file: bool = True) -> None:
-    """Refuse what no solver can be asked, before anything runs.
+    """Refuse what no solver can be asked of a run, before anything runs.
 
     Parameters
     ----------
@@ -244,19 +280,22 @@ def check_solver_of(case: Case, in_file: bool = True) -> None:
     """
     from eventpound.case.solver_options import REFERENCE
 
-    plain = case.solver.name == REFERENCE and not case.solver.settings
-    if in_file and plain and case.suite is None:
+    if in_file and case.solver.name == REFERENCE and not case.solver.settings:
         # It takes every scene, and its tolerance was checked; others take long to import.
         return
+    from eventpound.simulation import check_solver
+
     with told_of(file_of(case) if in_file else ""):
-        if case.suite is None:
-            from eventpound.simulation import check_solver
+        check_solver(case.solver, case.scene, case.run)
 
-            check_solver(case.solver, case.scene, case.run)
-        else:
-            from eventpound.study.suite import suite_plan
 
-            suite_plan(case, None, None, None, intensities=False)
+def checked_suite(case: Case) -> Plan:
+    """The plan of a suite, of which nothing is refused any more."""
+    from eventpound.study.suite import suite_plan
+
+    with told_of(file_of(case)):
+        plan, _ = suite_plan(case, None, None, None, intensities=False)
+    return plan
 
 
 def file_of(case: Case) -> str:

@@ -11,7 +11,8 @@ Examples
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
 
 if TYPE_CHECKING:
+    from eventpound.case import Case
     from eventpound.study.reading import StudyCase
 
 
@@ -33,18 +35,27 @@ def add_check(commands: Commands) -> None:
 def _check(options: Options) -> int:
     if options.quantities:
         options.refuse(["--json"], "is not for --quantities")
-        return _list_quantities(options.case)
+        names = _all_quantities() if options.case is None else _quantities_of(options.case)
+        print("\n".join(names))
+        return 0
     if options.case is None:
         options.parser.error("the following arguments are required: CASE")
-    from eventpound.study.kinds import Holds, kind_of
+    study, suite = partial(_check_study, options), partial(_check_suite, options)
+    return arguments.by_kind(options.case, partial(_check_one, options), study, suite)
 
-    if kind_of(options.case)[0] is Holds.STUDY:
-        options.refuse(["--json"], "is for the case of a single run or of a suite, not of a study")
-        return _check_study(arguments.loaded_study(options.case))
-    case = arguments.loaded_case(options.case)
+
+def _check_suite(options: Options, case: Case) -> int:
+    arguments.complain_of_scales(arguments.checked_suite(case).bases)
+    return _say(options, case)
+
+
+def _check_one(options: Options, case: Case) -> int:
     arguments.check_solver_of(case)
-    if case.suite is not None:
-        arguments.complain_of_scales(case)
+    return _say(options, case)
+
+
+def _say(options: Options, case: Case) -> int:
+    """Say what was understood of a case."""
     from eventpound.results.input_tables import input_lines
     from eventpound.results.inputs import inputs_of
 
@@ -71,8 +82,9 @@ def _tables(inputs: Mapping[str, Any]) -> Iterator[str]:
         yield from lines_of(table)
 
 
-def _check_study(case: StudyCase) -> int:
+def _check_study(options: Options, case: StudyCase) -> int:
     """Say what was understood of a case with a [study], its scene by that of the first run."""
+    options.refuse(["--json"], "is for the case of a single run or of a suite, not of a study")
     from eventpound.results.inputs import inputs_of
     from eventpound.scene.pi_terms import number_of_terms
 
@@ -95,24 +107,24 @@ def _check_study(case: StudyCase) -> int:
     return 0
 
 
-def _list_quantities(path: Path | None) -> int:
-    """Names of the quantities of a case, or of what a study may tabulate; without any, all."""
+def _all_quantities() -> Iterator[str]:
+    """What quantities there are, with units and what they are."""
     from eventpound.quantities.base import SIX
-    from eventpound.quantities.lookup import listing, names_of
+    from eventpound.quantities.lookup import listing
 
-    if path is None:
-        for name, unit, text, _ in listing():
-            print(f"{name:<34} {unit:<6} {text}")
-        print(f"* stands for {', '.join(SIX)}")
-        return 0
-    from eventpound.study.kinds import Holds, kind_of
+    yield from (f"{name:<34} {unit:<6} {text}" for name, unit, text, _ in listing())
+    yield f"* stands for {', '.join(SIX)}"
 
-    if kind_of(path)[0] is Holds.STUDY:
-        from eventpound.study.quantities import quantities_of
 
-        scenes = [base.case.scene for base in arguments.loaded_study(path).study.bases]
-        names = [name for scene in scenes for name in quantities_of(scene)]
-    else:
-        names = names_of(arguments.loaded_case(path).scene)
-    print("\n".join(dict.fromkeys(names)))
-    return 0
+def _quantities_of(path: Path) -> Iterable[str]:
+    """Names of the quantities of a case, or of what a study may tabulate."""
+    from eventpound.quantities.lookup import names_of
+    from eventpound.study.quantities import quantities_of
+
+    return dict.fromkeys(
+        arguments.by_kind(
+            path,
+            lambda case: names_of(case.scene),
+            lambda case: [n for base in case.study.bases for n in quantities_of(base.case.scene)],
+        )
+    )

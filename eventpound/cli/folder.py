@@ -79,12 +79,12 @@ def plot_folder(folder: Path, out: Path) -> int:
 
 def _maker(directory: Path) -> Callable[[Path, Path], GalleryEntry] | None:
     """What makes the figures of a case; None where it has none."""
-    from eventpound.study.kinds import Holds, kind_of
+    from eventpound.study.kinds import kind_of
 
     kind, document = kind_of(directory)
-    if kind is Holds.STUDY:
-        return _study_entry if "figure" in document or "intensity" in document else None
-    return _suite_entry if "figure" in document else None
+    of_suite = _suite_entry if "figure" in document else None
+    of_study = _study_entry if {"figure", "intensity"} & set(document) else None
+    return kind.choose(run=of_suite, suite=of_suite, study=of_study, folder=None)
 
 
 def _suite_entry(directory: Path, out: Path) -> GalleryEntry:

@@ -16,7 +16,7 @@ Examples
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -62,9 +62,10 @@ def _fragility(options: Options) -> int:
     from eventpound.results.tables import table_csv
     from eventpound.study.fragility import fragility_table
     from eventpound.study.stated import PSA, psa_at
+    from eventpound.study.table import read_many
 
     out, paper = options.results, options.paper()
-    table, excitations = _read(out)
+    table, excitations = read_many(out)
     table = _where(table, options.where, out)
     of_demand = dimension_of(options.demand)
     limits = [number("--limit", text, of_demand) for text in options.limit]
@@ -125,22 +126,6 @@ def _set_aside(out: Path, made: bytes) -> None:
     for path in sorted(out.glob(f"{_FRAGILITY}.*")):
         path.rename(out / f"{name}{path.suffix}")
     print(f"moved     the curves that were in {there} are in {name}.csv")
-
-
-def _read(out: Path) -> tuple[pd.DataFrame, list[Mapping[str, Any]]]:
-    """The table of a study, else of a suite, and each ``[excitation]`` it was made with."""
-    from eventpound.study.table import SUITE_TABLE, TABLE, manifest_there, read_suite, read_table
-
-    if (out / TABLE).is_file():
-        scenes: Any = (manifest_there(out) or {}).get("scenes", [])
-        return read_table(out), [scene["case"].get("excitation", {}) for scene in scenes]
-    if (out / SUITE_TABLE).is_file():
-        table, manifest = read_suite(out)
-        return table, [manifest["case"].get("excitation", {})]
-    raise InputError(
-        f"{out}: neither {TABLE} nor {SUITE_TABLE}; `eventpound study` or `eventpound run` of a "
-        "suite writes it"
-    )
 
 
 def _records(table: pd.DataFrame, measure: str) -> str | None:

@@ -13,7 +13,9 @@ Examples
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -45,34 +47,36 @@ def add_plot(commands: Commands) -> None:
 
 
 def _plot(options: Options) -> int:
-    from eventpound.report.run_figures import plot
-    from eventpound.study.kinds import Holds, kind_of_results
+    from eventpound.study.kinds import kind_of_results
 
     out = options.results
     kind, document = kind_of_results(out, options.case)
-    if kind is Holds.FOLDER:
+    run = partial(_plot_run, "pi" in document)
+    draw = kind.choose(run=run, suite=_plot_suite, study=_plot_study, folder=None)
+    if draw is None:
         options.refuse_others("--out", "is for a single case, and this is a folder of cases")
         return plot_folder(options.case, options.out or Path("figures"))
     paper = options.paper()
     if options.model:
         options.refuse_others("--model --out" + arguments.PAPER, "is not for --model")
-        _plot_model(options.case, out, paper)
-        return 0
-    if kind is Holds.RUN:
-        if options.zoom:
-            options.refuse_others("--zoom --out", "is not for --zoom")
-            arguments.write_and_print(out, _zoom(out))
-            return 0
-        pi = options.pi or "pi" in document
-        drawn = plot(out, out, paper, options.xlim, _beside(options, out), pi)
-    else:
+        draw = _plot_model
+    elif draw is not run:
         why = f"is for a single run, and these are the results of a {kind}"
         options.refuse_others("--out" + arguments.PAPER, why)
-        draw = _plot_suite if kind is Holds.SUITE else _plot_study
-        drawn = draw(options, out, paper)
-    for path in drawn:
+    for path in draw(options, out, paper):
         print(path)
     return 0
+
+
+def _plot_run(pi: bool, options: Options, out: Path, paper: Paper) -> Sequence[Path]:
+    """Draw a run, or make its page that zooms; of a case in Π-terms in these."""
+    from eventpound.report.run_figures import plot
+    from eventpound.results import write_together
+
+    if options.zoom:
+        options.refuse_others("--zoom --out", "is not for --zoom")
+        return write_together(out, _zoom(out))
+    return plot(out, out, paper, options.xlim, _beside(options, out), options.pi or pi)
 
 
 def _zoom(out: Path) -> dict[str, bytes]:
@@ -104,24 +108,20 @@ def _beside(options: Options, out: Path) -> tuple[Path | Response, str] | None:
     return response_of(case.apart(replace(case.scene, contacts=()))), "without contact"
 
 
-def _plot_model(directory: Path, out: Path, paper: Paper) -> None:
+def _plot_model(options: Options, out: Path, paper: Paper) -> Sequence[Path]:
     """Draw the bodies of a case and what joins them, of a study those of its first run."""
     from eventpound.report.model_figure import model_figure
     from eventpound.report.style import on_paper
-    from eventpound.study.kinds import Holds, kind_of
-    from eventpound.study.reading import load_study
+    from eventpound.results import write_together
 
-    if kind_of(directory)[0] is Holds.STUDY:
-        case = load_study(directory).study.bases[0].case
-    else:
-        case = arguments.loaded_case(directory)
-    if not case.scene.bodies:
-        raise InputError(f"{directory}: the case has no bodies to draw")
-    figures = {"model.png": model_figure(case.scene, case.title, with_laws=True)}
-    arguments.write_and_print(out, on_paper(figures, paper))
+    first = arguments.by_kind(options.case, lambda case: case, lambda own: own.study.bases[0].case)
+    if not first.scene.bodies:
+        raise InputError(f"{options.case}: the case has no bodies to draw")
+    figures = {"model.png": model_figure(first.scene, first.title, with_laws=True)}
+    return write_together(out, on_paper(figures, paper))
 
 
-def _plot_study(options: Options, out: Path, paper: Paper) -> list[Path]:
+def _plot_study(options: Options, out: Path, paper: Paper) -> Sequence[Path]:
     """Draw the figures of a study from its table."""
     from eventpound.report.study_files import draw
     from eventpound.study.reading import load_finished
@@ -135,7 +135,7 @@ def _plot_study(options: Options, out: Path, paper: Paper) -> list[Path]:
     return draw(case, out, paper)
 
 
-def _plot_suite(options: Options, out: Path, paper: Paper) -> list[Path]:
+def _plot_suite(options: Options, out: Path, paper: Paper) -> Sequence[Path]:
     """Draw the figure of a suite, of the records it was run with."""
     from eventpound.report.suite_plot import plot_suite
     from eventpound.study.table import read_suite

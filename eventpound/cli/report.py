@@ -23,9 +23,10 @@ Examples
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
@@ -43,6 +44,8 @@ if TYPE_CHECKING:
     from eventpound.study.design import DesignRuns
     from eventpound.study.reading import StudyCase
 
+_Made: TypeAlias = "tuple[str, pd.DataFrame, dict[str, bytes]]"
+"""Title, design numbers and files of a report."""
 _FOLDER, _FOLDERS, PRINTED, WORKBOOK = "report", "reports", "report.pdf", "report.xlsx"
 
 
@@ -57,10 +60,11 @@ def add_report(commands: Commands) -> None:
 
 
 def _report(options: Options) -> int:
-    from eventpound.study.kinds import Holds, kind_of
+    from eventpound.study.kinds import kind_of
 
-    if kind_of(options.case)[0] is not Holds.FOLDER:
-        _one(options, options.out or options.results / _FOLDER)
+    make = kind_of(options.case)[0].choose(run=_one, suite=_one, study=_one, folder=None)
+    if make is not None:
+        make(options, options.out or options.results / _FOLDER)
         return 0
     options.refuse_others("--out", "is for a single case, and this is a folder of cases")
     from eventpound.report.gallery import links_page
@@ -81,19 +85,19 @@ def _one(options: Options, out: Path) -> str:
     """Make the report of one case; its title."""
     from eventpound.results.tables import table_csv
     from eventpound.study.design import DESIGN_TABLE
-    from eventpound.study.kinds import Holds, kind_of
 
-    if kind_of(options.case)[0] is Holds.STUDY:
-        options.refuse(["--suite"], "is for a case without a [study]")
-        study = arguments.loaded_study(options.case)
-        title, table, pages = study.study.title, *_of_study(study, options, out)
-    else:
-        case = arguments.loaded_case(options.case, options.suite)
-        arguments.check_solver_of(case)
-        made = _of_run(case, out) if case.suite is None else _of_suite(case, out)
+    def of_case(make: Callable[[Case, Path], DesignRuns], case: Case) -> _Made:
+        made = make(case, out)
         print("\n".join(_lines(case, made)))
-        title, table = case.title, made.table
-        pages = {} if options.no_pages else _pages_of(made, options, out)
+        return case.title, made.table, {} if options.no_pages else _pages_of(made, options, out)
+
+    title, table, pages = arguments.by_kind(
+        options.case,
+        partial(of_case, _of_run),
+        lambda study: _of_study(study, options, out),
+        partial(of_case, _of_suite),
+        records=options.suite,
+    )
     files = {DESIGN_TABLE: table_csv(table)} if len(table) else {}
     arguments.write_and_print(out, files | pages)
     return title
@@ -159,6 +163,7 @@ def _of_run(case: Case, out: Path) -> DesignRuns:
     from eventpound import results
     from eventpound.study.design import made_of_run
 
+    arguments.check_solver_of(case)
     results.check_writable(out)
     with Progress(case) as progress, Watch(None, progress) as watch:
         made = made_of_run(case, watch, lambda: progress.begins("again, without contacts"))
@@ -171,20 +176,19 @@ def _of_suite(case: Case, out: Path) -> DesignRuns:
     """Run a case under every record; those that failed are named."""
     from eventpound.study.design import made_of_suite
 
+    plan = arguments.checked_suite(case)
     with going_on(), Counter("records") as progress:
         made = made_of_suite(case, out, progress)
     assert made.runs is not None
-    arguments.complain_of_scales(case)
+    arguments.complain_of_scales(plan.bases)
     for record, why in zip(made.runs["record"], made.runs["failed"], strict=True):
         if why:
             complain(f"{record} failed, and is left out: {why}")
     return made
 
 
-def _of_study(
-    case: StudyCase, options: Options, out: Path
-) -> tuple[pd.DataFrame, dict[str, bytes]]:
-    """Make the runs of a study; its design numbers and the files of its report."""
+def _of_study(case: StudyCase, options: Options, out: Path) -> _Made:
+    """Make the runs of a study, and its report."""
     from eventpound.report.design_study import study_cells, study_sheets, study_workbook
     from eventpound.report.design_tables import capacity_words
     from eventpound.report.many_appendix import study_sections
@@ -193,6 +197,7 @@ def _of_study(
     from eventpound.study.design import made_of_study, plan_asking
     from eventpound.study.table import manifest_there
 
+    options.refuse(["--suite"], "is for a case without a [study]")
     plan = plan_asking(case.study)
     # Where nothing is asked for beyond it, the table of the study is taken.
     runs = options.results if plan == case.study else out
@@ -208,11 +213,11 @@ def _of_study(
         print("\n".join(capacity_words(made.table, first.run.stated.fractile)))
         print("\n".join(lines_of(study_cells(plan, made.table, trade))))
     if options.no_pages:
-        return made.table, {}
+        return plan.title, made.table, {}
     sheets = study_sheets(plan, made.table, trade, case.warnings) if len(made.table) else []
     sections = study_sections(case, made.runs, manifest_there(runs) or {})
     tables = study_workbook(made.table, trade)
-    return made.table, _pages(plan.title, sheets, sections, tables)
+    return plan.title, made.table, _pages(plan.title, sheets, sections, tables)
 
 
 def _lines(case: Case, made: DesignRuns) -> Iterator[str]:

@@ -14,6 +14,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -70,18 +71,31 @@ def add_run(commands: Commands) -> None:
 def _run(options: Options) -> int:
     if options.export is not None:
         return _export(options)
-    case = _with_solver(arguments.loaded_case(options.case, options.suite), options)
-    in_file = options.solver is None and options.rtol is None
-    if case.suite is None:
-        arguments.check_solver_of(case, in_file)
-    out = options.results
-    from eventpound import results
+    one, suite = partial(_run_one, options), partial(_run_suite, options)
+    return arguments.by_kind(options.case, one, suite=suite, records=options.suite)
 
-    results.check_writable(out)
-    if case.suite is not None:
-        why = "is for a single run; this case has a suite of records"
-        options.refuse(["--time-limit", "--max-steps"], why)
-        return run_and_tell_suite(case, options, out, arguments.file_of(case) if in_file else "")
+
+def _in_file(options: Options) -> bool:
+    """Whether the solver and its tolerance are those of the file."""
+    return options.solver is None and options.rtol is None
+
+
+def _run_suite(options: Options, case: Case) -> int:
+    from eventpound.results import check_writable
+
+    case, told = _with_solver(case, options), arguments.file_of(case) if _in_file(options) else ""
+    check_writable(options.results)
+    why = "is for a single run; this case has a suite of records"
+    options.refuse(["--time-limit", "--max-steps"], why)
+    return run_and_tell_suite(case, options, options.results, told)
+
+
+def _run_one(options: Options, case: Case) -> int:
+    from eventpound.results import check_writable
+
+    case, out = _with_solver(case, options), options.results
+    arguments.check_solver_of(case, _in_file(options))
+    check_writable(out)
     options.refuse(["--histories"], "is for a case with a suite of records")
     response, estimate = _compute(case, options, out)
     print("\n".join(_summary(response)))
@@ -102,12 +116,9 @@ def _run(options: Options) -> int:
 def _export(options: Options) -> int:
     """Write matrices and motion for other programs."""
     options.refuse_others("--export", "is not for --export, which computes nothing")
-    case = arguments.loaded_case(options.case)
-    if case.suite is not None:
-        raise InputError(f"{options.case}: holds a suite; --export writes one motion")
     from eventpound.results import export
 
-    export(case, options.export)
+    export(arguments.loaded_case(options.case), options.export)
     print(f"wrote {options.export}")
     return 0
 

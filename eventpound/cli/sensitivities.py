@@ -12,7 +12,6 @@ Examples
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eventpound.cli import arguments
@@ -22,6 +21,7 @@ from eventpound.errors import InputError
 
 if TYPE_CHECKING:
     from eventpound.case import Case
+    from eventpound.study.reading import StudyCase
 
 
 def add_sensitivities(commands: Commands) -> None:
@@ -36,13 +36,9 @@ def add_sensitivities(commands: Commands) -> None:
     command.paper()
 
 
-def _scene_of(path: Path) -> Case:
-    """The case as it is, without what its [study] varies."""
-    from eventpound.study.kinds import Holds, kind_of
-
-    if kind_of(path)[0] is not Holds.STUDY:
-        return arguments.loaded_case(path)
-    bases = arguments.loaded_study(path).study.bases
+def _only_scene(case: StudyCase) -> Case:
+    """What a [study] varies."""
+    bases = case.study.bases
     if len(bases) > 1 or bases[0].records:
         raise InputError("is of one scene, and this [study] has several")
     return bases[0].case
@@ -53,7 +49,8 @@ def _sensitivities(options: Options) -> int:
     from eventpound.results.tables import Cells, lines_of, table_csv
     from eventpound.study.sensitivities import PEAKS, sensitivities
 
-    case, paper = _scene_of(options.case), options.paper()
+    case = arguments.by_kind(options.case, lambda case: case, _only_scene)
+    paper = options.paper()
     check_writable(options.results)
     with Counter("runs") as progress:
         table = sensitivities(case, of=options.of or PEAKS, to=options.to, progress=progress)

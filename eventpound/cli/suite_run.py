@@ -54,7 +54,7 @@ def run_and_tell_suite(case: Case, options: Options, out: Path, told: str) -> in
             print(f"figure    {path}")
     _say_what_is_unlikely(table)
     _say_what_failed(table)
-    complain_of_scales(case)
+    complain_of_scales(plan.bases)
     return 0
 
 
@@ -105,8 +105,8 @@ def _summary(case: Case, table: pd.DataFrame) -> Iterator[str]:
     yield f"records   {len(done)} of {len(table)}"
     if done.empty:
         return
-    if case.scaling:
-        yield f"scaling   {case.scaling}"
+    if scaling := case.size.words():
+        yield f"scaling   {scaling}"
     for key, unit in (("PGA", "m/s^2"), ("T_m", "s"), ("L_e", "m")):
         if key in done:
             low, middle, high = done[key].quantile([0.0, 0.5, 1.0])

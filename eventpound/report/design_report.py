@@ -44,6 +44,7 @@ from eventpound.simulation import response_of
 from eventpound.study.demands import NEEDED, demands_of
 from eventpound.study.design import FRACTILES
 from eventpound.study.large_scales import large_scales_of
+from eventpound.study.plan import suite_base
 from eventpound.study.records import FAILED, SA, sa_of_suite
 from eventpound.units import TOLD, Dimension
 
@@ -281,17 +282,17 @@ def _second(told: Told) -> Iterator[Block]:
 
 def _sizes(told: Told) -> tuple[str, float] | None:
     """What Sa of the records is called, and what it was to be; None where it is not known."""
-    suite, runs = told.case.suite, told.runs
-    if suite is None or runs is None or SA not in runs or runs[SA].isna().all():
+    runs = told.runs
+    if runs is None or SA not in runs or runs[SA].isna().all():
         return None
     period, _ = sa_of_suite(told.case)
-    return f"Sa({period:.3g} s)", suite.options.size.wanted(period)
+    return f"Sa({period:.3g} s)", told.case.size.wanted(period)
 
 
 def _asked(told: Told) -> Iterator[str]:
     """Under how many records of which size, or under which motion, and what pounds."""
-    suite, runs, design = told.case.suite, told.runs, told.design
-    if suite is None or runs is None:
+    runs, design = told.runs, told.design
+    if runs is None:
         yield f"Under {_motion(told)}."
     else:
         scaling = scaling_words(told.case, told.trade).partition(" (")[0] or "every record as it is"
@@ -360,7 +361,7 @@ def limits(told: Told, warnings: Sequence[str] = ()) -> Iterator[str]:
         if done < _FEW:
             last = f"{FRACTILES[1]:g} % fractile"
             yield f"{done} records are few: the {last} depends on the largest one or two."
-        if large := large_scales_of(told.case):
+        if large := large_scales_of([suite_base(told.case)]):
             yield f"{large}."
         for row in failed.head(_MOST_WARNINGS).to_dict("records"):
             yield f"Left out, because it failed: {row['record']}: {row[FAILED]}."

@@ -193,8 +193,8 @@ def _motions(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:
     spectra: list[Floats] = []
     records, at = list(done["record"]), None
     period, damping = sa_of_suite(case)
-    if SA in done and done[SA].notna().all() and case.suite is not None:
-        at = period, done[SA].to_numpy(float), case.suite.options.size.wanted(period)
+    if SA in done and done[SA].notna().all():
+        at = period, done[SA].to_numpy(float), case.size.wanted(period)
     for member in [m for m in case.members if m.name in records][:_MOST_SPECTRA]:
         try:
             motion = member.options.motion(member.read())
@@ -202,8 +202,7 @@ def _motions(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:
             continue
         spectra.append(psa_of(motion.values, motion.time_step, _SPECTRUM, damping))
     if spectra:
-        target = None if case.suite is None else case.suite.options.size.target
-        drawn = suite_spectra_figure(_SPECTRUM, np.array(spectra), damping, target, at)
+        drawn = suite_spectra_figure(_SPECTRUM, np.array(spectra), damping, case.size.target, at)
         said = f"Spectra of {len(spectra)} records as scaled, {100.0 * damping:g} % damping."
         yield html.figure_of(drawn, said)
 

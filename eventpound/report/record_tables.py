@@ -29,10 +29,7 @@ _SIZES = (
 
 def scaling_words(case: Case, trade: Trade) -> str:
     """What a case does to the size of every record of its suite; empty where that is nothing."""
-    if case.suite is None:
-        return ""
-    size = case.suite.options.size
-    return size.words(lambda value: trade.words(value, Dimension.ACCELERATION.unit))
+    return case.size.words(lambda value: trade.words(value, Dimension.ACCELERATION.unit))
 
 
 def record_names(runs: pd.DataFrame) -> dict[str, str]:

@@ -239,8 +239,7 @@ def _scales_figure(case: Case, wanted: Wanted, records: list[str], title: str) -
     members = [member_of(case, name) for name in (records[0], records[-1])]
     pulsed, plain = (member.options.motion(member.read()) for member in members)
     names = [PurePath(member.name).name for member in members]
-    assert case.suite is not None
-    if wanted.added_pulse is not None and case.suite.synthetic:
+    if wanted.added_pulse is not None and members[0].synthetic is not None:
         pulse = wanted.added_pulse
         values = pulsed.values + pulse.acceleration(pulsed.times)
         pulsed = Record(values, pulsed.time_step, start=pulsed.start)

@@ -33,6 +33,7 @@ from eventpound.scene.contact import Contact
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Law, Series, Spring
+from eventpound.simulation import refuse_suite
 
 _SAMPLES_A_PERIOD = 1000
 
@@ -91,8 +92,9 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
     Raises
     ------
     InputError
-        Where the directory cannot be written to.
+        Where the directory cannot be written to, or the case has many motions.
     """
+    refuse_suite(case)
     warn_left_out(case.run, Way.EXPORT)
     start, end = case.run.start_time, case.run.start_time + case.run.duration
     scene_json = {"title": case.title, "start": start, "end": end} | _scene(case.scene, start)

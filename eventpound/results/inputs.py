@@ -254,8 +254,8 @@ def _structure(scene: Scene, group: list[str]) -> Row:
 def _motion(case: Case) -> Row:
     """The ground motion, or what a suite does with its records."""
     if case.suite is not None:
-        scaling = {"scaling": case.scaling} if case.scaling else {}
-        return {"suite": len(case.members), **scaling}
+        scaling = case.size.words()
+        return {"suite": len(case.members), **({"scaling": scaling} if scaling else {})}
     motion = case.scene.motion
     row: Row = {"kind": motion.kind}
     scales = motion.scales()

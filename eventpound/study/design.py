@@ -18,7 +18,7 @@ import numpy as np
 
 from eventpound.basics.given import Count, checked
 from eventpound.basics.told import Counted, Reached
-from eventpound.case.case import Case
+from eventpound.case.case import Case, case_of
 from eventpound.case.loading import CASE_FILE
 from eventpound.case.run_options import DEFAULTS, Stated
 from eventpound.errors import ComputationError, InputError
@@ -31,7 +31,7 @@ from eventpound.simulation import response_of
 from eventpound.study.demands import STOREY_DRIFT, Demand, demands_of, words_of
 from eventpound.study.engine import engine_of
 from eventpound.study.large_scales import warn_of_scales
-from eventpound.study.plan import RECORD, Plan
+from eventpound.study.plan import RECORD, Plan, suite_base
 from eventpound.study.records import FAILED
 from eventpound.study.running import run_study
 from eventpound.study.study import Study
@@ -108,17 +108,19 @@ def design_numbers(
         Where a single run fails, or every record of a suite; a record that fails among others
         is left out.
     """
-    if isinstance(case, Case) and not case.scene.bodies:
-        file = case.directory / CASE_FILE
-        raise InputError(f"{file}: [[body]]: missing; design numbers are of bodies that move")
-    if isinstance(case, Scene) or (isinstance(case, Case) and case.suite is None):
-        return made_of_run(case).table
-    warn_of_scales(case if isinstance(case, Case) else case.plan.bases)
     with TemporaryDirectory() as scratch:
         out = Path(scratch if folder is None else folder)
-        if isinstance(case, Case):
-            return made_of_suite(case, out, progress, workers).table
-        return made_of_study(case.plan, out, progress).table
+        if isinstance(case, Study):
+            warn_of_scales(case.plan.bases)
+            return made_of_study(case.plan, out, progress).table
+        own = case_of(case)
+        if not own.members:
+            return made_of_run(own).table
+        if not own.scene.bodies:
+            file = own.directory / CASE_FILE
+            raise InputError(f"{file}: [[body]]: missing; design numbers are of bodies that move")
+        warn_of_scales([suite_base(own)])
+        return made_of_suite(own, out, progress, workers).table
 
 
 @dataclass(frozen=True)
@@ -130,7 +132,7 @@ class DesignRuns:
     table : DataFrame
         A row a demand.
     case : Case or None
-        As it was run; None of a scene and of a study.
+        As it was run; None of a study.
     response : Response or None
         Of a run.
     runs : DataFrame or None
@@ -144,17 +146,15 @@ class DesignRuns:
 
 
 def made_of_run(
-    case: Case | Scene,
+    case: Case,
     progress: Reached | None = None,
     again: Callable[[], None] | None = None,
 ) -> DesignRuns:
     """Run a case once, then what its design numbers need; `again` is called in between."""
-    asked = case if isinstance(case, Scene) else asking(case)
-    response = response_of(asked, progress=progress)
+    response = response_of(asking(case), progress=progress)
     if again is not None:
         again()
-    table = design_of_run(response)
-    return DesignRuns(table, None if isinstance(case, Scene) else case, response)
+    return DesignRuns(design_of_run(response), case, response)
 
 
 def made_of_suite(

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
+from typing import TypeVar
 
 from eventpound.case.loading import CASE_FILE, read_document
 from eventpound.errors import InputError
 
 CASES = f"*/{CASE_FILE}"
 """Pattern of the cases of a folder."""
+
+
+T = TypeVar("T")
 
 
 class Holds(StrEnum):
@@ -20,6 +24,10 @@ class Holds(StrEnum):
     SUITE = "suite"
     STUDY = "study"
     FOLDER = "folder"
+
+    def choose(self, *, run: T, suite: T, study: T, folder: T) -> T:
+        """Of four things the one that is for this kind."""
+        return {"run": run, "suite": suite, "study": study, "folder": folder}[self.value]
 
 
 def has_records(document: Mapping[str, object]) -> bool:
@@ -47,15 +55,14 @@ def kind_of(path: Path) -> tuple[Holds, Mapping[str, object]]:
 def kind_of_results(out: Path, path: Path) -> tuple[Holds, Mapping[str, object]]:
     """What results are of, by their table, else by the case, which need not be there any more."""
     # Who only asks what a case is does not pay for what makes tables.
-    from eventpound.study.table import SUITE_TABLE, TABLE
+    from eventpound.study.table import SUITE_TABLE, table_there
 
     try:
         kind, document = kind_of(path)
     except InputError:
         kind, document = Holds.RUN, {}
-    if kind is not Holds.FOLDER and (out / SUITE_TABLE).is_file():
-        return Holds.SUITE, document
-    if kind is not Holds.FOLDER and (out / TABLE).is_file():
-        return Holds.STUDY, document
+    table = table_there(out)
+    if table and kind is not Holds.FOLDER:
+        return (Holds.SUITE if table == SUITE_TABLE else Holds.STUDY), document
     # A suite without its table is drawn as the run whose results are there.
     return (Holds.RUN if kind is Holds.SUITE else kind), document

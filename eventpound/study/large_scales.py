@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from eventpound.basics.told import OptionWarning, warn_caller
-from eventpound.case.case import Case
 from eventpound.case.record_scaling import large_scales
 from eventpound.errors import InputError
 from eventpound.motion.record import Record
@@ -16,23 +15,15 @@ from eventpound.study.plan import Base
 from eventpound.study.variants import axis_values, rows_with
 
 
-def large_scales_of(given: Case | Sequence[Base]) -> str:
-    """A sentence on them; empty where there are none. Records are read, nothing is run.
-
-    Parameters
-    ----------
-    given : Case or sequence of Base
-        Of a suite, or the scenes of a study.
-    """
-    if isinstance(given, Case):
-        given = (Base(given, {}, (), False, given.members),)
-    limit = max(base.case.largest_scale for base in given)
-    return large_scales([pair for base in given for pair in _factors(base)], limit)
+def large_scales_of(bases: Sequence[Base]) -> str:
+    """A sentence on them; empty where there are none. Records are read, nothing is run."""
+    limit = max(base.case.largest_scale for base in bases)
+    return large_scales([pair for base in bases for pair in _factors(base)], limit)
 
 
-def warn_of_scales(given: Case | Sequence[Base]) -> None:
+def warn_of_scales(bases: Sequence[Base]) -> None:
     """Warn a call in Python of them, in one line."""
-    if text := large_scales_of(given):
+    if text := large_scales_of(bases):
         warn_caller(text, OptionWarning)
 
 

@@ -105,6 +105,11 @@ class Base:
         return replace(self, case=case, records=())
 
 
+def suite_base(case: Case) -> Base:
+    """A case under every record of its suite."""
+    return Base(case, {}, (), False, case.members)
+
+
 def base_of(
     given: Case | Scene,
     axes: tuple[NumberAxis, ...],

@@ -53,9 +53,9 @@ def sa_of_suite(case: Case) -> tuple[float, float]:
     Where a case scales by Sa that which it asks for, else T1 of the scene as a run begins, NaN
     where nothing resists, and 5 %.
     """
-    size = None if case.suite is None else case.suite.options.size
-    if size is not None and size.psa_period is not None:
-        return size.psa_period, DAMPING if size.psa_damping is None else size.psa_damping
+    if case.size.psa_period is not None:
+        damping = case.size.psa_damping
+        return case.size.psa_period, DAMPING if damping is None else damping
     return longest_period(at_rest(case.scene, case.run.start_time)) or math.nan, DAMPING
 
 

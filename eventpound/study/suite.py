@@ -150,9 +150,9 @@ def suite_plan(
         As `simulate_suite` says.
     """
     number = positive("rtol", rtol, Dimension.NUMBER)
-    if case.suite is None:
-        raise InputError("the case has no suite of records; simulate runs it")
     members = case.members
+    if not members:
+        raise InputError("the case has no suite of records; simulate runs it")
     options = replace(case.solver, rtol=number or case.solver.rtol)
     if solver is not None:
         options = solver_instead(options, solver, "solver")

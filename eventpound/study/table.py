@@ -157,6 +157,33 @@ def manifest_there(directory: Path, name: str = MANIFEST) -> dict[str, object] |
         return None
 
 
+def table_there(directory: Path) -> str:
+    """Name of the table of a suite, else of a study, in a directory; empty where there is none."""
+    return next((name for name in (SUITE_TABLE, TABLE) if (directory / name).is_file()), "")
+
+
+def read_many(out: Path) -> tuple[pd.DataFrame, list[Mapping[str, Any]]]:
+    """The table of a suite or a study, and each ``[excitation]`` it was made with.
+
+    Raises
+    ------
+    InputError
+        Where there is none.
+    """
+    match table_there(out):
+        case "":
+            raise InputError(
+                f"{out}: neither {TABLE} nor {SUITE_TABLE}; `eventpound study` or `eventpound run` "
+                "of a suite writes it"
+            )
+        case name if name == SUITE_TABLE:
+            table, manifest = read_suite(out)
+            return table, [manifest["case"].get("excitation", {})]
+        case _:
+            scenes: Any = (manifest_there(out) or {}).get("scenes", [])
+            return read_table(out), [scene["case"].get("excitation", {}) for scene in scenes]
+
+
 def read_table(directory: Path, name: str = TABLE) -> pd.DataFrame:
     """Table of a study or a suite.
 

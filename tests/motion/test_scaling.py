@@ -128,7 +128,7 @@ def test_suite_by_psa(folder: Path) -> None:
     (folder / "case.toml").write_text(CASE.format(text))
     case = load_case(folder)
     assert case.suite is not None
-    assert case.suite.options.scaling.startswith("every record to a PSA of 0.3059 g at 1 s")
+    assert case.size.words().startswith("every record to a PSA of 0.3059 g at 1 s")
     (member,) = case.suite.members(folder)
     record = member.options.motion(member.read())
     assert psa_of(record.values, 0.02, np.array([1.0]), 0.05)[0] == pytest.approx(3.0)

@@ -12,8 +12,11 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
 from eventpound.case.case import Case
+from eventpound.case.record_options import RecordOptions
 from eventpound.case.run_options import RunOptions
 from eventpound.case.solver_options import SolverOptions
+from eventpound.case.suite import Suite
+from eventpound.errors import InputError
 from eventpound.motion import Cosine, Record, Sine
 from eventpound.motion.base import Family, Piece, Scales
 from eventpound.motion.constant import PhasedSine
@@ -222,3 +225,11 @@ def test_a_contact_law_is_said(tmp_path):
 def test_without_supports_nothing_is_said_of_them(scene):
     assert not {"C_s", "B_s", "W_s"} & set(scene)
     assert not {"supports", "forces"} & set(scene["conventions"])
+
+
+def test_a_suite_has_no_one_motion(scene, tmp_path):
+    records = Suite(None, ((1, 1),), RecordOptions())
+    case = Case("many", scene, RunOptions(duration=1.0), *_UNUSED, suite=records)
+    with pytest.raises(InputError, match="holds a suite of records"):
+        export(case, tmp_path / "out")
+    assert not (tmp_path / "out").exists()

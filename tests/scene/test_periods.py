@@ -117,7 +117,7 @@ def test_a_suite_tells_the_ordinate_that_was_asked_for(tmp_path: Path, at: str, 
 def test_a_suite_says_at_which_period(tmp_path: Path) -> None:
     case = load_case(written(tmp_path, 'suite = "?.txt"'))
     assert case.suite is not None
-    assert "a PSA of 0.4 g at T1 = 0.7025 s" in case.suite.options.scaling
+    assert "a PSA of 0.4 g at T1 = 0.7025 s" in case.size.words()
 
 
 def test_each_variant_of_a_study_has_its_own(tmp_path: Path) -> None:
