@@ -13,6 +13,7 @@ from eventpound.accuracy.digits import DigitsOverTime
 from eventpound.accuracy.near_misses import Graze, NearMiss
 from eventpound.results import write_together
 from eventpound.results.jsontext import to_json
+from eventpound.results.tables import Cells, lines_of
 
 FEWEST_DIGITS = 4.0
 """Digits below which a value is refused."""
@@ -272,30 +273,31 @@ def _shares(route: RouteReport) -> str:
 def _table(c: Certificate) -> Iterator[str]:
     if not c.quantities:
         return
-    yield (
-        f"{'quantity':<32} {'value':>24} {'bound':>9} {'unit':<4} {'digits':>6} "
-        f"{'amplified':>9} {'of':<11} {'by cvode':>24} limited by"
-    )
     listed = [q for q in c.quantities if not q.quantity.startswith("events.")]
     times = [q for q in c.quantities if q.quantity.startswith("events.") and q.unit == "s"]
     kinds = {f"events.{event['row']}.t": event for event in c.events}
-    for quantity in listed:
-        yield _row(quantity)
-    for quantity in times[:MOST_ROWS]:
-        event = kinds[quantity.quantity]
-        yield f"{_row(quantity)}; {event['kind']} {event['contact']}"
+    rows = [(*_cells(q), str(q.limited_by)) for q in listed]
+    for q in times[:MOST_ROWS]:
+        event = kinds[q.quantity]
+        rows.append((*_cells(q), f"{q.limited_by}; {event['kind']} {event['contact']}"))
+    heads = ("quantity", "value", "bound", "unit", "digits", "amplified", "of", "by cvode")
+    words = tuple(head in ("quantity", "unit", "of") for head in heads)
+    yield from lines_of(Cells((*heads, "limited by"), tuple(rows), (*words, True)))
     if len(times) > MOST_ROWS:
         yield f"and {len(times) - MOST_ROWS} more events"
 
 
-def _row(q: CertifiedQuantity) -> str:
-    bound = "refused" if q.bound is None else f"{q.bound:.1e}"
-    amplified = "" if q.amplification is None else f"{q.amplification:.1e}"
-    by_reference = "" if q.by_reference is None else significant(q.by_reference, q.bound)
+def _cells(q: CertifiedQuantity) -> tuple[str, ...]:
+    """A line of the table, but for what limits the bound."""
     return (
-        f"{q.quantity:<32} {significant(q.value, q.bound):>24} {bound:>9} {q.unit:<4} "
-        f"{q.digits:>6.1f} {amplified:>9} {q.route.partition(',')[0]:<11} {by_reference:>24} "
-        f"{q.limited_by}"
+        q.quantity,
+        significant(q.value, q.bound),
+        "refused" if q.bound is None else f"{q.bound:.1e}",
+        q.unit,
+        f"{q.digits:.1f}",
+        "" if q.amplification is None else f"{q.amplification:.1e}",
+        q.route.partition(",")[0],
+        "" if q.by_reference is None else significant(q.by_reference, q.bound),
     )
 
 
@@ -324,9 +326,10 @@ def _over_time(c: Certificate) -> Iterator[str]:
     digits = c.digits_over_time
     if digits is None:
         return
-    yield f"{'up to (s)':>12} {'digits':>7} {'amplification':>14}"
-    for k in range(0, digits.t.size, max(1, digits.t.size // 10)):
-        yield f"{digits.t[k]:>12.6g} {digits.digits[k]:>7.1f} {digits.amplification[k]:>14.1e}"
+    columns = zip(digits.t, digits.digits, digits.amplification, strict=True)
+    lines = [(f"{t:.6g}", f"{n:.1f}", f"{size:.1e}") for t, n, size in columns]
+    rows = tuple(lines[:: max(1, len(lines) // 10)])
+    yield from lines_of(Cells(("up to (s)", "digits", "amplification"), rows, (False,) * 3))
     if digits.lost_from is not None:
         yield f"three digits and more are lost from {digits.lost_from:.6g} s on"
 

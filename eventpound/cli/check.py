@@ -111,8 +111,10 @@ def _all_quantities() -> Iterator[str]:
     """What quantities there are, with units and what they are."""
     from eventpound.quantities.base import SIX
     from eventpound.quantities.lookup import listing
+    from eventpound.results.tables import Cells, lines_of
 
-    yield from (f"{name:<34} {unit:<6} {text}" for name, unit, text, _ in listing())
+    rows = tuple((name, unit, text) for name, unit, text, _ in listing())
+    yield from lines_of(Cells(("quantity", "unit", "what it is"), rows, (True,) * 3))
     yield f"* stands for {', '.join(SIX)}"
 
 

@@ -69,9 +69,12 @@ def write_pulses(
 
 def _summary(fits: Sequence[PulseFit]) -> str:
     """The pulses of one record, to be read."""
-    lines = [f"{'pulse':<24} {'a_p (m/s^2)':>11} {'T_p (s)':>9} {'L_e (m)':>9} {'explained':>9}"]
-    lines += [
-        f"{fit.kind:<24} {fit.a_p:>11.4f} {fit.T_p:>9.4f} {fit.length:>9.5f} {fit.explained:>9.1%}"
-        for fit in fits
-    ]
-    return "\n".join(lines) + f"\n          explained: of the squares of the {fits[0].on}"
+    from eventpound.results.tables import Cells, lines_of
+
+    rows = tuple(
+        (f.kind, f"{f.a_p:.4f}", f"{f.T_p:.4f}", f"{f.length:.5f}", f"{f.explained:.1%}")
+        for f in fits
+    )
+    heads = ("pulse", "a_p (m/s^2)", "T_p (s)", "L_e (m)", "explained")
+    table = Cells(heads, rows, (True, *(False for _ in heads[1:])))
+    return "\n".join(lines_of(table)) + f"\n          explained: of the squares of the {fits[0].on}"

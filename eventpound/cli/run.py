@@ -202,6 +202,8 @@ def _keep_partial(case: Case, error: BaseException, response: Response | None, o
 
 def _summary(response: Response) -> Iterator[str]:
     """Contacts and what they need, peaks and cost of a run, to be read."""
+    from eventpound.results.tables import Cells, lines_of
+
     recording, scene = response.recording, response.scene
     if scene.contacts:
         resting = float(sum(recording.resting_time))
@@ -212,11 +214,14 @@ def _summary(response: Response) -> Iterator[str]:
         counted = f"{response.impacts}, {faster:.0f} faster than {speed:.4g} cm/s"
         yield f"impacts   {counted}{rested}"
     yield from _demands(response)
-    yield f"{'body':<16} {'max (m)':>14} {'at (s)':>10} {'min (m)':>14} {'at (s)':>10}"
     x = recording.displacement
-    for i, body in enumerate(scene.bodies):
-        high = f"{x.maximum[i]:>14.6e} {x.time_of_maximum[i]:>10.4f}"
-        yield f"{body.name:<16} {high} {x.minimum[i]:>14.6e} {x.time_of_minimum[i]:>10.4f}"
+    columns = (x.maximum, x.time_of_maximum, x.minimum, x.time_of_minimum)
+    rows = tuple(
+        (body.name, f"{high:.6e}", f"{at:.4f}", f"{low:.6e}", f"{then:.4f}")
+        for body, high, at, low, then in zip(scene.bodies, *columns, strict=True)
+    )
+    heads = ("body", "max (m)", "at (s)", "min (m)", "at (s)")
+    yield from lines_of(Cells(heads, rows, (True, *(False for _ in columns))))
     for shock in response.shock_rows:
         told = shock["failed"]
         if not told:

@@ -32,6 +32,7 @@ def _synthetic(options: Options) -> int:
     from eventpound.motion.synthetic import synthetic_motion
     from eventpound.motion.synthetic.files import QUANTITIES, parameter_table, spread
     from eventpound.results import check_writable, write_together
+    from eventpound.results.tables import Cells, lines_of
 
     check_writable(options.directory)
     motions = []
@@ -43,7 +44,8 @@ def _synthetic(options: Options) -> int:
     table = parameter_table(motions)
     write_together(options.directory, files | {"parameters.csv": table})
     print(f"{options.count} synthetic motions, seed {options.seed}: {options.directory}")
-    print(f"{'':<12} {'least':>9} {'median':>9} {'largest':>9}")
-    for name, (low, middle, high) in zip(QUANTITIES, spread(motions), strict=True):
-        print(f"{name:<12} {low:>9.4g} {middle:>9.4g} {high:>9.4g}")
+    spreads = zip(QUANTITIES, spread(motions), strict=True)
+    rows = tuple((name, *(f"{value:.4g}" for value in values)) for name, values in spreads)
+    heads, words = ("", "least", "median", "largest"), (True, False, False, False)
+    print("\n".join(lines_of(Cells(heads, rows, words))))
     return 0
