@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from contextlib import suppress
 from decimal import Decimal
 from enum import Enum
 from functools import cache
@@ -107,6 +108,24 @@ def quantity(value: object, dimension: Dimension) -> float:
     if not math.isfinite(result):
         raise InputError(f"found {value!r}, not finite; accepted: {dimension.accepted}")
     return result
+
+
+def any_quantity(value: object) -> tuple[float, Dimension | None]:
+    """Read a quantity of whatever dimension its unit is of; None of one without a unit.
+
+    Raises
+    ------
+    InputError
+        As `quantity`.
+    """
+    match = _NUMBER.fullmatch(value) if isinstance(value, str) else None
+    if match is None or not match[2]:
+        return quantity(value, Dimension.NUMBER), None
+    # Those first that have the unit in their list.
+    for dimension in sorted(Dimension, key=lambda each: match[2] not in USUAL.get(each, {})):
+        with suppress(InputError):
+            return quantity(value, dimension), dimension
+    raise InputError(f"found {value!r}; accepted: a number (SI), or a string with a unit of it")
 
 
 _NUMBER = re.compile(

@@ -12,12 +12,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from eventpound.case.run_options import DEFAULTS, RunOptions
 from eventpound.case.table import CaseProblem, Table
 from eventpound.errors import InputError
-from eventpound.units import Dimension
+from eventpound.units import Dimension, any_quantity
 
 D = Dimension
 _OF_PARTS: Mapping[str, Mapping[str, tuple[str, Dimension]]] = {
@@ -32,9 +34,6 @@ _OF_PARTS: Mapping[str, Mapping[str, tuple[str, Dimension]]] = {
     "seat": {"length": ("max_opening", D.LENGTH)},
 }
 """Words of a capacity, each with the last word of its quantity and with its unit."""
-_OTHERS = {"max_impulse": D.IMPULSE, "max_force": D.FORCE, "abs_max_base_shear": D.FORCE}
-_DIMENSIONS = {word: of for words in _OF_PARTS.values() for word, of in words.values()} | _OTHERS
-"""Of quantities, by their last words; of others a capacity is a plain number (SI)."""
 _TABLE, _FRACTILE = "capacity", "fractile"
 
 
@@ -87,26 +86,31 @@ def _of_part(
         table.report_missing("name", "a name, which a part with a capacity needs")
     for word, (last, dimension) in words.items():
         if own.has(word):
-            found[f"{kind}s.{name}.{last}"] = _positive(own, word, dimension)
+            value = found[f"{kind}s.{name}.{last}"] = own.quantity(word, dimension)
+            own.require(word, not value <= 0.0, "a positive capacity")
     own.close()
     return found
 
 
-def _positive(table: Table, key: str, dimension: Dimension) -> float:
-    value = table.quantity(key, dimension)
-    table.require(key, not value <= 0.0, "a positive capacity")
-    return value
+def read_capacities(top: Table, run: RunOptions | None) -> RunOptions | None:
+    """Options with capacities (SI), and the fractile where it is given; problems are noted.
 
-
-def read_capacities(top: Table) -> tuple[tuple[tuple[str, float], ...], float | None]:
-    """Capacities (SI) by the names of their quantities, and the fractile where it is given."""
-    table, found = top.table(_TABLE), []
-    fractile = table.quantity(_FRACTILE, D.NUMBER) if table.has(_FRACTILE) else None
-    fits = fractile is None or math.isnan(fractile) or 1.0 <= fractile <= 100.0
+    Whether a unit is one of its quantity is known where quantities are.
+    """
+    table = top.table(_TABLE)
+    fractile = table.quantity(_FRACTILE, D.NUMBER, DEFAULTS.fractile)
+    fits = math.isnan(fractile) or 1.0 <= fractile <= 100.0
     table.require(_FRACTILE, fits, "per cent of the records, 1 to 100")
-    for name in table.data:
-        if name != _FRACTILE and table.has(name):
-            dimension = _DIMENSIONS.get(name.rpartition(".")[2], D.NUMBER)
-            found.append((name, _positive(table, name, dimension)))
-    table.require(_FRACTILE, fractile is None or bool(found), "a capacity beside it")
-    return tuple(found), fractile
+    found, dimensions = list[tuple[str, float]](), list[tuple[str, Dimension]]()
+    for name in (key for key in table.data if key != _FRACTILE and table.has(key)):
+        with table.noting(name):
+            value, dimension = any_quantity(table.data[name])
+            found.append((name, value))
+            dimensions += [] if dimension is None else [(name, dimension)]
+            table.require(name, value > 0.0, "a positive capacity")
+    table.require(_FRACTILE, not table.has(_FRACTILE) or bool(found), "a capacity beside it")
+    if run is None:
+        return None
+    held, of = tuple(found), tuple(dimensions)
+    stated = replace(run.stated, capacities=held, capacity_dimensions=of, fractile=fractile)
+    return replace(run, stated=stated)

@@ -34,6 +34,7 @@ def read_body(table: Table) -> Body:
         mass,
         initial.quantity("displacement", Dimension.LENGTH, 0.0),
         initial.quantity("velocity", Dimension.VELOCITY, 0.0),
+        table.text("structure", "what its structure is called", ""),
     )
     initial.close()
     table.close()

@@ -202,14 +202,11 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         excitation, scene = _at_own_period(top, excitation, scene, start, pi is not None)
     suite = _suite(top, excitation, driven, file.parent)
     sound = not problems and excitation is not None
-    run = read_run(run_table, scene if sound else None, suite is not None)
-    capacities, fractile = read_capacities(top)
+    run = read_capacities(top, read_run(run_table, scene if sound else None, suite is not None))
     solver = read_solver(top.table("solver"), default_solver([scene], many=suite is not None))
     top.close()
     if problems or excitation is None or run is None:
         raise InputError([f"{file}: {problem}" for problem in problems])
-    stated = replace(run.stated, capacities=capacities, fractile=fractile or run.stated.fractile)
-    run = replace(run, stated=stated)
     warnings += support_warnings(scene, run.start_time + run.duration)
     if pi is None and scene.bodies:
         damped = [

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
@@ -88,8 +88,9 @@ DEMAND_OVER_CAPACITY = "demand_over_capacity"
 class Stated:
     """What ``[run]`` says of quantities: which are wanted, and numbers that some need.
 
-    ``[capacity]`` gives `capacities`, what quantities may not exceed (SI), by their names, and the
-    `fractile` of the demands over records that are held against them (per cent).
+    ``[capacity]`` gives `capacities`, what quantities may not exceed (SI), by their names, the
+    `capacity_dimensions` of those with a unit, and the `fractile` of the demands over records
+    that are held against them (per cent).
     """
 
     quantities: tuple[str, ...] = texts_key(
@@ -148,6 +149,7 @@ class Stated:
         holds=_TOLD_OF_ONE,
     )
     capacities: tuple[tuple[str, float], ...] = ()
+    capacity_dimensions: tuple[tuple[str, Dimension], ...] = field(default=(), compare=False)
     fractile: float = 84.0
 
     def named(self) -> Iterator[tuple[str, str]]:

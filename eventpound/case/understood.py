@@ -9,11 +9,13 @@ from typing import Any
 
 from eventpound.case.run_options import DEFAULTS, RunOptions
 from eventpound.case.solver_options import SolverOptions
+from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
+from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import law_keys, storey_keys
+from eventpound.scene.spring import Spring, law_keys, storey_keys
 
-_OF_CAPACITY = "capacities", "fractile"
+_OF_CAPACITY = "capacities", "capacity_dimensions", "fractile"
 """Of what is stated: it has a table of its own."""
 SOURCED = ("body", "spring", "contact")
 """Tables of a case that may say where their numbers are from."""
@@ -50,27 +52,7 @@ def understood_case(
     found: dict[str, Any] = {
         "title": title,
         "excitation": dict(excitation),
-        "body": [
-            {
-                "name": body.name,
-                "mass": body.mass,
-                "initial": {"displacement": body.displacement, "velocity": body.velocity},
-            }
-            for body in scene.bodies
-        ],
-        "spring": [
-            {
-                "between": spring.written,
-                "name": spring.name,
-                **storey_keys(spring),
-                **law_keys(spring.law),
-            }
-            for spring in scene.springs
-        ],
-        "dashpot": [
-            {"between": dashpot.written, "coefficient": dashpot.coefficient}
-            for dashpot in scene.dashpots
-        ],
+        **parts_written(scene.bodies, scene.springs, scene.dashpots),
         "contact": [
             {
                 "between": contact.written,
@@ -96,6 +78,28 @@ def understood_case(
         for row, source in zip(found[kind], said, strict=True):
             row |= {"source": source} if source else {}
     return found
+
+
+def parts_written(
+    bodies: Sequence[Body], springs: Sequence[Spring], dashpots: Sequence[Dashpot]
+) -> dict[str, list[Any]]:
+    """Tables of bodies, springs and dashpots, by the keys of a case (SI)."""
+    return {
+        "body": [
+            {
+                "name": body.name,
+                "mass": body.mass,
+                "initial": {"displacement": body.displacement, "velocity": body.velocity},
+                **({"structure": body.structure} if body.structure else {}),
+            }
+            for body in bodies
+        ],
+        "spring": [
+            {"between": s.written, "name": s.name, **storey_keys(s), **law_keys(s.law)}
+            for s in springs
+        ],
+        "dashpot": [{"between": d.written, "coefficient": d.coefficient} for d in dashpots],
+    }
 
 
 def sources_of(understood: Mapping[str, Any]) -> dict[str, list[str]]:

@@ -38,10 +38,11 @@ import numpy as np
 from eventpound.basics.matrix_file import NamedMatrix, read_matrix
 from eventpound.case.record_file import find_record
 from eventpound.case.table import CaseProblem, Table
+from eventpound.case.understood import parts_written
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.scene.frame import Frame, frame
-from eventpound.scene.spring import GROUND, law_keys, storey_keys
+from eventpound.scene.frame import frame
+from eventpound.scene.spring import GROUND
 from eventpound.units import STANDARD_GRAVITY, Dimension, quantity
 
 MOST_STOREYS = 500
@@ -108,7 +109,8 @@ def building_tables(
         spring |= ({"height": heights[i]} if heights else {}) | capacity
         springs.append(spring | ({"weight": carried[i]} if carried else {}))
     bodies: list[object] = [
-        {"name": end, "mass": mass} for end, mass in zip(ends[1:], masses, strict=True)
+        {"name": end, "mass": mass, "structure": name}
+        for end, mass in zip(ends[1:], masses, strict=True)
     ]
     damping = damping_tables(table, ends[1:], on, on in supports)
     table.close()
@@ -216,24 +218,7 @@ def frame_tables(
     table.close()
     if parts is None:
         return {}, None
-    return _tables(parts) | damping, Levels(on, tuple(bodies), heights)
-
-
-def _tables(parts: Frame) -> dict[str, list[object]]:
-    """Tables of the parts, in SI."""
-    return {
-        "body": [{"name": body.name, "mass": body.mass} for body in parts.bodies],
-        "spring": [
-            {
-                "between": s.written,
-                "name": s.name,
-                **storey_keys(s),
-                **law_keys(s.law),
-            }
-            for s in parts.springs
-        ],
-        "dashpot": [{"between": d.written, "coefficient": d.coefficient} for d in parts.dashpots],
-    }
+    return {**parts_written(*parts), **damping}, Levels(on, tuple(bodies), heights)
 
 
 def _matrices(table: Table, directory: Path) -> dict[str, NamedMatrix]:

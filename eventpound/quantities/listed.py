@@ -74,8 +74,8 @@ LISTED: tuple[Quantity, ...] = (
              v.work_of_support, TakenFrom.ENERGY),
     *six_of("velocity.<body>.*", "velocity", D.VELOCITY, " relative to the ground"),
     *six_of("structures.<structure>.*_base_shear", "base shear", D.FORCE,
-            " of one of several structures (bodies joined by springs or dashpots), by its first "
-            "body", only=v.stands_apart),
+            " of one of several structures (bodies joined by springs or dashpots), by the name of "
+            "its building or frame, else of its first body", only=v.stands_apart),
     Quantity(_SPRING + "ductility", "ductility", D.NUMBER,
              "Largest elongation of either sign over the yield displacement (Bouc-Wen springs).",
              v.ductility, only=v.law_is(BoucWen)),
@@ -83,7 +83,7 @@ LISTED: tuple[Quantity, ...] = (
              "Elongation when the run ends: what is left if the motion has died down by then.",
              v.residual_elongation, only=v.moves_with_bodies),
     Quantity(_SPRING + "drift_ratio", "drift ratio", D.NUMBER,
-             "Largest elongation of either sign over the height of the storey, where it is given.",
+             "Largest elongation of either sign over the height of a storey or pier that has one.",
              storeys.peak_drift_ratio, only=storeys.has_height),
     Quantity(_SPRING + "stability_coefficient", "stability coefficient", D.NUMBER,
              "P-Delta: theta = P D/(V h) of a storey with a weight P and a height h, D its largest "
@@ -93,10 +93,10 @@ LISTED: tuple[Quantity, ...] = (
              "What is left of the slack of a spring that only pulls, of the gap of one that only "
              "pushes.", v.slack_left, only=v.goes_slack),
     Quantity("max_drift", "largest drift", D.LENGTH,
-             "Largest elongation of either sign of all storeys, the springs with a height.",
+             "Largest elongation of either sign of all storeys: springs with a height, but piers.",
              storeys.largest_drift, only=storeys.has_storeys),
     Quantity("max_drift_ratio", "largest drift ratio", D.NUMBER,
-             "Largest drift ratio of all storeys, the springs with a height.",
+             "Largest drift ratio of all storeys: springs with a height, but piers.",
              storeys.largest_drift_ratio, only=storeys.has_storeys),
     Quantity("structures.<structure>.roof_drift", "roof drift", D.LENGTH,
              "Largest displacement, relative to the ground, of the floors that carry no storey.",

@@ -120,6 +120,7 @@ def asked(parts: Iterable[tuple[Scene, Stated]]) -> list[str]:
         for option, word in stated.named():
             try:
                 names |= dict.fromkeys(chosen(scene, [word], stated))
+                _check_capacity(scene, word, stated)
                 there.add((option, word))
             except InputError as error:
                 needs = f"{option}: needs a contact, and there is none"
@@ -129,6 +130,15 @@ def asked(parts: Iterable[tuple[Scene, Stated]]) -> list[str]:
     if problems:
         raise InputError(problems)
     return list(names)
+
+
+def _check_capacity(scene: Scene, name: str, stated: Stated) -> None:
+    """Refuse a capacity in a unit of something else than its quantity."""
+    found = dict(stated.capacity_dimensions).get(name)
+    for dimension in {named.quantity.dimension for named in asked_of(scene, name)}:
+        if found not in (None, dimension):
+            unit = f"a unit of {found.value[0]}"
+            raise InputError(f"capacity: {name}: found {unit}; accepted: {dimension.accepted}")
 
 
 def quantities_asked(parts: Iterable[tuple[Scene, RunOptions]]) -> list[str]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from eventpound.scene.parameters import number_places
 from eventpound.scene.scene import Scene
-from eventpound.scene.structures import structures_of
+from eventpound.scene.structures import structure_names
 
 
 def owners_of(scene: Scene, kind: str) -> Sequence[str]:
@@ -23,7 +23,7 @@ def owners_of(scene: Scene, kind: str) -> Sequence[str]:
         return [part.name for part in named]
     if kind == "dashpot":
         return _dashpots(scene)
-    return [group[0] for group in structures_of(scene)] if kind == "structure" else [""]
+    return structure_names(scene) if kind == "structure" else [""]
 
 
 def is_told(scene: Scene, kind: str, i: int) -> bool:

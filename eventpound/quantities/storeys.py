@@ -1,6 +1,8 @@
-"""Values of storeys: springs with a height, and the structures that have some."""
+"""Values of storeys, and of the structures that have some."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -15,15 +17,19 @@ from eventpound.scene.structures import distances, is_storey, neighbours, struct
 
 
 def has_height(scene: Scene, i: int) -> bool:
-    """Whether spring i is a storey, with a height."""
+    """Whether spring i has a height, over which its drift is told: a storey, or a pier."""
     return scene.springs[i].height is not None
+
+
+def storeys_of_scene(scene: Scene) -> Iterator[int]:
+    """Springs that are storeys."""
+    return (i for i in range(len(scene.springs)) if is_storey(scene, i))
 
 
 def storeys_of_structure(scene: Scene, i: int) -> list[int]:
     """Springs of structure i that are storeys."""
     group = set(structures_of(scene)[i])
-    own = (k for k, spring in enumerate(scene.springs) if group.intersection(spring.ends))
-    return [k for k in own if is_storey(scene, k)]
+    return [k for k in storeys_of_scene(scene) if group.intersection(scene.springs[k].ends)]
 
 
 def has_floors(scene: Scene, i: int) -> bool:
@@ -53,7 +59,7 @@ def roof_drift(many: Runs, i: int) -> Floats:
 
 def has_storeys(scene: Scene, _: int) -> bool:
     """Whether a scene has storeys."""
-    return any(spring.height is not None for spring in scene.springs)
+    return any(True for _ in storeys_of_scene(scene))
 
 
 def peak_drift_ratio(many: Runs, i: int) -> Floats:
@@ -86,6 +92,4 @@ def largest_drift_ratio(many: Runs, _: int) -> Floats:
 
 
 def _largest_of_storeys(many: Runs, value: Value) -> Floats:
-    scene = many.scene
-    storeys = [i for i in range(len(scene.springs)) if has_height(scene, i)]
-    return np.asarray(np.max([value(many, i) for i in storeys], axis=0))
+    return np.asarray(np.max([value(many, i) for i in storeys_of_scene(many.scene)], axis=0))

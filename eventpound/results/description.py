@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from hashlib import sha256
+from typing import Any
 
 import numpy as np
 
+from eventpound.case.understood import parts_written
 from eventpound.motion.base import GroundMotion
 from eventpound.scene.contact import Contact
-from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.ends import written
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Spring, law_keys, storey_keys
 
 
-def describe_scene(scene: Scene) -> dict[str, object]:
+def describe_scene(scene: Scene) -> dict[str, Any]:
     """Bodies, springs, dashpots and contacts of a scene with all their parameters.
 
     Parameters
@@ -31,25 +31,26 @@ def describe_scene(scene: Scene) -> dict[str, object]:
         ``contacts`` (gap in m, restitution), the ``motion``'s kind, and ``supports`` and
         ``forces`` where there are some.
     """
+    tables = parts_written(scene.bodies, scene.springs, scene.dashpots)
     return {
-        "bodies": [asdict(body) for body in scene.bodies],
-        "springs": [describe_spring(spring) for spring in scene.springs],
-        "dashpots": [_dashpot(dashpot) for dashpot in scene.dashpots],
+        "bodies": [_flat(table) for table in tables["body"]],
+        "springs": [{"name": table["name"], **table} for table in tables["spring"]],
+        "dashpots": tables["dashpot"],
         "contacts": [_contact(contact) for contact in scene.contacts],
         "motion": scene.motion.kind,
         **driven(scene),
     }
 
 
-def _dashpot(dashpot: Dashpot) -> dict[str, object]:
-    """Its ends and coefficient."""
-    return {"between": dashpot.written, "coefficient": dashpot.coefficient}
-
-
 def _contact(contact: Contact) -> dict[str, object]:
     """Its parameters; a law only where it has one."""
     row = asdict(contact) | {"left": written(contact.left), "right": written(contact.right)}
     return row if contact.law is not None else {k: v for k, v in row.items() if k != "law"}
+
+
+def _flat(body: dict[str, Any]) -> dict[str, object]:
+    """A table of a body with its state beside its mass."""
+    return {"name": body["name"], "mass": body["mass"], **body.pop("initial"), **body}
 
 
 def driven(scene: Scene) -> dict[str, object]:
@@ -89,25 +90,3 @@ def pieces_hash(motion: GroundMotion) -> str:
         whole.update(piece.coefficients.astype("<f8").tobytes())
         whole.update(piece.samples.astype("<f8").tobytes())
     return whole.hexdigest()
-
-
-def describe_spring(spring: Spring) -> dict[str, object]:
-    """Ends and law of a spring.
-
-    Parameters
-    ----------
-    spring : Spring
-        A spring of a scene.
-
-    Returns
-    -------
-    dict
-        ``name``, ``between``, ``law`` and the parameters of the law (SI).
-    """
-    keys = law_keys(spring.law)
-    return {
-        "name": spring.name,
-        "between": spring.written,
-        **storey_keys(spring),
-        **keys,
-    }

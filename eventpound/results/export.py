@@ -25,14 +25,14 @@ from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import support_motion
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
-from eventpound.results.description import describe_scene, describe_spring
+from eventpound.results.description import describe_scene
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Law, Series, Spring
+from eventpound.scene.spring import Law, Series
 from eventpound.simulation import refuse_suite
 
 _SAMPLES_A_PERIOD = 1000
@@ -220,13 +220,15 @@ def _sample_times(piece: Piece) -> Floats:
 
 def _scene(scene: Scene, start: float) -> dict[str, object]:
     told = replace(scene, contacts=tuple(_with_damping(contact) for contact in scene.contacts))
-    return describe_scene(told) | {
+    described = describe_scene(told)
+    springs = zip(described["springs"], scene.springs, strict=True)
+    return described | {
         "conventions": CONVENTIONS
         | (WITH_LAWS if any(contact.law for contact in scene.contacts) else {})
         | (WITH_WEIGHTS if any(spring.weight for spring in scene.springs) else {})
         | (WITH_SUPPORTS if scene.supports else {})
         | (WITH_FORCES if scene.forces else {}),
-        "springs": [_spring(spring) for spring in scene.springs],
+        "springs": [row | _condensed(spring.law) for row, spring in springs],
         **arrays_of(scene, start),
     }
 
@@ -266,9 +268,6 @@ def arrays_of(scene: Scene, start: float = 0.0) -> dict[str, object]:
     }
 
 
-def _spring(spring: Spring) -> dict[str, object]:
-    """Spring with the piecewise-linear law that parts in series amount to."""
-    entry = describe_spring(spring)
-    if isinstance(spring.law, Series):
-        entry["condensed"] = asdict(reduced(spring.law))
-    return entry
+def _condensed(law: Law) -> dict[str, object]:
+    """The piecewise-linear law that parts in series amount to."""
+    return {"condensed": asdict(reduced(law))} if isinstance(law, Series) else {}

@@ -21,6 +21,8 @@ class Body:
     displacement, velocity : float
         State at the start of the run, relative to the ground (m, m/s),
         positive to the right.
+    structure : str
+        What the structure that it belongs to is called; by default as its first body.
 
     Examples
     --------
@@ -32,3 +34,4 @@ class Body:
     mass: Annotated[Number, Dimension.MASS, Accepted("a positive mass (kg)", above_zero)]
     displacement: Annotated[Number, Dimension.LENGTH, Accepted("a number (m)")] = default(0.0)
     velocity: Annotated[Number, Dimension.VELOCITY, Accepted("a number (m/s)")] = default(0.0)
+    structure: str = ""

@@ -91,7 +91,8 @@ def frame(
         )
     _check_matrix("stiffness", K, ends)
     heights = {} if levels is None else _storeys(levels, [on, *ends])
-    bodies = tuple(Body(end, m) for end, m in zip(ends, _lumped(mass, ends), strict=True))
+    masses = zip(ends, _lumped(mass, ends), strict=True)
+    bodies = tuple(Body(end, m, structure=name) for end, m in masses)
     # A storey without a coupling is measured by a spring that does not resist.
     links = dict(_links(K, ends, on))
     links |= {pair: 0.0 for pair in heights if pair not in links}

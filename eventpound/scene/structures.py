@@ -6,6 +6,7 @@ And which stand on isolators: on springs that yield before all that stands on th
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from itertools import pairwise, product
 from typing import TypeVar
@@ -57,11 +58,23 @@ def structures_of(scene: Scene) -> list[list[str]]:
     Returns
     -------
     list of list of str
-        A structure is called after its first body.
+        A group each.
     """
     joints = [spring.ends for spring in scene.springs]
     joints += [dashpot.ends for dashpot in scene.dashpots]
     return joined_groups([body.name for body in scene.bodies], joints)
+
+
+def structure_names(scene: Scene) -> list[str]:
+    """What structures are called: as one of their bodies says, else as the first of them.
+
+    Where two would be called the same, each is called as its first body.
+    """
+    said = {body.name: body.structure for body in scene.bodies}
+    groups = structures_of(scene)
+    pairs = [(next(filter(None, map(said.get, group)), group[0]), group[0]) for group in groups]
+    taken = Counter(name for pair in pairs for name in {*pair})
+    return [first if taken[name] > 1 else name for name, first in pairs]
 
 
 def joined_groups(bodies: Sequence[str], joints: Iterable[Sequence[str]]) -> list[list[str]]:

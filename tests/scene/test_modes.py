@@ -25,7 +25,7 @@ from eventpound.scene import (
 )
 from eventpound.scene.modes import modes_of, stiffness_proportional
 from eventpound.scene.periods import longest_period
-from eventpound.scene.structures import isolated, mass_on, structures_of
+from eventpound.scene.structures import isolated, mass_on, structure_names, structures_of
 from eventpound.units import STANDARD_GRAVITY
 
 RNG = np.random.default_rng(11)
@@ -123,6 +123,21 @@ def test_structures_are_what_springs_and_dashpots_join() -> None:
         (Contact("touch", "a", "b", 1.0, 0.5),),
     )
     assert structures_of(scene) == [["a", "c"], ["b", "d"]]
+
+
+def test_structures_are_called_as_a_body_says_or_as_the_first() -> None:
+    def names(*said: str, springs: str = "") -> list[str]:
+        bodies = tuple(Body(n, 1.0, structure=s) for n, s in zip("abcd", said, strict=True))
+        pairs = zip(springs[::2], springs[1::2], strict=True)
+        return structure_names(
+            Scene(bodies, tuple(Spring(x + y, (x, y), Linear(1.0)) for x, y in pairs))
+        )
+
+    assert names("", "T", "", "U", springs="abcd") == ["T", "U"]
+    assert names("", "", "", "", springs="abcd") == ["a", "c"]
+    # What two would be called, neither is.
+    assert names("T", "", "T", "", springs="abcd") == ["a", "c"]
+    assert names("", "d", "", "", springs="abc" + "c") == ["a", "c", "d"]
 
 
 def test_what_swings_on_a_spring() -> None:

@@ -153,10 +153,10 @@ def test_a_building_has_shear_roof_and_the_storey_of_its_largest_drift(tmp_path:
     }
     run = simulate(case, rtol=1e-9)
     table = design_numbers(case).set_index("quantity")
-    roof = table.loc["structures.A1.roof_drift", "value"]
+    roof = table.loc["structures.A.roof_drift", "value"]
     assert roof == pytest.approx(run.peaks.loc["A2", "abs_max"], rel=1e-12)
     drifts = [run.quantity(f"springs.storey-A{i}.drift_ratio") for i in (1, 2)]
-    largest = table.loc["structures.A1.storey_drift_ratio"]
+    largest = table.loc["structures.A.storey_drift_ratio"]
     assert largest["value"] == max(drifts)
     assert largest["at"] == f"storey-A{1 + int(np.argmax(drifts))}"
     for i, drift in enumerate(drifts, 1):
@@ -223,11 +223,21 @@ def test_quantities_of_the_case_stand_in_its_report(tmp_path: Path) -> None:
     assert asked.loc["impacts", ["50 %", "84 %"]].tolist() == np.ceil(fractiles).tolist()
 
 
+def test_a_capacity_has_any_unit_of_its_quantity(tmp_path: Path) -> None:
+    name = "acceleration.deck.abs_max"
+    suite_with(tmp_path, "{ ductility = 9 }", f'[capacity]\n"{name}" = "0.5 g"\n')
+    case = load_case(tmp_path)
+    assert dict(case.run.stated.capacities)[name] == pytest.approx(0.5 * 9.80665, rel=1e-15)
+    assert read_case(case.understood, tmp_path / "case.toml").run.stated == case.run.stated
+
+
 def test_a_pier_with_a_height_is_no_storey() -> None:
     scene = bridge()
     pier = replace(scene.springs[0], height=7.0)
     scene = replace(scene, springs=(pier, *scene.springs[1:]))
-    table = design_of_run(simulate(scene, "fast", duration=1.0)).set_index("quantity")
+    response = simulate(scene, "fast", duration=1.0)
+    assert "max_drift" not in response.summary
+    table = design_of_run(response).set_index("quantity")
     assert table.loc["springs.column.drift_ratio", "kind"] == "Piers and other yielding springs"
     assert "Storeys" not in set(table["kind"])
     assert not [name for name in table.index if name.startswith("structures.")]
@@ -249,6 +259,16 @@ def test_where_a_record_failed_nobody_knows_whether_all_would_pass(tmp_path: Pat
         ("3", "", "capacity: found 3; accepted: a table"),
         ("{ drift = 0.1 }", "", "capacity: found 'springs.frame.drift_ratio'"),
         ("{}", "[capacity]\nfractile = 0\n", "[capacity]: fractile: found 0; accepted: per cent"),
+        (
+            "{}",
+            '[capacity]\n"acceleration.deck.abs_max" = "5 cm"\n',
+            "acceleration.deck.abs_max: found a unit of length; accepted: an acceleration",
+        ),
+        (
+            "{}",
+            '[capacity]\n"acceleration.deck.abs_max" = "5 quux"\n',
+            "acceleration.deck.abs_max: found '5 quux'; accepted: a number (SI), or",
+        ),
         ("{}", '[[seat]]\nbetween = ["ground", "dek"]\n', "between: found ['ground', 'dek']"),
     ],
 )
