@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-import json
-import math
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,39 +13,30 @@ from eventpound.basics.given import checked
 from eventpound.basics.input_files import read_bytes
 from eventpound.case.capacity import read_capacities, with_capacities
 from eventpound.case.case import Case
-from eventpound.case.damping import read_group_damping
-from eventpound.case.dashpots import given_ratios, read_dashpot
-from eventpound.case.elements import read_body, read_contacts, read_seats
+from eventpound.case.dashpots import given_ratios
 from eventpound.case.excitation import Excitation, bare_accelerations, for_scene, read_excitation
 from eventpound.case.figure import Figure, one_or_several, read_figure
-from eventpound.case.pi import OF_SCENE, read_pi, scene_of_pi, with_periods, with_unit_scales
+from eventpound.case.pi import PLACEHOLDER, read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.record_scaling import large_scales
-from eventpound.case.run_options import EQUILIBRIUM, INITIAL, RunOptions, read_run, to_be_placed
+from eventpound.case.run_options import RunOptions, read_run, to_be_placed
+from eventpound.case.scene_tables import SceneRead, at_start, read_scene, start_time
 from eventpound.case.solver_options import default_solver, read_solver
-from eventpound.case.spring_stiffness import masses_carried
-from eventpound.case.springs import read_springs
 from eventpound.case.suite import Suite, with_suite
-from eventpound.case.supports import Driven, read_driven
+from eventpound.case.supports import Driven
 from eventpound.case.table import CaseProblem, Table
-from eventpound.case.understood import SOURCED, understood_case
+from eventpound.case.understood import understood_case
 from eventpound.case.written_out import written_out
 from eventpound.errors import InputError
-from eventpound.motion.free import NoMotion
 from eventpound.motion.record import Record
 from eventpound.scene.at_rest import at_rest
-from eventpound.scene.check import Problem, scene_problems, scene_warnings
-from eventpound.scene.continuation import continued
 from eventpound.scene.linkage import starts_of_supports, support_warnings
 from eventpound.scene.plausibility import doubts
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Linear
 from eventpound.scene.usual import SMALLEST_RATIO, unusual
-from eventpound.units import Dimension, quantity
+from eventpound.units import Dimension
 
 CASE_FILE = "case.toml"
-SUMMARY = "summary.json"
-"""Of a run, as `eventpound.results` writes it; another case may go on from its final state."""
 MOST_BYTES = 2**24
 """Of it; ten thousand bodies take some 3 000 000."""
 _MOST_PARTS = 64
@@ -176,7 +165,6 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     document = with_capacities(written_out(document, file), file)
     problems: list[CaseProblem] = []
     top = Table(with_unit_scales(document), "", problems)
-    start = _start_time(top)
     title = top.text("title", "some text", default=file.resolve().parent.name)
     if top.has("study"):
         # What its axes give is missing here; to say so as well would mislead.
@@ -185,37 +173,30 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         )
     excitation = _excitation(top, file.parent)
     figures = _figures(top, excitation)
-    pi, run_table, warnings, carried = None, top.table("run"), list[str](), dict[str, float]()
-    driven, sources = Driven(), dict[str, list[str]]()
+    run_table = top.table("run")
     if top.has("pi"):
-        pi = read_pi(top)
+        pi, read = read_pi(top), SceneRead(PLACEHOLDER)
         scene = scene_of_pi(top, pi, excitation)
         run_table = with_periods(run_table, pi, scene)
+        if pi is not None and run_table.has("start") and not problems and excitation is not None:
+            scene = at_start(run_table, scene, start_time(top), file.parent)
     else:
         needed = not figures or any(figure.kind.needs_scene for figure in figures)
-        scene, warnings, carried, driven, sources = _read_scene(
-            top, excitation, problems, needed, run_table, file.parent
-        )
-    if pi is not None and run_table.has("start") and not problems and excitation is not None:
-        scene = _at_start(run_table, scene, start, file.parent)
+        pi, read = None, read_scene(top, run_table, excitation, problems, needed, file.parent)
+        scene = read.scene
     if excitation is not None and not problems:
-        excitation, scene = _at_own_period(top, excitation, scene, start, pi is not None)
-    suite = _suite(top, excitation, driven, file.parent)
+        excitation, scene = _at_own_period(top, excitation, scene)
+    suite = _suite(top, excitation, read.driven, file.parent)
     sound = not problems and excitation is not None
     run = read_capacities(top, read_run(run_table, scene if sound else None, suite is not None))
     solver = read_solver(top.table("solver"), default_solver([scene], many=suite is not None))
     top.close()
     if problems or excitation is None or run is None:
         raise InputError([f"{file}: {problem}" for problem in problems])
-    warnings += support_warnings(scene, run.start_time + run.duration)
+    warnings = [*read.warnings, *support_warnings(scene, run.start_time + run.duration)]
     if pi is None and scene.bodies:
-        damped = [
-            each for kind in ("dashpot", "rayleigh", "modal_damping") for each in top.tables(kind)
-        ]
-        ratios = given_ratios(damped)
-        step = run.output_step if run_table.has("output_step") else None
-        warnings += doubts(scene, step, ratios, bare_accelerations(document), start)
-        warnings += unusual(scene, _given(top, run, ratios))
+        warnings += _doubts(top, document, scene, run)
+    understood = understood_case(title, excitation.table, scene, run, solver, read.sources)
     return Case(
         title=title,
         scene=scene,
@@ -225,15 +206,26 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         source_hash=source_hash,
         record=excitation.record,
         warnings=tuple(f"{file}: {warning}" for warning in warnings),
-        understood=understood_case(title, excitation.table, scene, run, solver, sources)
-        | dict(driven.tables)
+        understood=understood
+        | dict(read.driven.tables)
         | ({"figure": document["figure"]} if figures else {}),
         suite=suite,
         figures=figures,
         pi=pi,
-        carried=carried,
+        carried=read.carried,
         largest_scale=excitation.largest_scale,
     )
+
+
+def _doubts(
+    top: Table, document: Mapping[str, object], scene: Scene, run: RunOptions
+) -> Iterator[str]:
+    """What of a sound case is hardly meant so, or unlike earthquakes and structures."""
+    kinds = ("dashpot", "rayleigh", "modal_damping")
+    ratios = given_ratios([each for kind in kinds for each in top.tables(kind)])
+    step = run.output_step if top.table("run").has("output_step") else None
+    yield from doubts(scene, step, ratios, bare_accelerations(document), run.start_time)
+    yield from unusual(scene, _given(top, run, ratios))
 
 
 def _given(
@@ -267,16 +259,15 @@ def _excitation(top: Table, directory: Path) -> Excitation | None:
     return read_excitation(top.table("excitation"), directory)
 
 
-def _at_own_period(
-    top: Table, excitation: Excitation, scene: Scene, start: float, of_pi: bool
-) -> tuple[Excitation, Scene]:
+def _at_own_period(top: Table, excitation: Excitation, scene: Scene) -> tuple[Excitation, Scene]:
     """Motion and scene with records scaled at a period of the scene, if the case says so."""
+    start = start_time(top)
     with top.table("excitation").noting("psa_period"):
         own = for_scene(excitation, at_rest(scene, start))
         if own is excitation:
             return own, scene
         moved = replace(scene, motion=own.motion)
-        if of_pi:
+        if top.has("pi"):
             raise InputError(
                 "found a period of the scene, which [pi] makes; accepted: a period (s)"
             )
@@ -325,154 +316,6 @@ def _figures(top: Table, excitation: Excitation | None) -> tuple[Figure, ...]:
             files.add(figure.name)
             found.append(figure)
     return tuple(found)
-
-
-def _read_scene(
-    top: Table,
-    excitation: Excitation | None,
-    problems: list[CaseProblem],
-    needed: bool,
-    run: Table,
-    directory: Path,
-) -> tuple[Scene, list[str], dict[str, float], Driven, dict[str, list[str]]]:
-    """Scene, warnings, masses that springs carry, supports and forces, sources of numbers.
-
-    What is wrong is added to the problems.
-    """
-    tables = {kind: top.tables(kind) for kind in OF_SCENE}
-    said = "where its numbers are from"
-    sources = {kind: [t.text("source", said, "") for t in tables[kind]] for kind in SOURCED}
-    bodies = [read_body(table) for table in tables["body"]]
-    masses = {body.name: body.mass for body in bodies}
-    in_suite = excitation is not None and excitation.suite is not None
-    given = tables["support"], tables["force"]
-    driven = read_driven(*given, masses, directory, in_suite=in_suite)
-    supports = [support.name for support in driven.supports]
-    springs = read_springs(tables["spring"], masses, supports)
-    scene = Scene(
-        tuple(bodies),
-        springs,
-        contacts=read_contacts(tables["contact"]),
-        motion=NoMotion() if excitation is None else excitation.motion,
-        supports=driven.supports,
-        forces=driven.forces,
-        seats=read_seats(tables["seat"]),
-    )
-    start = _start_time(top)
-    wrong = scene_problems(scene, None)
-    if run.has("start") and not (problems or wrong):
-        scene = _at_start(run, scene, start, directory)
-    resting = at_rest(_without(scene, wrong) if wrong else scene, start)
-    dashpots = [
-        read_dashpot(table, masses, resting.springs, supports) for table in tables["dashpot"]
-    ]
-    groups = tables["rayleigh"], tables["modal_damping"]
-    of_groups = read_group_damping(*groups, bodies, resting.springs, supports)
-    scene = replace(scene, dashpots=(*dashpots, *of_groups))
-    if not bodies and needed:
-        top.report("[[body]]", "missing; accepted: at least one body")
-    elif bodies:
-        # Where bodies are to be placed or go on, they need not be where they can be.
-        elsewhere = _starts_elsewhere(top.data.get("run"))
-        _add_scene_problems(scene, tables, problems, None if elsewhere else start)
-    warnings = list(scene_warnings(scene)) if bodies else []
-    warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
-    carried = {} if problems else masses_carried(tables["spring"], springs, masses, supports)
-    return scene, warnings, carried, driven, sources
-
-
-def _without(scene: Scene, wrong: Sequence[Problem]) -> Scene:
-    """Springs alone, the wrong ones without a stiffness: what follows from it is not noted."""
-    bad = {problem.position for problem in wrong if problem.kind == "spring"}
-    unknown = Linear(math.nan)
-    springs = enumerate(scene.springs, 1)
-    return Scene((), tuple(replace(s, law=unknown) if i in bad else s for i, s in springs))
-
-
-def _add_scene_problems(
-    scene: Scene,
-    tables: Mapping[str, list[Table]],
-    problems: list[CaseProblem],
-    start: float | None,
-) -> None:
-    """Add what is wrong with a scene and was not noted while its tables were read."""
-    noted = {(problem.where, problem.key) for problem in problems}
-    nameless = any(not body.name for body in scene.bodies)
-    for problem in scene_problems(scene, start):
-        # No table gives NaN: it stands for a value that was noted when it was read.
-        placeholder = isinstance(problem.found, float) and math.isnan(problem.found)
-        if placeholder or (problem.key == "between" and nameless):
-            continue
-        if problem.kind == "excitation":
-            text = f"found {problem.found}; accepted: {problem.accepted}"
-            problems.append(CaseProblem("[excitation]", "", text))
-            continue
-        if problem.position > len(tables[problem.kind]):
-            # A dashpot of a group; wrong masses and coefficients were noted as such.
-            if not problems:
-                where = "[[rayleigh]]" if tables["rayleigh"] else "[[modal_damping]]"
-                problems.append(CaseProblem(where, "", f"adds {problem}"))
-            continue
-        table = tables[problem.kind][problem.position - 1]
-        if (table.where, problem.key) not in noted:
-            found = table.data.get(problem.key, problem.found)
-            text = f"found {found!r}; accepted: {problem.accepted}"
-            problems.append(CaseProblem(table.where, problem.key, text))
-
-
-def _starts_elsewhere(run: object) -> bool:
-    """Whether ``[run]``, as it is written, puts the bodies elsewhere than their tables do."""
-    return to_be_placed(run) or (isinstance(run, dict) and isinstance(run.get("start"), dict))
-
-
-def _at_start(run: Table, scene: Scene, start: float, directory: Path) -> Scene:
-    """The scene as the run is to start: as given, in equilibrium, or where another run ended."""
-    if isinstance(run.data["start"], dict):
-        return _after(run.table("start"), scene, start, directory)
-    run.choice("start", (INITIAL, EQUILIBRIUM))
-    if not to_be_placed(run.data):
-        return scene
-    from eventpound.scene.statics import in_equilibrium
-
-    try:
-        return in_equilibrium(scene, start)
-    except InputError as error:
-        run.report("start", str(error).removeprefix("start: "))
-        return scene
-
-
-def _after(table: Table, scene: Scene, start: float, directory: Path) -> Scene:
-    """The scene in the state in which a run ended, whose results are in a folder."""
-    accepted = f'a folder with a {SUMMARY} of `eventpound run`, or its case: "../mainshock"'
-    name = table.text("results", accepted)
-    table.close()
-    if not name:
-        return scene
-    folder = directory / name
-    try:
-        found = folder if (folder / SUMMARY).exists() else folder / "results"
-        summary = json.loads(read_bytes(found / SUMMARY))
-        if not (isinstance(summary, dict) and isinstance(summary.get("final"), dict)):
-            raise ValueError("no summary of a run")
-        if not summary.get("success"):
-            raise InputError(f"found {name!r}, a run that did not reach its end")
-        return continued(scene, summary["final"], start)
-    except (OSError, ValueError):
-        table.reject("results", accepted)
-    except InputError as error:
-        for problem in error.problems:
-            table.report("results", problem.removeprefix("start: "))
-    return scene
-
-
-def _start_time(top: Table) -> float:
-    """When the run starts (s); 0 where that cannot be read, which is noted elsewhere."""
-    run = top.data.get("run")
-    given = run.get("start_time", 0.0) if isinstance(run, dict) else 0.0
-    try:
-        return quantity(given, Dimension.TIME)
-    except InputError:
-        return 0.0
 
 
 def _case_file(path: Path) -> Path:

@@ -28,7 +28,7 @@ OF_SCENE = (
 )  # fmt: skip
 """Tables of a scene in a case."""
 _OF_NEIGHBOURS = ("m", "omega_s", "uy", "Q")
-_PLACEHOLDER = Scene((Body("0", math.nan),))
+PLACEHOLDER = Scene((Body("0", math.nan),))
 
 
 def with_unit_scales(document: Mapping[str, object]) -> Mapping[str, object]:
@@ -113,7 +113,7 @@ def scene_of_pi(top: Table, pi: PiTable | None, excitation: Excitation | None) -
         Its ground motion.
     """
     if pi is None or excitation is None or any(math.isnan(term) for term in pi.terms.values()):
-        return _PLACEHOLDER
+        return PLACEHOLDER
     try:
         with top.noting("[pi]"):
             scene = pi.structure.scene(excitation.motion, pi.terms)
@@ -121,7 +121,7 @@ def scene_of_pi(top: Table, pi: PiTable | None, excitation: Excitation | None) -
             return scene
     except ArithmeticError:
         top.report("[pi]", "these terms make a number of the case too large or too small")
-    return _PLACEHOLDER
+    return PLACEHOLDER
 
 
 def with_periods(run: Table, pi: PiTable | None, scene: Scene) -> Table:

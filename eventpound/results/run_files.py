@@ -32,7 +32,7 @@ import numpy as np
 from eventpound.basics.given import checked
 from eventpound.basics.input_files import read_columns, to_numbers
 from eventpound.case.case import Case
-from eventpound.case.loading import SUMMARY as SUMMARY
+from eventpound.case.scene_tables import SUMMARY as SUMMARY
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import parts_of

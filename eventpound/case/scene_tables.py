@@ -1,0 +1,217 @@
+"""The scene that the tables of a case make, as its run is to start; what is wrong is noted."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from eventpound.basics.input_files import read_bytes
+from eventpound.case.damping import read_group_damping
+from eventpound.case.dashpots import read_dashpot
+from eventpound.case.elements import read_body, read_contacts, read_seats
+from eventpound.case.excitation import Excitation
+from eventpound.case.pi import OF_SCENE
+from eventpound.case.run_options import EQUILIBRIUM, INITIAL, to_be_placed
+from eventpound.case.spring_stiffness import masses_carried
+from eventpound.case.springs import read_springs
+from eventpound.case.supports import Driven, read_driven
+from eventpound.case.table import CaseProblem, Table
+from eventpound.case.understood import SOURCED
+from eventpound.errors import InputError
+from eventpound.motion.free import NoMotion
+from eventpound.scene.at_rest import at_rest
+from eventpound.scene.check import Problem, scene_problems, scene_warnings
+from eventpound.scene.continuation import continued
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import Linear
+from eventpound.units import Dimension, quantity
+
+SUMMARY = "summary.json"
+"""Of a run, as `eventpound.results` writes it; another case may go on from its final state."""
+
+
+@dataclass(frozen=True)
+class SceneRead:
+    """A scene, and what its tables say beside it.
+
+    Parameters
+    ----------
+    scene : Scene
+        What moves.
+    warnings : list of str
+        What is hardly meant so.
+    carried : mapping of str to float
+        Mass (kg) that the period of a spring refers to, by its name.
+    driven : Driven
+        Supports and forces.
+    sources : mapping of str to list of str
+        Where numbers are from, of each of `SOURCED`.
+    """
+
+    scene: Scene
+    warnings: list[str] = field(default_factory=list)
+    carried: Mapping[str, float] = field(default_factory=dict)
+    driven: Driven = field(default_factory=Driven)
+    sources: Mapping[str, list[str]] = field(default_factory=dict)
+
+
+def read_scene(
+    top: Table,
+    run: Table,
+    excitation: Excitation | None,
+    problems: list[CaseProblem],
+    needed: bool,
+    directory: Path,
+) -> SceneRead:
+    """The scene of the tables of a case; what is wrong with it is added to the problems.
+
+    Parameters
+    ----------
+    top, run : Table
+        The case, and its ``[run]``.
+    excitation : Excitation or None
+        Its ground motion, where that is sound.
+    problems : list of CaseProblem
+        Of the case.
+    needed : bool
+        Whether it has to have a body.
+    directory : Path
+        Of the case, to which files are relative.
+    """
+    tables = {kind: top.tables(kind) for kind in OF_SCENE}
+    said = "where its numbers are from"
+    sources = {kind: [t.text("source", said, "") for t in tables[kind]] for kind in SOURCED}
+    bodies = [read_body(table) for table in tables["body"]]
+    masses = {body.name: body.mass for body in bodies}
+    in_suite = excitation is not None and excitation.suite is not None
+    given = tables["support"], tables["force"]
+    driven = read_driven(*given, masses, directory, in_suite=in_suite)
+    supports = [support.name for support in driven.supports]
+    springs = read_springs(tables["spring"], masses, supports)
+    scene = Scene(
+        tuple(bodies),
+        springs,
+        contacts=read_contacts(tables["contact"]),
+        motion=NoMotion() if excitation is None else excitation.motion,
+        supports=driven.supports,
+        forces=driven.forces,
+        seats=read_seats(tables["seat"]),
+    )
+    start = start_time(top)
+    wrong = scene_problems(scene, None)
+    if run.has("start") and not (problems or wrong):
+        scene = at_start(run, scene, start, directory)
+    resting = at_rest(_without(scene, wrong) if wrong else scene, start)
+    dashpots = [
+        read_dashpot(table, masses, resting.springs, supports) for table in tables["dashpot"]
+    ]
+    groups = tables["rayleigh"], tables["modal_damping"]
+    of_groups = read_group_damping(*groups, bodies, resting.springs, supports)
+    scene = replace(scene, dashpots=(*dashpots, *of_groups))
+    if not bodies and needed:
+        top.report("[[body]]", "missing; accepted: at least one body")
+    elif bodies:
+        # Where bodies are to be placed or go on, they need not be where they can be.
+        elsewhere = _starts_elsewhere(top.data.get("run"))
+        _add_scene_problems(scene, tables, problems, None if elsewhere else start)
+    warnings = list(scene_warnings(scene)) if bodies else []
+    warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
+    carried = {} if problems else masses_carried(tables["spring"], springs, masses, supports)
+    return SceneRead(scene, warnings, carried, driven, sources)
+
+
+def _without(scene: Scene, wrong: Sequence[Problem]) -> Scene:
+    """Springs alone, the wrong ones without a stiffness: what follows from it is not noted."""
+    bad = {problem.position for problem in wrong if problem.kind == "spring"}
+    unknown = Linear(math.nan)
+    springs = enumerate(scene.springs, 1)
+    return Scene((), tuple(replace(s, law=unknown) if i in bad else s for i, s in springs))
+
+
+def _add_scene_problems(
+    scene: Scene,
+    tables: Mapping[str, list[Table]],
+    problems: list[CaseProblem],
+    start: float | None,
+) -> None:
+    """Add what is wrong with a scene and was not noted while its tables were read."""
+    noted = {(problem.where, problem.key) for problem in problems}
+    nameless = any(not body.name for body in scene.bodies)
+    for problem in scene_problems(scene, start):
+        # No table gives NaN: it stands for a value that was noted when it was read.
+        placeholder = isinstance(problem.found, float) and math.isnan(problem.found)
+        if placeholder or (problem.key == "between" and nameless):
+            continue
+        if problem.kind == "excitation":
+            text = f"found {problem.found}; accepted: {problem.accepted}"
+            problems.append(CaseProblem("[excitation]", "", text))
+            continue
+        if problem.position > len(tables[problem.kind]):
+            # A dashpot of a group; wrong masses and coefficients were noted as such.
+            if not problems:
+                where = "[[rayleigh]]" if tables["rayleigh"] else "[[modal_damping]]"
+                problems.append(CaseProblem(where, "", f"adds {problem}"))
+            continue
+        table = tables[problem.kind][problem.position - 1]
+        if (table.where, problem.key) not in noted:
+            found = table.data.get(problem.key, problem.found)
+            text = f"found {found!r}; accepted: {problem.accepted}"
+            problems.append(CaseProblem(table.where, problem.key, text))
+
+
+def _starts_elsewhere(run: object) -> bool:
+    """Whether ``[run]``, as it is written, puts the bodies elsewhere than their tables do."""
+    return to_be_placed(run) or (isinstance(run, dict) and isinstance(run.get("start"), dict))
+
+
+def at_start(run: Table, scene: Scene, start: float, directory: Path) -> Scene:
+    """The scene as the run is to start: as given, in equilibrium, or where another run ended."""
+    if isinstance(run.data["start"], dict):
+        return _after(run.table("start"), scene, start, directory)
+    run.choice("start", (INITIAL, EQUILIBRIUM))
+    if not to_be_placed(run.data):
+        return scene
+    from eventpound.scene.statics import in_equilibrium
+
+    try:
+        return in_equilibrium(scene, start)
+    except InputError as error:
+        run.report("start", str(error).removeprefix("start: "))
+        return scene
+
+
+def _after(table: Table, scene: Scene, start: float, directory: Path) -> Scene:
+    """The scene in the state in which a run ended, whose results are in a folder."""
+    accepted = f'a folder with a {SUMMARY} of `eventpound run`, or its case: "../mainshock"'
+    name = table.text("results", accepted)
+    table.close()
+    if not name:
+        return scene
+    folder = directory / name
+    try:
+        found = folder if (folder / SUMMARY).exists() else folder / "results"
+        summary = json.loads(read_bytes(found / SUMMARY))
+        if not (isinstance(summary, dict) and isinstance(summary.get("final"), dict)):
+            raise ValueError("no summary of a run")
+        if not summary.get("success"):
+            raise InputError(f"found {name!r}, a run that did not reach its end")
+        return continued(scene, summary["final"], start)
+    except (OSError, ValueError):
+        table.reject("results", accepted)
+    except InputError as error:
+        for problem in error.problems:
+            table.report("results", problem.removeprefix("start: "))
+    return scene
+
+
+def start_time(top: Table) -> float:
+    """When the run starts (s); 0 where that cannot be read, which is noted elsewhere."""
+    run = top.data.get("run")
+    given = run.get("start_time", 0.0) if isinstance(run, dict) else 0.0
+    try:
+        return quantity(given, Dimension.TIME)
+    except InputError:
+        return 0.0
