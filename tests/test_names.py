@@ -51,3 +51,37 @@ def test_long_calls_name_their_arguments() -> None:
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Call):
                 assert len(node.args) <= MOST_BY_POSITION, f"{path}:{node.lineno}"
+
+
+SMALL = 100
+"""Lines up to which a module is tested with what uses it."""
+ONE_TABLE = "motion/readers"
+"""Its modules are the rows of one table, which `test_reading` and `test_header` go through."""
+WITHOUT = {
+    "accuracy": "comparison_tables reference work_precision",
+    "case": "capacity case dashpots figure frequency keys record_scaling scene_tables",
+    "cli": "arguments folder fragility plot report score suite_run talk",
+    "motion": "parametric swing",
+    "problems": "page",
+    "quantities": "batch_response listed runs",
+    "report": "bridge_response design_figures design_study design_tables gallery "
+    "many_appendix profile run_appendix study_curves study_figure study_files zoom",
+    "results": "records",
+    "scene": "contact_law ends equilibrium linkage spring",
+    "score": "drawing page problem",
+    "": "simulation",
+    "study": "axes plan precompile runs",
+}
+"""Larger modules outside the engine without a test of their name; the list shrinks."""
+
+
+def test_tests_are_named_after_what_they_test():
+    tests, without = Path(__file__).parent, defaultdict(list)
+    for path in sorted(ROOT.rglob("*.py")):
+        name, room = path.relative_to(ROOT).as_posix(), path.parent.relative_to(ROOT)
+        large = len(path.read_text().splitlines()) > SMALL and room.as_posix() != ONE_TABLE
+        asked = large and not path.stem.startswith("__") and not name.startswith(ENGINE)
+        if asked and not (tests / room / f"test_{path.stem}.py").exists():
+            without[room.as_posix().removeprefix(".")].append(path.stem)
+    listed = {room: names.split() for room, names in WITHOUT.items()}
+    assert listed == without, "a module wants a test of its name, or the list is too long"

@@ -9,7 +9,7 @@ import pytest
 from eventpound import load_case
 from eventpound.accuracy import estimate
 from eventpound.accuracy.estimate import allowed_part, estimate_errors, estimate_of
-from eventpound.accuracy.judge import judge_of, rtol_of_judge
+from eventpound.accuracy.judge import judge_of
 from eventpound.cli import main
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.motion.pulses import Sine
@@ -19,7 +19,6 @@ from eventpound.scene import (
     Body,
     BoucWen,
     Contact,
-    ContactLaw,
     Linear,
     Scene,
     Spring,
@@ -81,35 +80,11 @@ def test_an_estimate_that_is_asked_for_is_independent(compiled):
     assert found["largest"]["part"] > 1e-6
 
 
-def test_fast_judges_no_scene_that_it_does_not_take():
-    contact = Contact("wall", "b", BARRIER, 0.5, None, ContactLaw("hertz", 1e3))
-    scene = replace(WALL, contacts=(contact,))
-    for asked in (True, False):
-        assert judge_of(response_of(scene, "cvode", duration=4.0), asked=asked) == "cvode"
-
-
 def test_fixed_steps_are_said_not_to_know_their_error():
     found = estimate_of(response_of(WALL, "moreau", duration=4.0), asked=None)
     assert found is not None
     assert found["by"] is None
     assert "moreau is judged only when that is asked for" in found["missing"]
-
-
-@pytest.mark.parametrize(
-    ("judge", "rtol", "of_others", "of_itself"),
-    [
-        ("fast", 1e-3, 1e-5, 1e-5),
-        ("fast", 1e-12, 1e-14, 1e-14),
-        ("fast", 1e-13, 1e-14, 1e-14),
-        ("cvode", 5e-14, 1e-14, 5e-13),
-        ("cvode", 1e-14, 1e-14, 1e-13),
-        ("ida", 1e-10, 1e-12, 1e-12),
-        pytest.param("ida", 1e-12, 1e-12, 1e-11, id="below 1e-12 the steps of ida get no finer"),
-    ],
-)
-def test_a_run_never_judges_itself_by_the_same_steps(judge, rtol, of_others, of_itself):
-    assert rtol_of_judge(rtol, judge, itself=False) == pytest.approx(of_others, rel=1e-12)
-    assert rtol_of_judge(rtol, judge, itself=True) == pytest.approx(of_itself, rel=1e-12)
 
 
 def test_the_smallest_tolerance_has_an_error_too():

@@ -12,12 +12,10 @@ import pytest
 from eventpound.case import Case, read_case
 from eventpound.case.template import template
 from eventpound.errors import InputError
-from eventpound.results.inputs import inputs_of
 from eventpound.scene import (
     Backfill,
     BilinearElastic,
     BoucWen,
-    Dashpot,
     DegradingBoucWen,
     Linear,
     Series,
@@ -89,64 +87,6 @@ def test_frequency_zero_is_a_plastic_spring() -> None:
     keys: Table = {"frequency": 0, "strength": 1, "yield_displacement": 1}
     (s,) = case_with(spring=[spring(law="bouc-wen", **keys)]).scene.springs
     assert s.law == BoucWen(0.0, 1.0, 1.0)
-
-
-@pytest.mark.parametrize(
-    "keys", [{"stiffness": 50.0}, {"frequency": 5.0}, {"period": "1256.6370614359172 ms"}]
-)
-def test_linear(keys: Table) -> None:
-    ends = {"between": ["a", "ground"]}
-    (s,) = case_with(spring=[{**spring(law="linear", **keys), **ends}]).scene.springs
-    assert isinstance(s.law, Linear)
-    assert s.between == ("a", "ground")
-    assert s.law.stiffness == pytest.approx(50.0, rel=CLOSE)
-
-
-@pytest.mark.parametrize("mass", [5.0, "5 kg", ["a", "b"]])
-def test_mass_of_a_period_that_is_not_the_body_s(mass: object) -> None:
-    tables = [
-        {**spring(law="linear", period="2 s", of_mass=mass), "between": ends}
-        for ends in (["ground", "a"], ["a", "b"])
-    ]
-    for s in case_with(spring=tables).scene.springs:
-        assert isinstance(s.law, Linear)
-        assert s.law.stiffness == pytest.approx(5.0 * math.pi**2, rel=CLOSE)
-
-
-def test_period_of_a_bouc_wen_spring_is_refused_in_one_message() -> None:
-    for others in ({}, {"strength": 1}, {"strength": 1, "yield_displacement": 1}):
-        text = problems(spring=[spring(law="bouc-wen", period="2 s", of_mass=4, **others)])
-        assert len(text.splitlines()) == 1
-        assert "[[spring]] 1: period: found '2 s'" in text
-        for word in ("initial_period", "post_yield_period", "of_mass"):
-            assert word in text
-
-
-@pytest.mark.parametrize(
-    ("keys", "said"),
-    [
-        ({"stiffness": 5, "of_mass": 4}, "of_mass: found 4; accepted: it beside a frequency"),
-        ({"period": 1, "of_mass": 0}, "of_mass: found 0; accepted: a positive mass"),
-        ({"period": 1, "of_mass": []}, "of_mass: found []; accepted: a positive mass"),
-        ({"period": 1, "of_mass": "4 m"}, "of_mass: found '4 m': 'm' is no unit of mass"),
-        ({"period": 1, "of_mass": ["a", "a"]}, "a list of different bodies, of a, b"),
-        ({"period": 1, "of_mass": ["c"]}, "of_mass: found ['c']; accepted: a positive mass"),
-        ({"period": 1, "of_mass": [["a"]]}, "of_mass: found [['a']]"),
-        ({"period": 1, "frequency": 1}, "one of frequency and period; period says 78.9"),
-        ({"period": 1, "between": ["a", "b"]}, "period: found 1; accepted: stiffness, or of_mass"),
-        ({"period": -1}, "period: found -1; accepted: a positive period"),
-        ({"frequency": -1}, "frequency: found -1; accepted: a frequency that is not negative"),
-        ({"initial_period": 1}, "initial_period: unknown key"),
-    ],
-)
-def test_wrong_frequencies_and_masses(keys: Table, said: str) -> None:
-    assert said in problems(spring=[spring(law="linear", **keys)])
-
-
-def test_periods_that_contradict_a_stiffness() -> None:
-    keys: Table = {"initial_stiffness": 9.0, "initial_period": 1, "strength": 1, "stiffness": 1}
-    said = problems(spring=[spring(law="bouc-wen", **keys)])
-    assert "initial_stiffness: found 9.0; accepted: one of initial_stiffness and initial_p" in said
 
 
 def test_kinked_laws() -> None:
@@ -233,145 +173,7 @@ def test_names_by_default_are_those_of_the_ends() -> None:
     assert names == ["ground-a", "ground-a-2", "ground-a-3"]
 
 
-HYSTERETIC = spring(law="bouc-wen", stiffness=8.0, strength=1.0, yield_displacement=1 / 64)
 # initial stiffness 8 + 64 = 72 N/m, mass 2 kg
-
-
-@pytest.mark.parametrize(
-    ("refers_to", "expected"),
-    [
-        ("initial-stiffness", 2 * 0.05 * math.sqrt(72.0 * 2.0)),
-        ("post-yield-stiffness", 2 * 0.05 * math.sqrt(8.0 * 2.0)),
-        ("6 rad/s", 2 * 0.05 * 2.0 * 6.0),
-        (6.0, 2 * 0.05 * 2.0 * 6.0),
-        ("0.5 s", 2 * 0.05 * 2.0 * 4.0 * math.pi),
-    ],
-)
-def test_damping_ratio(refers_to: object, expected: float) -> None:
-    dashpot: Table = {"between": ["a", "ground"], "ratio": "5 %", "refers_to": refers_to}
-    (found,) = case_with(spring=[HYSTERETIC], dashpot=[dashpot]).scene.dashpots
-    assert found.coefficient == pytest.approx(expected, rel=CLOSE)
-
-
-def test_ratio_of_springs_in_parallel() -> None:
-    linear = [spring(law="linear", stiffness=k) for k in (10.0, 8.0)]
-    dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5}
-    (found,) = case_with(spring=linear, dashpot=[dashpot]).scene.dashpots
-    assert found == Dashpot(("ground", "a"), 6.0)
-
-
-def test_ratio_beside_a_kinked_spring_is_of_its_stiffness_at_rest() -> None:
-    kinked = spring(law="bilinear-elastic", compression=0.0, extension=8.0, name="cable")
-    dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5}
-    # 2 xi sqrt(k m), m = 2.
-    (found,) = case_with(spring=[{**kinked, "offset": -0.1}], dashpot=[dashpot]).scene.dashpots
-    assert found.coefficient == pytest.approx(4.0, rel=CLOSE)
-    said = problems(spring=[{**kinked, "offset": 0.1}], dashpot=[dashpot])
-    assert "coefficient; spring 'cable' does not resist at rest, refer to a frequency" in said
-
-
-def test_hertz_is_refused_for_what_a_ratio_refers_to() -> None:
-    dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5, "refers_to": "1 Hz"}
-    assert "refers_to: found '1 Hz'" in problems(spring=[HYSTERETIC], dashpot=[dashpot])
-
-
-@pytest.mark.parametrize(
-    "keys",
-    [
-        {"ratio": 0.05, "frequencies": [2.0, 8.0]},
-        {"ratio": 0.05, "periods": [math.pi, math.pi / 4]},
-        {"mass_coefficient": 0.16, "stiffness_coefficient": "10 ms"},
-    ],
-    ids=", ".join,
-)
-def test_rayleigh(keys: Table) -> None:
-    # a = 2 x 0.05 x 2 x 8 / 10 = 0.16 1/s, b = 2 x 0.05 / 10 = 0.01 s
-    between = {"between": ["a", "b"], "law": "linear", "stiffness": 30.0}
-    scene = case_with(spring=[HYSTERETIC, between], rayleigh=[{"bodies": ["a", "b"], **keys}]).scene
-    found = {dashpot.between: dashpot.coefficient for dashpot in scene.dashpots[1:2]}
-    assert found == pytest.approx({("ground", "b"): 0.16 * 3.0}, rel=CLOSE)
-    coefficients = [dashpot.coefficient for dashpot in scene.dashpots]
-    assert coefficients == pytest.approx([0.32, 0.48, 0.72, 0.3], rel=CLOSE)
-
-
-def test_rayleigh_damps_a_kinked_spring_as_it_is_at_rest() -> None:
-    """At its kink by the smaller of two stiffnesses, which is said; slack not at all."""
-    group: Table = {"bodies": ["a"], "mass_coefficient": 0.1, "stiffness_coefficient": 0.1}
-    kinked = spring(law="bilinear-elastic", compression=3.0, extension=2.0, name="stop")
-    for offset, damping in ((0.0, 0.2), (0.1, 0.3), (-0.1, 0.2)):
-        case = case_with(spring=[{**kinked, "offset": offset}], rayleigh=[group])
-        assert [d.coefficient for d in case.scene.dashpots] == pytest.approx([0.2, damping])
-        assert inputs_of(case)["at_rest"]["at_kink"] == ["stop"] * (offset == 0.0)
-    slack = spring(law="bilinear-elastic", compression=0.0, extension=2.0, name="s", offset=0.1)
-    assert len(case_with(spring=[slack], rayleigh=[group]).scene.dashpots) == 1
-
-
-def test_a_body_in_two_rayleigh_groups() -> None:
-    group: Table = {"bodies": ["a"], "mass_coefficient": 0.1}
-    assert "found 'a' again" in problems(rayleigh=[group, group])
-
-
-# a on isolators, b on a storey of 30 N/m above it.
-ISOLATED = [
-    spring(name="isolators", law="bouc-wen", stiffness=1.0, strength=0.1, yield_displacement=0.1),
-    {"between": ["a", "b"], "name": "storey", "law": "linear", "stiffness": 30.0},
-    {"between": ["a", "b"], "name": "stop", "law": "bilinear-elastic", "compression": 1.0,
-     "extension": 0.0},
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("keys", "expected"),
-    [
-        ({"stiffness_coefficient": "10 ms"}, 0.3),
-        ({"ratio": "5 %", "frequency": 4.0}, 2 * 0.05 / 4.0 * 30.0),
-        ({"ratio": "5 %", "period": "0.5 s"}, 0.05 * 0.5 / math.pi * 30.0),
-    ],
-)
-def test_rayleigh_damping_of_springs(keys: Table, expected: float) -> None:
-    group: Table = {"springs": ["storey"], **keys}
-    (found,) = case_with(spring=ISOLATED[:2], rayleigh=[group]).scene.dashpots
-    assert found.between == ("a", "b")
-    assert found.coefficient == pytest.approx(expected, rel=CLOSE)
-
-
-def test_a_ratio_of_springs_holds_at_a_mode_with_the_others_yielded() -> None:
-    group: Table = {"springs": ["storey"], "ratio": "5 %", "mode": 2}
-    scene = case_with(spring=ISOLATED[:2], rayleigh=[group]).scene
-    assert modes_of(scene, ["a", "b"], yielded=True).damping[1] == pytest.approx(0.05, rel=1e-12)
-    assert "strain energy: 2" in problems(spring=ISOLATED[:2], rayleigh=[{**group, "mode": 1}])
-
-
-@pytest.mark.parametrize(
-    ("keys", "said"),
-    [
-        ({"springs": ["story"]}, "springs: found 'story'; accepted: some of isolators, storey"),
-        ({"springs": ["stop"]}, "springs: found 'stop'; accepted: springs that resist at rest"),
-        ({"springs": ["storey", "storey"]}, "springs: found ['storey', 'storey']; accepted: every"),
-        ({"springs": "storey"}, "springs: found 'storey'; accepted: a list of names"),
-        ({"bodies": ["b"]}, "bodies: found ['b']; accepted: one of bodies and springs"),
-        ({"mass_coefficient": 0.1}, "mass_coefficient: unknown key"),
-        ({"support": "pier"}, "support: unknown key"),
-        ({"stiffness_coefficient": 0.1}, "ratio: found 0.05; accepted: ratio with one of mode"),
-        ({"period": "1 s"}, "mode: found mode and period of mode, period, frequency"),
-        ({"mode": 3}, "mode: found 3; accepted: a mode in which"),
-        ({"ratio": -0.05}, "ratio: found -0.05; accepted: a ratio that is not negative"),
-    ],
-)
-def test_rayleigh_damping_of_springs_that_is_refused(keys: Table, said: str) -> None:
-    group: Table = {"springs": ["storey"], "ratio": 0.05, "mode": 2, **keys}
-    (line,) = [x for x in problems(spring=ISOLATED, rayleigh=[group]).splitlines() if said in x]
-    assert line.startswith("case.toml: [[rayleigh]] 1: ")
-
-
-def test_a_spring_in_two_rayleigh_groups() -> None:
-    named: Table = {"springs": ["storey"], "stiffness_coefficient": 0.1}
-    both: Table = {"bodies": ["a", "b"], "mass_coefficient": 0.1}
-    case_with(spring=ISOLATED[:2], rayleigh=[named, both])
-    both["stiffness_coefficient"] = 0.1
-    for groups in ([named, both], [both, named], [named, named]):
-        said = problems(spring=ISOLATED[:2], rayleigh=groups)
-        assert "damps spring 'storey' again" in said
 
 
 @pytest.mark.parametrize(

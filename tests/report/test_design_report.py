@@ -12,17 +12,14 @@ import pandas as pd
 import pytest
 from matplotlib.image import imread
 
-from eventpound import InputError, design_numbers, load_case, simulate
+from eventpound import InputError, load_case
 from eventpound.case import read_case
-from eventpound.case.case import Case, member_case
+from eventpound.case.case import member_case
 from eventpound.cli import main
-from eventpound.report.design_report import Told, design_sheets
 from eventpound.report.model_layout import layout_of
 from eventpound.report.record_tables import scaling_words
-from eventpound.report.sheets import as_html, as_pdf, share_of
 from eventpound.results.inputs import inputs_of
 from eventpound.results.trade import trade_of
-from tests.models import CASES
 from tests.report.test_html import CHROMIUM, Balanced
 from tests.results.test_workbook import read as read_workbook
 from tests.study.test_suite import time_series
@@ -85,12 +82,6 @@ def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "results" / "report"
 
 
-def told(case: Case) -> Told:
-    """The report of a single run."""
-    response = simulate(case, error_estimate=False)
-    return Told(case, design_numbers(case), None, response, "")
-
-
 def pages(pdf: bytes) -> int:
     return len(re.findall(rb"/Type\s*/Page[^s]", pdf))
 
@@ -125,18 +116,6 @@ def test_the_command_writes_two_sheets_without_a_browser(suite: Path) -> None:
 def test_a_browser_prints_two_pages_of_it(suite: Path, tmp_path: Path) -> None:
     sheets, *_ = (suite / "report.html").read_text(encoding="utf-8").partition(APPENDIX)
     assert printed(tmp_path, sheets.encode()) == 2
-
-
-@pytest.mark.parametrize("name", ["adjacent-buildings", "pair", "floor-to-column"])
-def test_runs_of_unlike_scenes_fit_on_two_pages(name: str, tmp_path: Path) -> None:
-    sheets = design_sheets(told(load_case(CASES / name)))
-    assert pages(as_pdf(name, sheets)) == 2
-    assert printed(tmp_path, as_html(name, sheets)) == 2
-
-
-def test_a_scene_without_contacts_has_a_report() -> None:
-    sheets = design_sheets(told(load_case(CASES / "elastic-record")))
-    assert "peak displacement" in as_html("", sheets).decode()
 
 
 def test_it_speaks_as_the_trade_does(suite: Path) -> None:
@@ -201,19 +180,6 @@ def test_scaling_is_said_in_the_chosen_unit(tmp_path: Path) -> None:
     case = load_case(tmp_path)
     said = scaling_words(case, trade_of(case.scene, case.run.stated))
     assert said.startswith("every record to a PSA of 4.90 m/s² at T1 of deck 2 = ")
-
-
-def test_the_first_sheet_of_tall_buildings_has_room_for_its_sketch(tmp_path: Path) -> None:
-    text = '[excitation]\nkind = "sine"\namplitude = "0.4 g"\nperiod = "0.7 s"\n'
-    for name in "AB":
-        text += f'[[building]]\nname = "{name}"\nstoreys = 12\nmass = "200 t"\n'
-        text += 'stiffness = "300 MN/m"\nyield_force = "0.3 W"\nheight = "3.2 m"\n'
-    for i in range(1, 13):
-        text += f'[[contact]]\nname = "floor {i}"\nbetween = ["A{i}", "B{i}"]\n'
-        text += 'gap = "2 cm"\nrestitution = 0.6\n'
-    (tmp_path / "case.toml").write_text(text + '[run]\nduration = "1.5 s"\n')
-    first, _ = design_sheets(told(load_case(tmp_path)))
-    assert share_of(first) > 0.6
 
 
 def test_the_workbook_has_the_numbers_of_the_table_in_its_units(suite: Path) -> None:

@@ -274,20 +274,6 @@ def test_page_of_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert "no table of this case as it is; `eventpound study`" in capsys.readouterr().err
 
 
-def test_page_of_a_comparison(tmp_path: Path) -> None:
-    folder = tmp_path / "pair"
-    shutil.copytree(CASES / "pair", folder)
-    words = ["--solvers", "fast,moreau", "--rtol", "1e-6", "--steps", "0.01", "--repeats", "1"]
-    assert main(["compare", str(folder), *words]) == 0
-    text = whole(folder / "comparison" / "report.html")
-    # The diagram and the scene.
-    assert text.count("<svg") == 2
-    runs = pd.read_csv(folder / "comparison" / "comparison.csv")
-    assert all(f"<td>{error:.1e}</td>" in text for error in runs["peak_error"])
-    worst = pd.read_csv(folder / "comparison" / "quantities.csv").sort_values("error").iloc[-1]
-    assert f"{worst['reference']:.6g}" in text
-
-
 def test_page_of_a_study_under_records(tmp_path: Path) -> None:
     for name, amplitude in (("a", 0.2), ("b", 0.5)):
         (tmp_path / f"{name}.txt").write_text(time_series(amplitude))

@@ -13,14 +13,9 @@ import pytest
 from eventpound import load_case, simulate, simulate_suite
 from eventpound.case import Case
 from eventpound.case.case import member_case
-from eventpound.case.figure import Figure, FigureKind, LengthRange
 from eventpound.errors import InputError
-from eventpound.motion import Record, Ricker
-from eventpound.motion.pulse_fit import fit_pulse
-from eventpound.motion.synthetic import synthetic_motion
 from eventpound.report import suite_plot
 from eventpound.report.bridge_response import bridge_response_figure
-from eventpound.report.pulse_fit import pulse_fit_figure
 from eventpound.report.similarity_contours import similarity_contours_figure
 from eventpound.report.suite_plot import named_lengths, plot_suite, suite_spectrum_figure
 from eventpound.report.view import View
@@ -68,24 +63,6 @@ def test_many_bodies_stand_side_by_side() -> None:
         assert (grid.nrows, grid.ncols) == (rows, columns)
         # Each column has the name of its axis below its last panel.
         assert len([axes for axes in shown if axes.get_xlabel()]) == columns
-
-
-def test_contours_have_their_value_and_records_their_height() -> None:
-    wanted = Figure(
-        FigureKind.SIMILARITY_CONTOURS,
-        contours=(0.1, 1.0),
-        joints=(LengthRange("joint", 0.006, 0.013),),
-        isolators=(LengthRange("isolator", 0.01, 0.01),),
-    )
-    lengths = np.array([0.002, 0.02])
-    figure = similarity_contours_figure(lengths, ["a", "b"], wanted, "title")
-    for axes in figure.axes:
-        falling = [line for line in axes.get_lines() if len(line.get_xydata()) == 200]
-        for line, value in zip(falling, wanted.contours, strict=True):
-            x, y = line.get_xydata().T
-            assert x / 100.0 * y == pytest.approx(np.full(200, value))
-        level = {float(line.get_ydata()[0]) for line in axes.get_lines()}
-        assert level >= {50.0, 500.0}
 
 
 def test_notes_stand_below_all_else_and_say_what_is_left_out(tmp_path: Path) -> None:
@@ -164,18 +141,6 @@ def test_response_is_dimensionless_and_bodies_meet_at_impacts(few: Case) -> None
         bridge_response_figure(View(apart), "title")
 
 
-def test_pulse_over_the_record() -> None:
-    t = np.arange(0.0, 8.0, 0.01)
-    record = Record(Ricker(2.0, 1.0, start=2.0).acceleration(t), 0.01)
-    fits = fit_pulse(record, ["ricker", "sine"])
-    figure = pulse_fit_figure(record, fits, "title")
-    upper, lower = figure.axes
-    drawn = upper.get_lines()[2].get_ydata()
-    assert np.abs(drawn).max() * 9.80665 == pytest.approx(2.0, rel=1e-2)
-    assert "explains 100 %" in str(upper.get_lines()[2].get_label())
-    assert len(lower.get_lines()) == 4
-
-
 @pytest.mark.parametrize(
     "name", ["figure-01", "figure-11", pytest.param("figure-03", marks=pytest.mark.sweep)]
 )
@@ -186,22 +151,6 @@ def test_cases_draw_their_figure(name: str, tmp_path: Path) -> None:
     assert case.figures
     assert path.name == f"{case.figures[0].kind.value}.png"
     assert path.stat().st_size > 20_000
-
-
-def test_the_added_pulse_is_found_again() -> None:
-    case = load_case(CASES / "figure-01")
-    assert case.figures
-    pulse = case.figures[0].added_pulse
-    assert pulse is not None
-    scales = pulse.scales()
-    assert scales is not None
-    record = synthetic_motion(1, 2).record
-    t = record.time_step * np.arange(record.acceleration.size, dtype=np.float64)
-    with_pulse = Record(record.acceleration + pulse.acceleration(t), record.time_step)
-    (fit,) = fit_pulse(with_pulse, ["mavroeidis-papageorgiou"])
-    # The motion under the pulse has a third of its amplitude, at a third of its period.
-    assert scales.period == pytest.approx(fit.T_p, rel=0.1)
-    assert scales.a_g == pytest.approx(fit.a_p, rel=0.1)
 
 
 def test_synthetic_motions_are_called_so(few: Case, tmp_path: Path) -> None:

@@ -15,8 +15,6 @@ from eventpound import InputError, load_case, modal_damping, rayleigh, simulate_
 from eventpound.case import read_case
 from eventpound.case.defaults import default_duration
 from eventpound.motion import Record
-from eventpound.results.input_tables import input_lines
-from eventpound.results.inputs import inputs_of
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -269,39 +267,6 @@ def document(slack: float, **run: object) -> dict[str, Any]:
         "force": [{"body": "deck", "value": 2e6}],
         "run": {"duration": 0.5, **run},
     }  # fmt: skip
-
-
-@pytest.mark.parametrize("damping", ["dashpot", "modal_damping", "rayleigh"])
-def test_a_case_that_starts_in_equilibrium_is_damped_as_it_stands(damping: str) -> None:
-    table = {
-        "dashpot": {"between": ["ground", "deck"], "ratio": 0.05},
-        "modal_damping": {"bodies": ["deck"], "ratio": 0.05},
-        "rayleigh": {"springs": ["pier", "cable"], "ratio": 0.05, "mode": 1},
-    }[damping]
-    for start, k in (("equilibrium", K + CABLE), ("initial", K)):
-        given = document(0.02, start=start)
-        del given["dashpot"]
-        if damping == "rayleigh" and start == "initial":
-            table["springs"] = ["pier"]
-        case = read_case(given | {damping: [table]}, Path("case.toml"))
-        total = sum(dashpot.coefficient for dashpot in case.scene.dashpots)
-        assert total == pytest.approx(0.05 * 2.0 * math.sqrt(k * M), rel=1e-8)
-        (mode,) = inputs_of(case)["structures"][0]["initial"]
-        assert mode["damping"] == pytest.approx(0.05, rel=1e-8)
-        again = read_case(case.understood, Path("case.toml"))
-        assert again.scene == case.scene
-        assert inputs_of(again) == inputs_of(case)
-
-
-def test_check_names_what_counts() -> None:
-    lines = dict(input_lines(inputs_of(read_case(document(0.02), Path("case.toml")))))
-    said = "springs that count in modes, T1 and damping: pier; springs that do not: cable"
-    assert lines["at rest"] == said
-    lines = dict(input_lines(inputs_of(read_case(document(0.0), Path("case.toml")))))
-    assert (
-        "at a kink (the smaller stiffness counts, so that no period is too short): cable"
-        in (lines["at rest"])
-    )
 
 
 @pytest.mark.parametrize(("slack", "push", "period"), [(0.02, 0.0, SLACK), (0.02, 2e6, TAUT)])

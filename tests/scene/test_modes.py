@@ -16,7 +16,6 @@ from eventpound.scene import (
     BilinearElastic,
     Body,
     BoucWen,
-    Contact,
     Dashpot,
     Linear,
     Scene,
@@ -25,7 +24,6 @@ from eventpound.scene import (
 )
 from eventpound.scene.modes import modes_of, stiffness_proportional
 from eventpound.scene.periods import longest_period
-from eventpound.scene.structures import isolated, mass_on, structure_names, structures_of
 from eventpound.units import STANDARD_GRAVITY
 
 RNG = np.random.default_rng(11)
@@ -115,47 +113,6 @@ def test_a_structure_that_nothing_holds() -> None:
     assert found.period[1] == pytest.approx(2.0 * math.pi / math.sqrt(10.0), rel=1e-12)
 
 
-def test_structures_are_what_springs_and_dashpots_join() -> None:
-    scene = Scene(
-        tuple(Body(name, 1.0) for name in "abcd"),
-        (Spring("s", ("a", "c"), Linear(1.0)),),
-        (Dashpot(("d", "b"), 1.0),),
-        (Contact("touch", "a", "b", 1.0, 0.5),),
-    )
-    assert structures_of(scene) == [["a", "c"], ["b", "d"]]
-
-
-def test_structures_are_called_as_a_body_says_or_as_the_first() -> None:
-    def names(*said: str, springs: str = "") -> list[str]:
-        bodies = tuple(Body(n, 1.0, structure=s) for n, s in zip("abcd", said, strict=True))
-        pairs = zip(springs[::2], springs[1::2], strict=True)
-        return structure_names(
-            Scene(bodies, tuple(Spring(x + y, (x, y), Linear(1.0)) for x, y in pairs))
-        )
-
-    assert names("", "T", "", "U", springs="abcd") == ["T", "U"]
-    assert names("", "", "", "", springs="abcd") == ["a", "c"]
-    # What two would be called, neither is.
-    assert names("T", "", "T", "", springs="abcd") == ["a", "c"]
-    assert names("", "d", "", "", springs="abc" + "c") == ["a", "c", "d"]
-
-
-def test_what_swings_on_a_spring() -> None:
-    scene, mass, *_ = building()
-    for i, spring in enumerate(scene.springs):
-        assert mass_on(scene, spring) == pytest.approx(mass[i:].sum(), rel=1e-14)
-    bridge = Scene(
-        (Body("deck1", 3.0), Body("deck2", 5.0)),
-        (
-            Spring("pier1", (GROUND, "deck1"), Linear(1.0)),
-            Spring("pier2", ("deck2", GROUND), Linear(1.0)),
-            Spring("bearing", ("deck1", "deck2"), Linear(1.0)),
-        ),
-    )
-    # Each deck is held by the other's pier too: its own mass; between them none.
-    assert [mass_on(bridge, spring) for spring in bridge.springs] == [3.0, 5.0, None]
-
-
 STOREYS = ("s1", "s2", "s3")
 FLOORS = ("base", "f1", "f2", "f3")
 # Mass and stiffness of a base on isolators and of three storeys.
@@ -230,28 +187,6 @@ def test_what_no_spring_can_be_damped_by(
     )
     with pytest.raises(InputError, match=said):
         stiffness_proportional(bodies, springs, damped, 0.02, **keys)  # type: ignore[arg-type]
-
-
-def test_what_stands_on_isolators() -> None:
-    scene = isolated_building()
-    assert isolated(scene) == set(FLOORS)
-    # Storeys that yield, but later; in two bearings beside each other on a footing.
-    strong = BoucWen(1e7, 3e6, 0.01)
-    bodies = (*scene.bodies, Body("footing", 1e5))
-    springs = (
-        Spring("soil", (GROUND, "footing"), Linear(1e9)),
-        *(Spring(f"bearing{i}", ("footing", "base"), ISOLATORS) for i in (1, 2)),
-        *(Spring(s.name, s.between, strong) for s in scene.springs[1:]),
-    )
-    assert isolated(Scene(bodies, springs)) == set(FLOORS)
-    # A frame all of whose storeys yield, the upper ones earlier: nothing above the first floor.
-    ends = (GROUND, *FLOORS)
-    laws = [BoucWen(1e7, q, 0.01) for q in (4e6, 3e6, 2e6, 1e6)]
-    frame = tuple(Spring(f"s{i}", ends[i : i + 2], law) for i, law in enumerate(laws))
-    assert isolated(Scene(scene.bodies, frame)) == {"base"}
-    # Held beside the isolators by an elastic spring elsewhere.
-    held = (*scene.springs, Spring("tie", (GROUND, "f1"), Linear(1e6)))
-    assert isolated(Scene(scene.bodies, held)) == set()
 
 
 def test_a_mode_in_which_masses_balance_has_none_of_them() -> None:

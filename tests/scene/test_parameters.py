@@ -24,7 +24,7 @@ from eventpound.scene import (
 )
 from eventpound.scene.check import scene_problems
 from eventpound.scene.parameters import number_places, value_at, with_values
-from eventpound.study.checked_numbers import CheckedRanges, variants_to_check
+from eventpound.study.checked_numbers import variants_to_check
 
 SCENE = Scene(
     bodies=(Body("a", 1.0), Body("b.1", 2.0)),
@@ -142,25 +142,6 @@ def test_conditions_of_several_numbers_are_seen():
             told_of(SCENE, {key: v[[row, 1, 1, row]] for key, v in columns.items()})
     told_of(SCENE, {"spring.soil.initial_gap": np.array([0.0, 0.001, 0.3])})
     assert told_of(SCENE, {key: v[[0, 0, 2, 0, 0]] for key, v in moved.items()}) == [0, 2]
-
-
-def test_numbers_one_by_one_are_checked_where_they_meet_others():
-    ranges = CheckedRanges(SCENE, 0.0)
-    for key, value in (("gap", 0.3), ("gap", 0.1), ("initial_gap", 0.3)):
-        ranges.check({PLACES[f"spring.soil.{key}"]: value})
-    with pytest.raises(InputError, match="initial_gap"):
-        ranges.check({PLACES["spring.soil.initial_gap"]: 0.001})
-
-
-def test_of_many_variants_few_are_looked_at():
-    rng = np.random.default_rng(1)
-    columns = {
-        "contact.c.gap": rng.uniform(0.0, 0.1, 300),
-        "spring.s.stiffness": rng.uniform(0.0, 10.0, 300),
-        "body.a.mass": rng.uniform(1.0, 2.0, 300),
-    }
-    assert len(told_of(SCENE, columns)) == 6
-    assert variants_to_check(SCENE, {}, 3).tolist() == []
 
 
 def test_on_supports_every_variant_is_looked_at():

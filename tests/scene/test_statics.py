@@ -34,7 +34,6 @@ from eventpound.scene import (
 )
 from eventpound.scene.check import check_scene
 from eventpound.scene.contact_law import ContactLaw
-from eventpound.scene.loaded_straight import Loops
 from eventpound.scene.point import Point
 from eventpound.scene.spring import Law
 from eventpound.scene.statics import in_equilibrium
@@ -266,19 +265,6 @@ def test_a_degrading_spring_is_loaded_straight_as_far_as_it_grows_stronger() -> 
     for force in (4.9, 1e3):
         with pytest.raises(InputError, match=r"beyond what degrading springs bear \(.s.\)"):
             in_equilibrium(held_by(weak, force))
-
-
-@pytest.mark.parametrize("travel", [-0.5, -0.1, 0.02, 0.3, 3.0])
-@pytest.mark.parametrize("z", [0.0, -0.4, 0.9])
-def test_springs_loaded_straight(travel: float, z: float) -> None:
-    """With n = 2 and beta = gamma = 1/2, z' = 1 - z^2 once z pulls the way it goes, 1 before."""
-    loops = Loops.of([BoucWen(0.0, 1.0, 0.1, 2.0, initial_z=z)])
-    way, x = np.sign(travel), abs(travel) / 0.1
-    back = max(-way * z, 0.0)
-    ahead = way * z if x < back else np.tanh(np.arctanh(max(way * z, 0.0)) + x - back)
-    expected = way * (ahead + x if x < back else ahead)
-    found = loops.loaded(np.array([travel]))[0]
-    assert found == pytest.approx([expected], rel=4e-15, abs=4e-15)
 
 
 def test_a_scene_from_python_starts_in_equilibrium_by_the_word_of_the_case() -> None:

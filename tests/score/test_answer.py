@@ -11,27 +11,14 @@ import pytest
 from eventpound import score
 from eventpound.cli import main
 from eventpound.problems.collection import read_collection
-from eventpound.problems.entrants import materialized
 from eventpound.problems.files import problem_json, score_file
 from eventpound.results.jsontext import canonical
 from eventpound.score.__main__ import main as judge_alone
-from eventpound.score.answer import turns
-from eventpound.score.found import crests_of
 from eventpound.score.levels import UNIT_OF_TIME
 from tests.models import CASES
 
 SET = read_collection(CASES / "problems")
 HIT = "19-graze-hit-1e-03"
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return materialized(SET, SET.some([HIT])[0], tmp_path_factory.mktemp("set"))
-
-
-@pytest.fixture(scope="module")
-def problem(folder):
-    return score.read_problem(folder)
 
 
 def exact(problem, late=0.0, restitution=0.5, rows=81):
@@ -98,61 +85,10 @@ def test_a_missed_impact_and_one_too_many_are_counted(problem):
     assert (card.impacts["missed"], card.impacts["extra"]) == (0, 1)
 
 
-def test_a_card_tells_the_restitution_that_the_rows_show(problem):
-    card = judged(problem, *exact(problem, restitution=0.4))
-    (row,) = card.impact_rows
-    assert (row["contact"], row["t_found"]) == ("wall", pytest.approx(row["t"], abs=1e-12))
-    assert row["speed_found"] == pytest.approx(np.sqrt(1.0 - 0.999**2), rel=1e-9)
-    assert row["restitution"] == pytest.approx(0.5, rel=1e-9)
-    assert row["restitution_found"] == pytest.approx(0.4, rel=1e-9)
-    assert "restitution    0.4 in the rows where it is 0.5, wall at 3.097 s" in score.card_text(
-        card
-    )
-
-
-def test_every_reason_is_told_not_only_the_first(problem):
-    t, u, v = exact(problem, late=1e-2)
-    reasons = judged(problem, t, u, v, reported={"impact"}).reasons["research"]
-    starts = ("of 1 impacts 1 missed", "penetrates by", "final.b.u off by")
-    assert len(reasons) == 3
-    assert all(why.startswith(how) for why, how in zip(reasons, starts, strict=True)), reasons
-
-
 def test_energy_from_nowhere_is_seen(problem):
     card = judged(problem, *exact(problem, restitution=4.0))
     created = 15.0 * (1.0 - 0.999**2)
     assert card.energy == pytest.approx(created / (1.0 + created), rel=1e-9)
-
-
-@pytest.mark.parametrize("miss", [1e-3, 1e-6, 1e-9])
-def test_a_near_miss_in_rows_is_no_impact(miss):
-    """The reach of a step is 1e-6, more than some are missed by; the rows turn as a parabola."""
-    t = np.linspace(0.0, 6.0, 6001)
-    assert turns(t, 1.0 + miss + np.cos(t + 3.0), -np.sin(t + 3.0), 1.0) == []
-
-
-@pytest.mark.parametrize("within", [0.0, 0.3, 0.5])
-def test_an_impact_between_rows_is_one(within):
-    """Where the gap is open in both of them, and in its middle, too, as Moreau's rule has it."""
-    t = np.linspace(0.0, 2.0, 2001)
-    late = t > 1.0
-    gap = np.where(late, 0.5 * (t - 1.0), 1.0 - t) + within * 1e-3
-    rates = np.where(late, 0.5, -1.0)
-    ((at, before, after),) = turns(t, gap, rates, 1.0)
-    assert at == pytest.approx(1.0, abs=1.1e-3)
-    assert (before, after) == (-1.0, 0.5)
-
-
-@pytest.mark.parametrize("rows", [9, 17, 33])
-def test_extremes_are_those_of_the_cubics(rows):
-    """Off by θ⁴/384 of the motion at most, θ the phase of a step; rows alone by θ²/8."""
-    t = np.linspace(0.0, 6.0, rows)
-    theta = 6.0 / (rows - 1)
-    smooth = score.Motion(t, np.sin(t + 0.1)[:, None], np.cos(t + 0.1)[:, None])
-    crests = crests_of(smooth, [])
-    off = max(abs(crests.highest[0] - 1.0), abs(crests.lowest[0] + 1.0))
-    assert 0.0 < off < theta**4 / 384.0
-    assert off < crests.beyond[0] < theta**4 / 24.0
 
 
 def test_a_history_too_coarse_for_peaks_says_what_is_judged():
@@ -206,14 +142,6 @@ def test_events_beside_an_answer_are_believed(problem, folder, tmp_path):
         score.read_history(problem, answer)
 
 
-@pytest.fixture(scope="module")
-def resting(tmp_path_factory):
-    """Eleven impacts, their limit, a rest, and the end of it."""
-    return score.read_problem(
-        materialized(SET, SET.some(["14"])[0], tmp_path_factory.mktemp("resting"))
-    )
-
-
 def listed(problem, *left_out, shift=0.0):
     """The certified events as a program would list them, later by a shift (s)."""
     return [
@@ -251,16 +179,6 @@ def test_an_event_that_is_not_found_is_missed_and_one_too_many_extra(resting, ki
     card = events_found(resting, [*more, *listed(resting), *late])
     # Half a thousandth of a twentieth of the run is too short to count; a second is not.
     assert (card.events[kind]["matched"], card.events[kind]["extra"]) == (1, 1)
-
-
-def test_silence_about_events_is_no_fault(resting):
-    said = events_found(resting, [], frozenset({"rest"}))
-    silent = events_found(resting, [], frozenset())
-    assert said.events["rest"]["missed"] == 1
-    for card, kinds in ((said, ["detachment", "accumulation"]), (silent, list(score.EVENTS))):
-        assert all(card.events[kind]["matched"] is None for kind in kinds)
-    assert "rests          1 expected, not reported" in score.card_text(silent)
-    assert said.levels == silent.levels
 
 
 def test_soft_impacts_gathered_at_a_resting_contact_are_no_accumulation(resting):
@@ -302,29 +220,6 @@ def test_a_rest_ends_by_a_separation_too(tmp_path):
         ends = by["55-struck-away"][-1]["events"]["detachment"]
         assert [ends[key] for key in ("expected", "matched", "missed", "extra")] == [2, 2, 0, 0]
         assert ends["largest_shift"] < 1e-3
-
-
-def test_solvers_report_what_they_know(tmp_path, capsys):
-    out, page = tmp_path / "cards.json", tmp_path / "cards.html"
-    words = [
-        "problems",
-        "score",
-        str(SET.folder / "16-pressed-by-jump"),
-        "--json",
-        str(out),
-        "--html",
-        str(page),
-    ]
-    assert main([*words, "--solver", "cvode", "--solver", "moreau", "--solver", "penalty"]) == 0
-    cards = {name: by["16-pressed-by-jump"][-1] for name, by in json.loads(out.read_text()).items()}
-    matched = {
-        name: [card["events"][kind]["matched"] for kind in score.EVENTS]
-        for name, card in cards.items()
-    }
-    assert matched == {"cvode": [1, 1, 0], "moreau": [1, 1, None], "penalty": [None] * 3}
-    text = page.read_text()
-    assert "<td>1/1</td><td>1/1</td><td></td></tr>" in text
-    assert "<td>not reported</td><td>not reported</td><td></td></tr>" in text
 
 
 def wrong_answers(problem):
@@ -398,42 +293,3 @@ def test_the_file_needs_numpy_only():
         )
     }
     assert imported - set(sys.stdlib_module_names) == {"numpy"}
-
-
-def test_a_solver_is_run_and_judged(tmp_path, capsys):
-    out = tmp_path / "cards.json"
-    words = [str(SET.folder / "01-elastic-cosine"), "--solver", "fast", "--solver",
-             "moreau", "--json", str(out), "--html", str(tmp_path / "cards.html")]  # fmt: skip
-    assert main(["problems", "score", *words]) == 0
-    cards = json.loads(out.read_text())
-    fast, moreau = (cards[name]["01-elastic-cosine"] for name in ("fast", "moreau"))
-    assert [card["size"] for card in moreau] == ["0.001", "0.0001", "1e-05"]
-    assert fast[-1]["passed"] == "reference"
-    assert moreau[-1]["passed"] == "engineering"
-    errors = [card["penetration"] for card in moreau]
-    assert errors[0] > errors[1] > errors[2] > 0.0
-    said = capsys.readouterr().out
-    assert "fast: of 1 problems 1 engineering, 1 research, 1 reference" in said
-    # A line a size, with what its card says, and what keeps it back.
-    row = next(line.split() for line in said.splitlines() if line.startswith("1e-05 "))
-    card = moreau[-1]
-    assert row[:2] == ["1e-05", "engineering"]
-    assert [float(word) for word in row[2:5]] == [
-        card["digits"][group] for group in ("peaks", "final", "history")
-    ]
-    assert row[6:8] == ["0", "0"]
-    assert f"1e-05: {card['levels']['research']}" in said
-
-
-def test_a_command_is_run_in_time_or_given_up(tmp_path, capsys):
-    script = tmp_path / "slow.py"
-    script.write_text("while True: pass\n")
-    words = ["problems", "score", str(SET.folder / HIT), "--limit", "1", "--run"]
-    assert main([*words, f"{sys.executable} {script} {{problem}} {{out}}"]) == 0
-    assert "takes more than 1 s" in capsys.readouterr().out
-    script.write_text("raise SystemExit('no idea')\n")
-    words[4] = "20"
-    assert main([*words, f"{sys.executable} {script} {{problem}} {{out}}"]) == 0
-    assert "ended with 1 and said: no idea" in capsys.readouterr().out
-    assert main([*words, "program {problem}"]) == 2
-    assert "{problem} and {out} must stand in it" in capsys.readouterr().err

@@ -12,7 +12,7 @@ from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions
 from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import ComputationError, InputError
-from eventpound.motion import Cosine, Harmonic, Record, Sine
+from eventpound.motion import Cosine, Harmonic, Record
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
 from eventpound.scene import (
@@ -26,7 +26,6 @@ from eventpound.scene import (
     Scene,
     Series,
     Spring,
-    Support,
 )
 from eventpound.scene.parameters import number_places, with_values
 from eventpound.solvers.base import Extremes
@@ -34,10 +33,6 @@ from eventpound.solvers.fast import many as fast_many
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.many import run_rows, run_sdof_rows
 from eventpound.solvers.fast.sdof.oscillator import oscillate
-from eventpound.study import sweep
-from eventpound.study.axes import given_axes
-from eventpound.study.plan import base_of
-from eventpound.study.variants import axis_values, rows_with
 from tests.benchmarks import yardsticks
 from tests.models import CASES
 from tests.solvers.random_scenes import random_scene
@@ -199,15 +194,6 @@ def test_no_variant_depends_on_those_before_it(seed: int) -> None:
     assert (result.u == result.u[0]).all()
 
 
-@pytest.mark.parametrize(("workers", "most"), [(1, 256), (1, 1), (2, 7), (3, 16), (None, 256)])
-def test_workers_and_chunks_change_nothing(monkeypatch, workers, most):
-    scene, duration, parameters = SCENES["everything of a pair"]
-    expected = simulate_many(scene, parameters, duration=duration, workers=1).table
-    monkeypatch.setattr(sweep, "MOST_IN_CHUNK", most)
-    found = simulate_many(scene, parameters, duration=duration, workers=workers).table
-    assert found.equals(expected)
-
-
 def test_case_brings_its_options(tmp_path):
     run, options = RunOptions(0.5, 9.0, 0.1), SolverOptions("cvode", 1e-9, {"displacement": 1e-5})
     case = Case("", P1.scene, run, options, tmp_path, "", None, (), {})
@@ -279,19 +265,6 @@ def test_many_events_run_by_themselves():
         assert_identical(result, i, simulate(variant(ball, speeds, i), "fast", 1e-6, duration=60.0))
 
 
-def test_a_run_with_more_instants_than_events_needs_no_second_one(monkeypatch):
-    # The springs of the bridge yield and turn back 300 times and more, at 49 impacts.
-    monkeypatch.setattr(sweep.Sweep, "alone", lambda _self, i: pytest.fail(f"variant {i} again"))
-    case = load_case(CASES / "bridge-el-centro")
-    gaps = np.array([0.0127, 0.0128])
-    result = simulate_many(case, {"contact.joint.gap": gaps})
-    alone = simulate(
-        replace(case, scene=variant(case.scene, {"contact.joint.gap": gaps}, 0)), "fast"
-    )
-    assert alone.history["t"].duplicated().sum() > 256
-    assert_identical(result, 0, alone)
-
-
 def test_table_has_the_names_of_the_summary():
     scene, duration, parameters = SCENES["strength"]
     result = simulate_many(scene, parameters, duration=duration)
@@ -344,37 +317,6 @@ def test_wrong_parameters_are_refused_before_anything_runs(parameters, words):
     assert len(error.value.problems) == 1
     for word in words:
         assert word in str(error.value)
-
-
-SUPPORTED = Scene(
-    (Body("deck", 5e5),),
-    (Spring("s", (GROUND, "deck"), Linear(2e7)),),
-    contacts=(Contact("joint", "deck", "pier", 0.02, 0.5),),
-    motion=Sine(3.0, 0.8, start=-0.85),
-    supports=(Support("pier", delay=0.1),),
-)
-
-
-@pytest.mark.parametrize(
-    ("key", "fine", "wrong"),
-    [
-        ("contact.joint.gap", 1.0, -1.0),
-        ("body.deck.displacement", -1.0, 1.0),
-        # Where the pier is at the start the delay and the motion say.
-        ("support.pier.delay", 0.0, 0.4),
-        ("excitation.amplitude", 1.0, 1e3),
-    ],
-)
-def test_a_contact_at_a_support_is_checked_in_every_variant(key, fine, wrong):
-    def checked(*values: float) -> None:
-        axes = given_axes("parameters", {key: values})
-        base = base_of(SUPPORTED, axes, (), SolverOptions("fast", 1e-6))
-        rows = rows_with(base, axis_values(base, 0, 2), range(2))
-        sweep.variants_of(rows, sweep.WantedRuns("fast", 1e-6))
-
-    checked(fine, fine)
-    with pytest.raises(InputError, match=r"variant 1 .*gap: found 0?-?[.\d]+; .* not penetrated"):
-        checked(fine, wrong)
 
 
 def test_a_motion_that_cannot_be_is_refused():

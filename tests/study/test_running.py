@@ -1,19 +1,15 @@
 """A study on disk: stopped, killed, changed, made by others, and always the same table."""
 
 import json
-import os
-import random
-import signal
 import subprocess
 import sys
 import time
 from itertools import islice
-from multiprocessing import active_children
 
 import pytest
 
 from eventpound.cli import main
-from eventpound.study.engine import Batch, Processes
+from eventpound.study.engine import Batch
 from eventpound.study.running import Store, run_study
 from eventpound.study.table import compute, header, read_table
 from tests.study.conftest import ELASTOPLASTIC
@@ -105,56 +101,6 @@ def test_a_changed_case_begins_afresh_beside_the_old_one(make_study):
     assert (earlier / "study.csv").read_bytes() == expected_table(second.study)
     manifest = json.loads((earlier / "manifest.json").read_text())
     assert manifest["study_sha256"] == second.study.digest
-
-
-@pytest.mark.sweep
-def test_processes_give_the_same_table_of_the_reference_solver(make_study):
-    text = ELASTOPLASTIC.replace("count = 40", "count = 3") + '[solver]\nname = "cvode"\n'
-    study = make_study(text.replace('"free.pi_um", "amplification", ', "")).study
-    found = {chunk.number: rows for chunk, rows in Processes(2).run(study, study.chunks())}
-    assert len(found) == 4
-    table = header(study) + b"".join(found[number] for number in sorted(found))
-    assert table == expected_table(study)
-
-
-def test_processes_give_the_same_table_though_one_is_killed(make_study):
-    study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 130")).study
-    found = {}
-    for chunk, rows in Processes(2).run(study, study.chunks()):
-        if len(found) == 3:
-            os.kill(active_children()[0].pid, signal.SIGKILL)
-        assert chunk.number not in found
-        found[chunk.number] = rows
-    table = header(study) + b"".join(found[number] for number in sorted(found))
-    assert table == expected_table(study)
-
-
-def test_a_killed_study_gives_the_identical_table(make_study, tmp_path):
-    """Signal 9 at random moments; what is stored is never computed again."""
-    case = make_study(MANY)
-    out = case.directory / "results"
-    store = Store(out, case.study)
-    # At most the chunk in flight is lost: far less than the twentieth promised.
-    assert case.study.chunk_size < 0.05 * case.study.size
-    moments = random.Random(20)
-    before = {}
-    for _ in range(2):
-        process = start(case.directory)
-        wait_for_a_chunk(store, before, process)
-        time.sleep(moments.uniform(0.0, 0.4))
-        process.kill()
-        process.wait()
-        if store.finished():
-            # It may have been killed while it cleared its chunks away.
-            break
-        now = files(store)
-        assert before.items() <= now.items()
-        before = now
-    assert start(case.directory).wait() == 0
-    run_study(case.study, tmp_path / "whole", Batch())
-    whole = (tmp_path / "whole" / "study.csv").read_bytes()
-    assert (out / "study.csv").read_bytes() == whole
-    assert not list(out.rglob("*.partial"))
 
 
 def test_processes_end_with_a_study_that_is_killed(make_study):

@@ -1,0 +1,65 @@
+"""Processes: one table, though one of them is killed."""
+
+import os
+import random
+import signal
+import time
+from multiprocessing import active_children
+
+import pytest
+
+from eventpound.study.engine import Batch, Processes
+from eventpound.study.running import Store, run_study
+from eventpound.study.table import header
+from tests.study.conftest import ELASTOPLASTIC
+from tests.study.test_running import MANY, expected_table, files, start, wait_for_a_chunk
+
+
+@pytest.mark.sweep
+def test_processes_give_the_same_table_of_the_reference_solver(make_study):
+    text = ELASTOPLASTIC.replace("count = 40", "count = 3") + '[solver]\nname = "cvode"\n'
+    study = make_study(text.replace('"free.pi_um", "amplification", ', "")).study
+    found = {chunk.number: rows for chunk, rows in Processes(2).run(study, study.chunks())}
+    assert len(found) == 4
+    table = header(study) + b"".join(found[number] for number in sorted(found))
+    assert table == expected_table(study)
+
+
+def test_processes_give_the_same_table_though_one_is_killed(make_study):
+    study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 130")).study
+    found = {}
+    for chunk, rows in Processes(2).run(study, study.chunks()):
+        if len(found) == 3:
+            os.kill(active_children()[0].pid, signal.SIGKILL)
+        assert chunk.number not in found
+        found[chunk.number] = rows
+    table = header(study) + b"".join(found[number] for number in sorted(found))
+    assert table == expected_table(study)
+
+
+def test_a_killed_study_gives_the_identical_table(make_study, tmp_path):
+    """Signal 9 at random moments; what is stored is never computed again."""
+    case = make_study(MANY)
+    out = case.directory / "results"
+    store = Store(out, case.study)
+    # At most the chunk in flight is lost: far less than the twentieth promised.
+    assert case.study.chunk_size < 0.05 * case.study.size
+    moments = random.Random(20)
+    before = {}
+    for _ in range(2):
+        process = start(case.directory)
+        wait_for_a_chunk(store, before, process)
+        time.sleep(moments.uniform(0.0, 0.4))
+        process.kill()
+        process.wait()
+        if store.finished():
+            # It may have been killed while it cleared its chunks away.
+            break
+        now = files(store)
+        assert before.items() <= now.items()
+        before = now
+    assert start(case.directory).wait() == 0
+    run_study(case.study, tmp_path / "whole", Batch())
+    whole = (tmp_path / "whole" / "study.csv").read_bytes()
+    assert (out / "study.csv").read_bytes() == whole
+    assert not list(out.rglob("*.partial"))
