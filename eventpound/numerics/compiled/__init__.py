@@ -133,7 +133,7 @@ def _timed(compile_for: Callable[[Any], Any], function: Callable[..., Any]) -> A
 
 
 def foresee(function: Callable[..., Any], *given: Any) -> None:
-    """Have a deferred kernel, to which a run will come, compiled on another core from now on."""
+    """Have a kernel to which a run will come compiled on another core from now on."""
     if hasattr(function, "foresee"):
         function.foresee(tuple(map(numba.typeof, given)))
 

@@ -1,9 +1,10 @@
 """Kernels that another process compiles meanwhile, where there is a second core.
 
 Most of what compiling takes is Python, of which one process runs one thread at a time. So a
-process beside this one compiles deferred parts that every run comes to
-(`eventpound.numerics.compiled.deferred`), from the moment at which their callers are read. Both
-keep what they make, and whoever wants a kernel that another process is making waits for it.
+process beside this one compiles what every run comes to: deferred parts
+(`eventpound.numerics.compiled.deferred`) from the moment at which their callers are read, and what
+is foreseen. Both keep what they make. Whoever wants a kernel that another process is making waits
+for it, and meanwhile compiles what that process has not come to.
 """
 
 from __future__ import annotations
@@ -14,7 +15,6 @@ import importlib
 import multiprocessing
 import os
 import pickle
-import queue
 import signal
 import subprocess
 import sys
@@ -39,31 +39,46 @@ _IDLE = 60.0
 
 
 class Wanted(NamedTuple):
-    """A deferred part: its module and name, and Numba's types of its arguments."""
+    """A kernel: its module and name, and Numba's types of its arguments."""
 
     module: str
     name: str
     arguments: tuple[Any, ...]
 
+    def make(self) -> None:
+        """Compile it, or load it where it is kept."""
+        getattr(importlib.import_module(self.module), self.name).compile(self.arguments)
 
+
+_asked: list[Wanted] = []
+"""Of the process beside this one, or in that one of itself, the first first."""
 _process: subprocess.Popen[bytes] | None = None
 
 
 def compile_beside(wanted: Wanted) -> None:
-    """Have a part compiled by a process beside this one, after what it was asked for before.
+    """Have a kernel compiled by a process beside this one, after what it was asked for before.
 
     Nothing is done where there is one core, or in a process of several that work together.
     """
     global _process
     if fcntl is None or cores() < 2 or multiprocessing.parent_process() is not None:
         return
-    # Where that fails, the part is compiled here when a run comes to it.
+    # Where that fails, the kernel is compiled here when a run comes to it.
     with contextlib.suppress(OSError):
         if _process is None or _process.poll() is not None:
             _process = _started()
         pipe: Any = _process.stdin
         pickle.dump(wanted, pipe)
         pipe.flush()
+        _asked.append(wanted)
+
+
+def compile_meanwhile(awaited: Wanted) -> None:
+    """While another process makes a kernel, compile what the one beside has been asked for."""
+    with contextlib.suppress(ValueError):
+        _asked.remove(awaited)
+    if _asked:
+        _asked.pop(0).make()
 
 
 def _started() -> subprocess.Popen[bytes]:
@@ -77,19 +92,19 @@ def _started() -> subprocess.Popen[bytes]:
 def serve() -> None:
     """Compile what is asked for on standard input, until whoever asks has ended."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    waiting: queue.SimpleQueue[Wanted] = queue.SimpleQueue()
-    threading.Thread(target=_listen, args=(sys.stdin.buffer, waiting), daemon=True).start()
-    with contextlib.suppress(queue.Empty):
-        while True:
-            wanted = waiting.get(timeout=_IDLE)
-            entry = getattr(importlib.import_module(wanted.module), wanted.name)
-            entry.compile(wanted.arguments)
+    come = threading.Event()
+    threading.Thread(target=_listen, args=(sys.stdin.buffer, come), daemon=True).start()
+    while come.wait(_IDLE):
+        come.clear()
+        while _asked:
+            _asked.pop(0).make()
 
 
-def _listen(source: IO[bytes], waiting: queue.SimpleQueue[Wanted]) -> None:
+def _listen(source: IO[bytes], come: threading.Event) -> None:
     try:
         while True:
-            waiting.put(pickle.load(source))
+            _asked.append(pickle.load(source))
+            come.set()
     finally:
         # Nobody waits for what is half done, and files appear whole or not at all.
         os._exit(0)

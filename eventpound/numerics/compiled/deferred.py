@@ -28,7 +28,7 @@ from numba.core.compiler import compile_result
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.funcdesc import ExternalFunctionDescriptor
 
-from eventpound.numerics.compiled.beside import Wanted, compile_beside
+from eventpound.numerics.compiled.beside import Wanted
 from eventpound.numerics.compiled.linked import Entry, KernelPart, PartLibrary
 
 _FILL_SLOT = "eventpound_fill_slot"
@@ -59,26 +59,9 @@ class DeferredEntry(Entry):
     ahead = False
 
     @cached_property
-    def _foreseen(self) -> set[tuple[Any, ...]]:
-        return set()
-
-    def foresee(self, arguments: tuple[Any, ...]) -> None:
-        """Have another process make what is not kept yet, for arguments of these types."""
-        if self.ahead and arguments not in self._foreseen:
-            self._foreseen.add(arguments)
-            if not self.kept(arguments):
-                function = self.py_func
-                compile_beside(Wanted(function.__module__, function.__qualname__, arguments))
-
-    @cached_property
     def part(self) -> KernelPart:
         """The same function as other compiled functions call it."""
         return _DeferredPart(self)
-
-    def kept(self, arguments: tuple[Any, ...]) -> bool:
-        """Whether there is a kernel for arguments of these types, wherever."""
-        self._make()
-        return arguments in self.overloads or self._cache.has(arguments, self.targetctx)
 
     def address_for(self, arguments: tuple[Any, ...]) -> int:
         """Where the machine code for arguments of these types begins."""
@@ -115,7 +98,8 @@ class _DeferredPart(KernelPart):
         library = PartLibrary(self.targetctx.codegen(), name)
         module = library.create_ir_module(name)
         wanted = Wanted(self.py_func.__module__, self.py_func.__qualname__, arguments)
-        self._entry.foresee(arguments)
+        if self._entry.ahead:
+            self._entry.foresee(arguments)
         # Types have long names, which say the same again and again.
         asked = zlib.compress(pickle.dumps(wanted))
         _write_call(self.targetctx.declare_function(module, described), module, mark, asked)

@@ -39,6 +39,7 @@ from numba.core.environment import lookup_environment
 from numba.core.registry import CPUDispatcher
 
 from eventpound.basics.interruption import is_interruption
+from eventpound.numerics.compiled.beside import Wanted, compile_beside
 from eventpound.numerics.compiled.recipe import Recipe
 from eventpound.numerics.compiling import function_read, getting_ready
 
@@ -392,6 +393,20 @@ class Entry(CPUDispatcher):
             if is_interruption(error):
                 raise KeyboardInterrupt from error
             raise
+
+    @cached_property
+    def _foreseen(self) -> set[tuple[Any, ...]]:
+        return set()
+
+    def foresee(self, arguments: tuple[Any, ...]) -> None:
+        """Have another process make what is not kept yet, for arguments of these types."""
+        if arguments in self._foreseen:
+            return
+        self._foreseen.add(arguments)
+        self._make()
+        if arguments not in self.overloads and not self._cache.has(arguments, self.targetctx):
+            function = self.py_func
+            compile_beside(Wanted(function.__module__, function.__qualname__, arguments))
 
     def compile(self, signature: Any) -> Any:
         """Make the function ready for arguments of these types."""

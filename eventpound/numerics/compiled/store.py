@@ -28,7 +28,7 @@ from typing import Any
 import llvmlite.binding as llvm
 
 from eventpound.numerics.compiled import shipped
-from eventpound.numerics.compiled.beside import Claim
+from eventpound.numerics.compiled.beside import Claim, Wanted, compile_meanwhile
 from eventpound.numerics.compiled.folders import folders, write_whole
 from eventpound.numerics.compiled.shipped import SUFFIX
 from eventpound.numerics.compiled.sources import source_stamp
@@ -53,7 +53,7 @@ class KernelStore:
 
     def __init__(self, function: Callable[..., Any], way: object, plain: bool) -> None:
         self._file, self._function = function.__code__.co_filename, function.__qualname__
-        self._way, self._plain = way, plain
+        self._module, self._way, self._plain = function.__module__, way, plain
         self._claim: Claim | None = None
 
     @cached_property
@@ -81,7 +81,7 @@ class KernelStore:
             compilation_begins()
             if not self._plain:
                 first = next(self._places(signature, context.codegen()))
-                self._claim = Claim(first, compilation_waits)
+                self._claim = Claim(first, lambda: self._wait(signature))
                 found = self._kept(signature, context)
         return found
 
@@ -100,6 +100,13 @@ class KernelStore:
             except Exception as error:
                 _drop(path, error)
         return None
+
+    def _wait(self, signature: Any) -> None:
+        from numba.core.sigutils import normalize_signature
+
+        compilation_waits()
+        arguments, _ = normalize_signature(signature)
+        compile_meanwhile(Wanted(self._module, self._function, tuple(arguments)))
 
     def release(self) -> None:
         """Let other processes go on that wait for what this one was to make."""

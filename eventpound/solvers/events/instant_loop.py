@@ -13,7 +13,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import CurrentPiece, ground_onset
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python
+from eventpound.numerics.compiled import by_python
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.event_run import EventRun
 from eventpound.solvers.events.instant import (
@@ -96,14 +96,16 @@ def _choose_branches(run: EventRun, piece: CurrentPiece) -> None:
     state, table = run.state, run.table
     resting = state.resting & (state.gap == 0.0)
     # What is pressed shut, or pulled by a spring, moves what only touches.
-    in_python(choose_clear_branches)(run.arrays.instant)
+    with by_python():
+        choose_clear_branches(run.arrays.instant)
     mode = table.mode(resting, state.branch, state.pressed, run.arrays.instant.opening)
     run.take_closing_speeds(mode)
     make_ready(run, mode, piece)
     run.state.progress["phase"][0] = RESTS
     observed = run.arrays.observations[0]
-    onset = ground_onset(piece, run.t, ORDER, np.empty(ORDER))
-    in_python(choose_branches)(observed.a, 0.0, onset, run.arrays.instant)
+    with by_python():
+        onset = ground_onset(piece, run.t, ORDER, np.empty(ORDER))
+        choose_branches(observed.a, 0.0, onset, run.arrays.instant)
     state.now["stale"][0] = True
 
 

@@ -110,6 +110,8 @@ class Integrator(Protocol):
        whether it does. Then the examination of a step looks for extremes only, and where an
        event happens `advance` ends with the verdict EVENT_FOUND and the step at it. `located`:
        closing (K,), released (K,) and kinked (L,) there.
+    6. `foresee(start, e)`: have the loop of `advance` compiled while other things are; nothing
+       of the start counts but its mode, forcing and frame.
     """
 
     starts: int
@@ -136,6 +138,10 @@ class Integrator(Protocol):
     @property
     def jacobian_calls(self) -> int:
         """Part of duty 4."""
+        ...
+
+    def foresee(self, start: Start, e: Examination) -> None:
+        """Duty 6."""
         ...
 
     def start(self, start: Start) -> None:

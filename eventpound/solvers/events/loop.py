@@ -233,7 +233,7 @@ class EventLoop:
             piece, moving = run.piece(given, stop), self.moving and given.family is Family.SAMPLES
             frame = moving_frame(given) if moving else NO_FRAME
             run.mark_located(*(np.zeros(1, np.bool_) for _ in range(3)))
-            foresee(short_step, run.arrays, run.mode.dynamics, piece)
+            self._foresee(piece, frame)
             settle_instant(run, piece)
             while run.t < stop:
                 if self._follow(piece, frame):
@@ -243,6 +243,14 @@ class EventLoop:
                 put_present_instant(run, piece)
             if stop == end:
                 break
+
+    def _foresee(self, piece: CurrentPiece, frame: Floats) -> None:
+        """Have what comes after the first instant compiled meanwhile."""
+        run, integrator = self.event_run, self.integrator
+        foresee(short_step, run.arrays, run.mode.dynamics, piece)
+        start = Start(run.mode, run.forcing(), frame, run.arrays.y, run.arrays.atol)
+        e = run.examination(frame, finds_events=integrator.finds_events)
+        integrator.foresee(start, e)
 
     def _follow(self, piece: CurrentPiece, frame: Floats) -> bool:
         """A segment, whose time is that of the integrator; whether something happened."""

@@ -14,7 +14,7 @@ from eventpound.numerics.by_address import with_address
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.compiled.recipe import EVERY_STEP
 from eventpound.solvers.events.dense import Dense
-from eventpound.solvers.events.integrator import Bounds, last_time
+from eventpound.solvers.events.integrator import Bounds, Start, last_time
 from eventpound.solvers.events.reversals import take_directions
 from eventpound.solvers.events.step_check import Examination, examine, rate_at
 from eventpound.solvers.sundials.callback_data import Roots, SegmentData, address_of, put_roots
@@ -258,13 +258,22 @@ class DirectCvode(Direct):
             callback = address_of(root_functions, self._given, 2)
             memory.find_roots(callback, self._roots.directions)
 
+    def _handles_of(self, start: Start) -> CvodeHandles:
+        return self._handles_with(with_address(self._segment_of(start)))
+
+    def _handles_with(
+        self, given: SegmentData, memory: int = 0, vector: int = 0, interpolated: int = 0
+    ) -> CvodeHandles:
+        reached, spent = np.zeros(2), np.zeros(1, np.int64)
+        handles = CvodeHandles(memory, vector, reached, interpolated, given, self.rtol, spent)
+        return with_address(handles)
+
     def _memory_for(self, plan: MemoryLayout) -> tuple[CvodeMemory, CvodeHandles]:
         given = self._given
         if plan.key not in self._memories:
             callback, data = address_of(right_hand_side, given, 2), given.address
             memory = CvodeMemory(self.library, self.method, plan, callback, data)
-            numbers = np.zeros(2), memory.interpolated, given, self.rtol, np.zeros(1, np.int64)
-            handles = with_address(CvodeHandles(memory.address, memory.vector, *numbers))
-            self._memories[plan.key] = memory, handles
+            addresses = memory.address, memory.vector, memory.interpolated
+            self._memories[plan.key] = memory, self._handles_with(given, *addresses)
         found: tuple[CvodeMemory, CvodeHandles] = self._memories[plan.key]
         return found

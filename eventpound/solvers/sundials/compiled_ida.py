@@ -16,7 +16,7 @@ from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.by_address import with_address
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.compiled.recipe import EVERY_STEP
-from eventpound.solvers.events.integrator import Bounds, last_time
+from eventpound.solvers.events.integrator import Bounds, Start, last_time
 from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import Roots, SegmentData, address_of, put_roots
@@ -237,12 +237,15 @@ class DirectIda(InDescriptorForm, Direct):
         self._hand(IdaData(self._segment, self._problem, self._mode.dynamics))
         memory = self._memory = self._memory_for(own)
         vectors = memory.vector, memory.rate_vector, memory.interpolated
-        handles = IdaHandles(memory.address, *vectors, self._given, np.zeros(1))
-        self._handles = with_address(handles)
+        self._handles = _handles_with(self._given, memory.address, *vectors)
         memory.start(tau, self._first_step(tau, y, memory.unknowns, memory.rates))
         if self._roots is not None:
             callback = address_of(root_functions, self._given, 3)
             memory.find_roots(callback, self._roots.directions)
+
+    def _handles_of(self, start: Start) -> IdaHandles:
+        given = IdaData(self._segment_of(start), self._problem_of(start), start.mode.dynamics)
+        return _handles_with(with_address(given))
 
     def _memory_for(self, own: DescriptorMode) -> IdaMemory:
         rtol, atol = own.local_tolerances(self._segment.frame)
@@ -259,3 +262,10 @@ class DirectIda(InDescriptorForm, Direct):
             )
         found: IdaMemory = self._memories[key]
         return found
+
+
+def _handles_with(
+    given: IdaData, memory: int = 0, vector: int = 0, rate_vector: int = 0, interpolated: int = 0
+) -> IdaHandles:
+    handles = IdaHandles(memory, vector, rate_vector, interpolated, given, np.zeros(1))
+    return with_address(handles)

@@ -17,6 +17,7 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import blank_observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.by_address import change_group, with_address
+from eventpound.numerics.compiled import foresee
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, StandstillError, Start, StepsTaken
 from eventpound.solvers.events.modes import Mode
@@ -78,16 +79,21 @@ class Duties:
 
     def start(self, start: Start) -> None:
         """Begin at the local time `tau` (s) with state `y`."""
-        mode, forcing, frame, y, atol, tau = start
+        mode = self._mode = start.mode
         mode.directed.direction[:] = 0.0
-        roots = NO_ROOTS
         if self._roots is not None:
             self._roots.point_to(mode)
-            roots = self._roots.present
-        self._mode = mode
-        self._segment = SegmentData(self._calls, mode.directed, mode.bodies, forcing, frame, roots)
-        self._begin(tau, y, atol)
+        self._segment = self._segment_of(start)
+        self._begin(start.tau, start.y, start.atol)
         self.starts += 1
+
+    def _segment_of(self, start: Start) -> SegmentData:
+        mode, forcing, frame, *_ = start
+        roots = NO_ROOTS if self._roots is None else self._roots.present
+        return SegmentData(self._calls, mode.directed, mode.bodies, forcing, frame, roots)
+
+    def foresee(self, start: Start, e: Examination) -> None:
+        """Have the loop of `advance` compiled meanwhile, where it is to be."""
 
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
@@ -119,10 +125,13 @@ class Direct(Duties):
     _kernels : tuple of callable
         Of the handles: `carry_on`, `root_at`, and the coefficients of SUNDIALS' polynomial of the
         last step about a local time (s).
+    _handles_of : callable
+        Handles of a start, without a SUNDIALS object.
     """
 
     _kernels: tuple[Callable[..., Numbers], Callable[..., tuple[int, float]], Callable[..., Floats]]
     _handles: Any
+    _handles_of: Callable[[Start], Any]
 
     def __init__(self) -> None:
         super().__init__()
@@ -135,6 +144,11 @@ class Direct(Duties):
             self._given = with_address(given)
         else:
             change_group(self._given, given)
+
+    def foresee(self, start: Start, e: Examination) -> None:
+        """Have the loop of `advance` compiled meanwhile."""
+        bounds = Bounds(0.0, False, 0.0, 0)
+        foresee(self._kernels[0], self._handles_of(start), 0.0, 0, 0.0, bounds, e)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on SUNDIALS' own polynomial, as the loop knows it."""
@@ -175,10 +189,12 @@ class InDescriptorForm(Duties):
 
     def start(self, start: Start) -> None:
         """Begin with the clusters in the state given; the tolerances are those of the run."""
-        self._own = self._modes.of(start.mode)
-        found = DescriptorProblem(self._own.descriptor, start.forcing, start.frame, self.drift)
-        self._problem = with_address(found)
+        self._own, self._problem = self._modes.of(start.mode), self._problem_of(start)
         super().start(start)
+
+    def _problem_of(self, start: Start) -> DescriptorProblem:
+        form = self._modes.of(start.mode).descriptor
+        return with_address(DescriptorProblem(form, start.forcing, start.frame, self.drift))
 
     def _first_step(self, tau: float, state: Floats, y: Floats, rate: Floats) -> float:
         """Fill in unknowns and rates of a start, from the loop's state; how long to step (s)."""

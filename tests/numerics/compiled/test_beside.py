@@ -6,9 +6,10 @@ import threading
 import time
 
 import pytest
+from numba import float64
 from numba.core.errors import TypingError
 
-from eventpound.numerics.compiled import PLAIN, beside
+from eventpound.numerics.compiled import PLAIN, beside, store
 from tests.numerics.compiled.modules import imported
 
 pytestmark = pytest.mark.skipif(
@@ -100,6 +101,23 @@ def test_a_kernel_that_is_being_made_is_waited_for(tmp_path):
     waiting.join(LONG)
     assert order == ["first", "second"]
     assert not list(tmp_path.iterdir())
+
+
+def test_who_waits_compiles_what_is_asked_for(file, monkeypatch):
+    """But not what is waited for, once more."""
+
+    class Waiting(beside.Claim):
+        @staticmethod
+        def _take(opened, waits):
+            waits()
+
+    module = imported(file)
+    asked = [beside.Wanted("kernels", name, (float64,)) for name in ("whole", "cubed")]
+    monkeypatch.setattr(beside, "_asked", asked)
+    monkeypatch.setattr(store, "Claim", Waiting)
+    assert module.whole(1.0) == 0.0
+    assert asked == []
+    assert list(module.cubed.overloads) == [(float64,)]
 
 
 def test_waiting_ends_by_a_signal(tmp_path):
