@@ -64,12 +64,6 @@ def test_read_and_understood(keys: Table, contact: Contact) -> None:
     assert again.scene.contacts == case.scene.contacts
 
 
-def test_units_of_a_law_built_in_python() -> None:
-    assert ContactLaw("hertz", "2.75e6 kN/m^1.5").stiffness == 2.75e9
-    with pytest.raises(InputError, match=r"ContactLaw: stiffness: .*'kN/m' is no unit of Hertz"):
-        ContactLaw("hertz", "3 kN/m")
-
-
 def test_constants_are_shown() -> None:
     (row,) = inputs_of(case_with(law="kelvin-voigt", stiffness=1e4, restitution=0.5))["contacts"]
     ratio = math.log(2.0) / math.hypot(math.pi, math.log(2.0))

@@ -10,7 +10,6 @@ import pytest
 from eventpound import load_case, simulate
 from eventpound.case import read_case
 from eventpound.case.case import member_case
-from eventpound.case.figure import FigureKind
 from eventpound.errors import InputError
 from eventpound.motion.synthetic import synthetic_motion
 
@@ -119,22 +118,6 @@ def test_simulate_takes_no_suite(folder: Path) -> None:
     case = load_case(write(folder, "synthetic = {}"))
     with pytest.raises(InputError, match="the case holds a suite of records"):
         simulate(case)
-
-
-def test_contours_need_no_bodies(tmp_path: Path) -> None:
-    (tmp_path / "case.toml").write_text(
-        '[excitation]\nkind = "record"\nsynthetic = { count = 2 }\n'
-        '[figure]\nkind = "similarity-contours"\ncontours = [0.1, 1]\n'
-        'joint = [{ name = "in-deck", gap = ["0.6 cm", "1.3 cm"] }]\n'
-        'isolator = [{ name = "sliding", yield_displacement = "0.02 cm" }]\n'
-    )
-    figure = load_case(tmp_path).figures[0]
-    assert figure is not None
-    assert figure.kind is FigureKind.SIMILARITY_CONTOURS
-    (joint,), (isolator,) = figure.joints, figure.isolators
-    assert (joint.name, joint.low, joint.high) == ("in-deck", 0.006, 0.013)
-    assert (isolator.low, isolator.high) == (0.0002, 0.0002)
-    assert figure.contours == (0.1, 1.0)
 
 
 def test_wrong_lengths_are_named(tmp_path: Path) -> None:

@@ -4,7 +4,6 @@ import json
 import math
 from dataclasses import replace
 
-import numpy as np
 import pandas as pd
 import pytest
 
@@ -15,8 +14,6 @@ from eventpound.quantities.lookup import find, listing, names_of
 from eventpound.results.run_files import summarise
 from tests.models import ROOT
 from tests.solvers.scenes import pounding_pair
-
-END = 6.0
 
 
 def test_terms_and_scales_stand_in_the_summary(response):
@@ -47,19 +44,6 @@ def test_summary_json_holds_every_number_of_the_list(response):
             assert isinstance(table, dict)
             table = table[key]
         assert table == value
-
-
-def test_named_quantities_of_many_are_those_of_each():
-    gaps = {"contact.joint.gap": np.array([0.03, 0.045])}
-    named = ["contacts.joint.sum_impulse", "peaks.a.max", "energy.viscous"]
-    many = simulate_many(pounding_pair(), gaps, duration=END, quantities=named, rtol=1e-8)
-    for i, gap in enumerate(gaps["contact.joint.gap"]):
-        scene = pounding_pair()
-        contacts = tuple(replace(c, gap=gap) if c.name == "joint" else c for c in scene.contacts)
-        one = simulate(
-            replace(scene, contacts=contacts), "fast", 1e-8, duration=END, energy=True
-        ).summary
-        assert [many.table[name][i] for name in named] == [one[name] for name in named]
 
 
 def test_a_name_that_there_is_not():

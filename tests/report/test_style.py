@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import re
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +21,6 @@ from eventpound.report.run_figures import figures
 from eventpound.report.style import Paper, on_paper, plain_logarithms
 from eventpound.report.view import View
 from eventpound.results import StoredResults, gather
-from tests.models import CASES
 
 
 @pytest.fixture(scope="module")
@@ -63,26 +61,6 @@ def test_a_window_of_time(tmp_path: Path, buildings: StoredResults) -> None:
     assert plot(buildings, tmp_path, xlim=(0.3, 1.5))
     with pytest.raises(InputError, match="in which there are no rows to draw"):
         plot(buildings, tmp_path, xlim=(90.0, 91.0))
-
-
-def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = tmp_path / "pair"
-    shutil.copytree(CASES / "pair", folder)
-    assert main(["run", str(folder), "--no-figures"]) == 0
-    words = ["plot", str(folder), "--format", "svg,pdf", "--width", "90 mm", "--xlim", "0.5,3"]
-    capsys.readouterr()
-    assert main(words) == 0
-    assert {Path(line).suffix for line in capsys.readouterr().out.split()} == {".svg", ".pdf"}
-    assert main(["plot", str(folder), "--model", "--format", "pdf"]) == 0
-    for wrong, said in (
-        (["--width", "1 mm"], "accepted: 20 mm to 2 m"),
-        (["--width", "3 s"], "--width: found '3 s'"),
-    ):
-        assert main(["plot", str(folder), *wrong]) == 2
-        assert said in capsys.readouterr().err
-    for wrong in (["--format", "gif"], ["--xlim", "3,2"], ["--dpi", "0"]):
-        with pytest.raises(SystemExit):
-            main(["plot", str(folder), *wrong])
 
 
 @pytest.mark.parametrize("ends", [(0.1, 3.0), (0.02, 1.0), (1.0, 9.0), (0.05, 10.0)])

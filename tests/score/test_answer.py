@@ -13,7 +13,6 @@ from eventpound.cli import main
 from eventpound.problems.collection import read_collection
 from eventpound.problems.files import problem_json, score_file
 from eventpound.results.jsontext import canonical
-from eventpound.score.__main__ import main as judge_alone
 from eventpound.score.levels import UNIT_OF_TIME
 from tests.models import CASES
 
@@ -263,20 +262,6 @@ def test_an_answer_that_cannot_be_judged_is_one_message(problem, folder, tmp_pat
     )
     assert (alone.returncode, alone.stdout) == (2, "")
     assert says in alone.stderr
-
-
-def test_a_problem_that_is_none_is_one_message(folder, tmp_path, capsys):
-    assert judge_alone([str(tmp_path), "mine.csv"]) == 2
-    assert "problem.json: cannot be read" in capsys.readouterr().err
-    for name in ("problem.json", "answer.json"):
-        content = json.loads((folder / name).read_text())
-        content.pop("gaps" if name == "problem.json" else "events")
-        (tmp_path / name).write_text(json.dumps(content))
-        assert judge_alone([str(tmp_path), "mine.csv"]) == 2
-        assert capsys.readouterr().err.endswith((": has no gaps\n", ": has no events\n"))
-        (tmp_path / name).write_bytes((folder / name).read_bytes())
-    assert main(["problems", "score", str(tmp_path), "mine.csv"]) == 2
-    assert "set.toml: cannot be read" in capsys.readouterr().err
 
 
 def test_the_file_needs_numpy_only():

@@ -8,7 +8,6 @@ import pytest
 from eventpound.errors import ComputationError
 from eventpound.scene.parameters import with_values
 from eventpound.simulation import ReadyScene, response_of
-from eventpound.study.plan import Chunk
 from eventpound.study.table import TABLE, compute, header, read_table
 from eventpound.study.variants import rows_of_base, scene_of_row
 from tests.study.conftest import ELASTOPLASTIC
@@ -47,13 +46,6 @@ def test_rows_are_the_runs_that_simulate_makes(make_study, table):
         assert row["amplification"] == pytest.approx(peaks[0] / peaks[1], rel=1e-15)
         assert row["impacts"] == run.impacts
         assert row["resting_time"] == sum(run.recording.resting_time)
-
-
-def test_rows_do_not_depend_on_the_chunks_they_are_in(make_study):
-    study = make_study().study
-    whole = compute(study, Chunk(0, 0, 0, 80))
-    parts = [(0, 1), (1, 30), (30, 80)]
-    assert b"".join(compute(study, Chunk(0, 0, a, b)) for a, b in parts) == whole
 
 
 def test_other_solvers_agree(make_study, table):
