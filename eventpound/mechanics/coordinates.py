@@ -63,16 +63,14 @@ def numbered(scene: Scene) -> Numbered:
             links.append(ends)
         of_dashpot.append(place)
     contacts = [pair(contact.left, contact.right) for contact in scene.contacts]
-    # The last column, which index -1 is, is that of the ground.
-    weights = np.zeros((len(points), bodies + len(points) + 1))
-    for row, own in zip(weights, points, strict=True):
+    weights, on_ground = np.zeros((len(points), bodies + len(points))), np.zeros(len(points))
+    for d, own in enumerate(points):
         for name, weight in own:
-            row[index[name]] += weight
-    return Numbered(
-        *(springs, links[len(springs) :], contacts, of_dashpot),
-        np.ascontiguousarray(weights[:, :-1]),
-        weights[:, -1].copy(),
-    )
+            if index[name] < 0:
+                on_ground[d] += weight
+            else:
+                weights[d, index[name]] += weight
+    return Numbered(springs, links[len(springs) :], contacts, of_dashpot, weights, on_ground)
 
 
 def parts_on_ground(ends: list[_Pair], bodies: int, on_ground: Floats) -> Floats:
@@ -87,5 +85,6 @@ def parts_on_ground(ends: list[_Pair], bodies: int, on_ground: Floats) -> Floats
     on_ground : ndarray, shape (D,)
         As of `Numbered`.
     """
-    part = np.concatenate((np.zeros(bodies), on_ground, [1.0]))
+    # The last is the ground, which index -1 is.
+    part = [*[0.0] * bodies, *on_ground.tolist(), 1.0]
     return np.array([part[first] - part[second] for first, second in ends])

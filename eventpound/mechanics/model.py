@@ -288,7 +288,6 @@ def assemble(scene: Scene) -> Model:
     further = dict(zip(two, range(len(ends), len(ends) + len(two)), strict=True))
     ends += [ends[i] for i in two]
     damping += [0.0] * len(two)
-    weights = at.weights
     motion = scene.motion
     if isinstance(motion, LoadedMotion):
         ends += [(load.body, -1) for load in motion.loads]
@@ -297,15 +296,15 @@ def assemble(scene: Scene) -> Model:
     def column(values: list[float]) -> Floats:
         return np.array(values, dtype=np.float64)
 
-    no_mass = [0.0] * len(weights)
+    no_mass = [0.0] * at.on_ground.size
     mass, u0, v0 = (
         column([getattr(b, key) for b in scene.bodies] + no_mass)
         for key in ("mass", "displacement", "velocity")
     )
     first = len(scene.bodies)
-    for values in (u0, v0):
+    for values in (u0, v0) if at.on_ground.size else ():
         # In the order of `followers.place_points`: a gap has the bits of later steps at the start.
-        values[first:] = np.cumsum(weights[:, :first] * values[:first], axis=1)[:, -1]
+        values[first:] = np.cumsum(at.weights[:, :first] * values[:first], axis=1)[:, -1]
     link_ends = np.array(ends, np.int64).reshape(-1, 2)
     start = differences(u0, *link_ends.T)
     left, right = np.array(at.contacts, np.int64).reshape(-1, 2).T.copy()
@@ -331,7 +330,7 @@ def assemble(scene: Scene) -> Model:
         elements=elements_of(scene, mass, left, right),
         supports=motion.supports if isinstance(motion, LoadedMotion) else 0,
         loads=len(motion.loads) if isinstance(motion, LoadedMotion) else 0,
-        weights=weights,
+        weights=at.weights,
     )
 
 
