@@ -188,7 +188,7 @@ def _draw(
     level = [route.link.sides for route in routes if not route.upright]
     joined = {frozenset(BARRIER if end == GROUND else end for end in ends) for ends in level}
     for joint in _joints(scene):
-        _contact(axes, layout, joint, _UP * (frozenset(joint[0].ends) in joined), names)
+        _contact(axes, layout, joint, _UP * (frozenset(joint[0].sides) in joined), names)
     for body in scene.bodies:
         _body(axes, layout.boxes[body.name], body, names)
     for box in (layout.boxes[name] for name in {force.body for force in scene.forces}):

@@ -21,6 +21,8 @@ WALL = 1.25
 """From the side of a body to a wall."""
 _STEP = 0.42
 """Between links of the same ends."""
+_BELOW = -0.22
+"""Of level links, so that a contact between the same bodies is above them."""
 _INSIDE = 0.5
 """From the end of a body to the link that stands there."""
 _ROUND = 1.1
@@ -128,7 +130,7 @@ def _corners(layout: Layout, link: Link, shift: float) -> tuple[Corner, ...]:
             x_1, x_2 = inner if low is near else inner[::-1]
             straight = (x_1, low.top), (x_2, high.bottom)
     else:
-        y = -0.22 + 0.5 * shift
+        y = _BELOW + 0.5 * shift
         straight = (near.right, near.y + y), (far.left, far.y + y)
     # It may begin and end at a body.
     if not any(crosses(box, *straight) for box in layout.boxes.values()):
@@ -142,13 +144,14 @@ def _corners(layout: Layout, link: Link, shift: float) -> tuple[Corner, ...]:
 
 def _at_points(layout: Layout, first: End, second: End, shift: float) -> tuple[Corner, Corner]:
     """Between the faces of columns and bodies, or from one of them to a wall."""
+    below = _BELOW + 0.5 * shift
     if GROUND in (first, second):
         x, y = face_of(layout, second if first == GROUND else first, 1.0)
-        return (x + WALL, y + shift), (x, y + shift)
+        return (x + WALL, y + below), (x, y + below)
     middles = [face_of(layout, end, 0.0)[0] for end in (first, second)]
     way = 1.0 if middles[0] <= middles[1] else -1.0
     (x_1, y_1), (x_2, y_2) = face_of(layout, first, way), face_of(layout, second, -way)
-    return (x_1, y_1 + shift), (x_2, y_2 + shift)
+    return (x_1, y_1 + below), (x_2, y_2 + below)
 
 
 def _to_ground(
@@ -164,7 +167,7 @@ def _to_ground(
             seat = Box(x, box.y - LEVEL, 2.0 * _INSIDE)
             if not any(_overlap(seat, other) for other in layout.boxes.values()):
                 return (x + shift, seat.top), (x + shift, box.bottom)
-    y = box.y - 0.22 + 0.5 * shift
+    y = box.y + _BELOW + 0.5 * shift
     face = box.x + side * 0.5 * box.wide
     return (face + side * WALL, y), (face, y)
 
