@@ -1,11 +1,8 @@
 """Kernels are compiled once before all tests; ``--quick`` leaves out what would compile."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
 
 import pytest
 
@@ -27,7 +24,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 
 @pytest.fixture(autouse=True)
-def heeded_interrupts() -> Iterator[None]:
+def heeded_interrupts():
     """A shell that runs the tests in the background has them ignore SIGINT."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
@@ -35,7 +32,7 @@ def heeded_interrupts() -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True)
-def compiles_nothing(request: pytest.FixtureRequest) -> Iterator[None]:
+def compiles_nothing(request):
     """Under ``--quick`` a test ends, skipped, where it begins to compile."""
     if not request.config.option.quick:
         yield
@@ -45,7 +42,7 @@ def compiles_nothing(request: pytest.FixtureRequest) -> Iterator[None]:
 
 
 @pytest.fixture
-def interpreted() -> Iterator[None]:
+def interpreted():
     """Kernels that no run calls from Python are not compiled for a test: Python runs them.
 
     That compiled code gives the same is shown of whole runs, in solvers/test_in_python.py.

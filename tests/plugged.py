@@ -1,7 +1,5 @@
 """Distributions made up in a folder, so that their entry points are found as if installed."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

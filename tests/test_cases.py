@@ -1,7 +1,5 @@
 """Every directory of cases/: it runs, keeps the laws of mechanics, and has its mirror image."""
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import replace
 from functools import cache
@@ -100,12 +98,12 @@ def impacts(run: Response) -> list[Event]:
     return [event for event in run.recording.events if event.kind is EventKind.IMPACT]
 
 
-def test_the_cases_are_there() -> None:
+def test_the_cases_are_there():
     assert len(NAMES) >= 15
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_says_what_it_shows(name: str) -> None:
+def test_says_what_it_shows(name):
     text = (FOLDER / name / "case.toml").read_text(encoding="utf-8")
     first = text.splitlines()[0]
     assert first.startswith("# ")
@@ -114,7 +112,7 @@ def test_says_what_it_shows(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_runs_to_its_end(name: str) -> None:
+def test_runs_to_its_end(name):
     run = response(name)
     assert loaded(name).warnings == ()
     assert run.success
@@ -124,7 +122,7 @@ def test_runs_to_its_end(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_nothing_penetrates_or_pulls(name: str) -> None:
+def test_nothing_penetrates_or_pulls(name):
     run = response(name)
     history, recording = run.recording.history, run.recording
     gaps = [contact.gap for contact in run.scene.contacts]
@@ -141,7 +139,7 @@ def test_nothing_penetrates_or_pulls(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_hysteretic_variables_stay_in_their_bounds(name: str) -> None:
+def test_hysteretic_variables_stay_in_their_bounds(name):
     run = response(name)
     names, z = run.scene.hysteretic_springs, run.recording.history.z
     for name_of_spring, law in [(s.name, s.law) for s in run.scene.springs]:
@@ -151,7 +149,7 @@ def test_hysteretic_variables_stay_in_their_bounds(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_energy_ledger_closes(name: str) -> None:
+def test_energy_ledger_closes(name):
     energy = response(name).energy
     assert energy is not None
     # Energy is of second order in the state: twice its relative error.
@@ -164,7 +162,7 @@ def test_energy_ledger_closes(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_impacts_obey_their_law(name: str) -> None:
+def test_impacts_obey_their_law(name):
     """Newton's restitution, and the change of momentum that the impulse makes."""
     run = response(name)
     contacts = run.scene.contacts
@@ -192,7 +190,7 @@ def test_impacts_obey_their_law(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_mirror_image(name: str) -> None:
+def test_mirror_image(name):
     """The mirrored scene moves as the mirror image; each run is as accurate as rtol says."""
     run, image = response(name), mirror_response(name)
     tolerance = ACCURACY * length(run)
@@ -214,7 +212,7 @@ def test_mirror_image(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", REVERSED)
-def test_only_the_direction_is_reversed(name: str) -> None:
+def test_only_the_direction_is_reversed(name):
     forward, reverse = loaded(name.removesuffix("-reverse")).scene, loaded(name).scene
     motion: Any = forward.motion
     assert reverse.motion == replace(motion, reverse=True)
@@ -229,13 +227,13 @@ def test_only_the_direction_is_reversed(name: str) -> None:
         ("figure-11-direct-abutments", "bridge-direct-abutments"),
     ],
 )
-def test_figures_of_the_bridge_show_the_bridge(name: str, of: str) -> None:
+def test_figures_of_the_bridge_show_the_bridge(name, of):
     scene, paper = load_case(FOLDER / name).scene, loaded(of).scene
     assert replace(scene, motion=NoMotion()) == replace(paper, motion=NoMotion())
 
 
 @pytest.mark.parametrize("name", BRIDGES)
-def test_bridges_differ_in_motion_damping_ends_and_supports_only(name: str) -> None:
+def test_bridges_differ_in_motion_damping_ends_and_supports_only(name):
     scene, paper = loaded(name).scene, loaded("bridge-el-centro").scene
     expected_springs = paper.springs
     if name == "bridge-direct-abutments":
@@ -260,7 +258,7 @@ def test_bridges_differ_in_motion_damping_ends_and_supports_only(name: str) -> N
         assert dashpot.coefficient == pytest.approx(expected, abs=0.5 * 0.1e3)
 
 
-def test_free_bodies_end_with_the_velocity_of_their_centre() -> None:
+def test_free_bodies_end_with_the_velocity_of_their_centre():
     run = response("free-collision")
     masses = np.array([body.mass for body in run.scene.bodies])
     centre = masses @ [body.velocity for body in run.scene.bodies] / masses.sum()
@@ -270,7 +268,7 @@ def test_free_bodies_end_with_the_velocity_of_their_centre() -> None:
     assert run.recording.v == pytest.approx(centre, rel=run.impacts * ROUNDING)
 
 
-def test_restrainer_only_pulls_and_only_beyond_its_slack() -> None:
+def test_restrainer_only_pulls_and_only_beyond_its_slack():
     run = response("restrained-decks")
     index = [spring.name for spring in run.scene.springs].index("restrainer")
     law = run.scene.springs[index].law
@@ -282,7 +280,7 @@ def test_restrainer_only_pulls_and_only_beyond_its_slack() -> None:
     assert 0.0 < np.mean(force > 0.0) < 1.0
 
 
-def test_piers_move_one_after_the_other() -> None:
+def test_piers_move_one_after_the_other():
     run = response("passing-wave")
     supports, t = run.recording.supports, run.recording.history.t
     assert supports is not None
@@ -301,14 +299,14 @@ def test_piers_move_one_after_the_other() -> None:
     assert struck == {0, 1, 2}
 
 
-def test_a_column_carries_its_weight() -> None:
+def test_a_column_carries_its_weight():
     run = response("bead-column")
     above = np.cumsum([body.mass for body in run.scene.bodies][::-1])[::-1]
     assert run.recording.history.contact_force[-1] == pytest.approx(9.80665 * above, rel=1e-12)
     assert run.recording.u == pytest.approx([-0.10, -0.15, -0.20], rel=1e-12)
 
 
-def test_buildings_pound_between_floors_of_one_level() -> None:
+def test_buildings_pound_between_floors_of_one_level():
     scene = loaded("adjacent-buildings").scene
     levels = [(c.left[1:], c.right[1:]) for c in scene.contacts]
     assert all(left == right for left, right in levels)

@@ -1,7 +1,5 @@
 """The command line: exit codes, what it prints, what it does not import."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys
@@ -15,7 +13,7 @@ from eventpound import cli
 from eventpound.cli import main
 
 
-def test_new_then_check(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_new_then_check(tmp_path, capsys):
     directory = tmp_path / "pulse"
     assert main(["new", str(directory)]) == 0
     assert "case.toml" in capsys.readouterr().out
@@ -27,7 +25,7 @@ def test_new_then_check(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert [path.name for path in directory.iterdir()] == ["case.toml"]
 
 
-def test_warnings_go_to_stderr(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_warnings_go_to_stderr(tmp_path, capsys):
     main(["new", str(tmp_path)])
     file = tmp_path / "case.toml"
     file.write_text(file.read_text().replace("hardening = 0.05", "hardening = 0.05\ngamma = 0.4"))
@@ -36,7 +34,7 @@ def test_warnings_go_to_stderr(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "gamma = 0.4" in capsys.readouterr().err
 
 
-def test_help_teaches_with_an_example(capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_teaches_with_an_example(capsys):
     with pytest.raises(SystemExit) as caught:
         main(["--help"])
     assert caught.value.code == 0
@@ -56,14 +54,14 @@ def test_help_teaches_with_an_example(capsys: pytest.CaptureFixture[str]) -> Non
         ["floor-spectrum", ".", "deck", "--periods", "2,1"],
     ],
 )
-def test_wrong_words(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_words(words, capsys):
     with pytest.raises(SystemExit) as caught:
         main(words)
     assert caught.value.code == 2
     assert "usage" in capsys.readouterr().err
 
 
-def test_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_interruption(monkeypatch, capsys):
     def interrupted(_: Path) -> None:
         raise KeyboardInterrupt
 
@@ -72,7 +70,7 @@ def test_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
     assert "interrupted" in capsys.readouterr().err
 
 
-def test_interruption_that_others_complain_of(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interruption_that_others_complain_of(monkeypatch):
     def overlooked(_: Path) -> None:
         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
 
@@ -105,19 +103,19 @@ def modules_after(*words: str) -> set[str]:
     return set(found.stdout.split())
 
 
-def test_help_imports_nothing_heavy() -> None:
+def test_help_imports_nothing_heavy():
     heavy = {"numpy", "scipy", "pandas", "matplotlib", "sksundae", "numba", "pint"}
     assert not heavy & modules_after("--help")
 
 
-def test_check_imports_what_it_needs(tmp_path: Path) -> None:
+def test_check_imports_what_it_needs(tmp_path):
     main(["new", str(tmp_path)])
     modules = modules_after("check", str(tmp_path))
     assert "eventpound.scene.check" in modules
     assert not {"pandas", "matplotlib", "sksundae", "numba", "pint"} & modules
 
 
-def test_a_run_imports_its_own_solver(tmp_path: Path) -> None:
+def test_a_run_imports_its_own_solver(tmp_path):
     main(["new", str(tmp_path)])
     modules = modules_after("run", str(tmp_path), "--solver", "fast")
     assert "eventpound.solvers.fast.solver" in modules
@@ -126,9 +124,7 @@ def test_a_run_imports_its_own_solver(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "fast", "ida"])
-def test_a_run_of_kept_kernels_imports_no_compiler_and_no_tables(
-    tmp_path: Path, solver: str
-) -> None:
+def test_a_run_of_kept_kernels_imports_no_compiler_and_no_tables(tmp_path, solver):
     main(["new", str(tmp_path)])
     words = ["run", str(tmp_path), "--no-figures", "--solver", solver]
     main(words)
@@ -137,7 +133,7 @@ def test_a_run_of_kept_kernels_imports_no_compiler_and_no_tables(
     assert not heavy & modules_after(*words)
 
 
-def test_figures_of_a_run_need_no_tables(tmp_path: Path) -> None:
+def test_figures_of_a_run_need_no_tables(tmp_path):
     main(["new", str(tmp_path)])
     words = ["run", str(tmp_path), "--solver", "fast"]
     main(words)
@@ -147,7 +143,7 @@ def test_figures_of_a_run_need_no_tables(tmp_path: Path) -> None:
         assert not {"pandas", "scipy.linalg"} & modules
 
 
-def test_commands_stand_by_their_tasks(capsys: pytest.CaptureFixture[str]) -> None:
+def test_commands_stand_by_their_tasks(capsys):
     with pytest.raises(SystemExit):
         main(["--help"])
     out = capsys.readouterr().out
@@ -178,16 +174,12 @@ def test_commands_stand_by_their_tasks(capsys: pytest.CaptureFixture[str]) -> No
         "records a.AT2 --list b.csv",
     ],
 )
-def test_an_option_that_does_not_apply_is_refused(
-    words: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_option_that_does_not_apply_is_refused(words, capsys):
     assert main(words.split()) == 2
     assert re.match(r"eventpound: --.*(is |needs )", capsys.readouterr().err)
 
 
-def test_messages_name_pages_and_where_the_site_is_known_their_addresses(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_messages_name_pages_and_where_the_site_is_known_their_addresses(monkeypatch, capsys):
     def said() -> str:
         with pytest.raises(SystemExit):
             main(["verify", "--help"])
@@ -199,17 +191,17 @@ def test_messages_name_pages_and_where_the_site_is_known_their_addresses(
 
 
 @pytest.mark.parametrize("words", [["-q", "solvers"], ["solvers", "-q"], ["solvers", "--quiet"]])
-def test_quiet(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_quiet(words, capsys):
     assert main(words) == 0
     assert capsys.readouterr() == ("", "")
 
 
-def test_quiet_says_errors(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_quiet_says_errors(tmp_path, capsys):
     assert main(["run", "-q", str(tmp_path / "nowhere")]) == 2
     assert "nowhere" in capsys.readouterr().err
 
 
-def test_verbose_says_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_verbose_says_steps(tmp_path, capsys):
     main(["new", str(tmp_path)])
     for words in (["-v", "check", str(tmp_path)], ["check", str(tmp_path), "-v"]):
         capsys.readouterr()
@@ -222,9 +214,7 @@ def test_verbose_says_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert "read " not in capsys.readouterr().err
 
 
-def test_new_says_what_its_record_does_not(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_new_says_what_its_record_does_not(tmp_path, capsys):
     record = tmp_path / "a.txt"
     record.write_text("0.1\n0.2\n-0.1\n")
     assert main(["new", str(tmp_path / "case"), "--bridge", "--record", str(record)]) == 0

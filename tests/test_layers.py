@@ -81,7 +81,7 @@ def _own_targets(node: ast.Import | ast.ImportFrom, package: list[str]) -> Itera
 
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_imports_point_down(path: Path) -> None:
+def test_imports_point_down(path):
     targets = [
         name for node in _imports(_parsed(path)) for name in _own_targets(node, _package(path))
     ]
@@ -114,7 +114,7 @@ def _circle(sources: dict[str, tuple[list[str], ast.AST]]) -> list[str]:
     return []
 
 
-def test_no_modules_import_each_other() -> None:
+def test_no_modules_import_each_other():
     sources = {
         ".".join([*_package(path), path.stem]).removesuffix(".__init__"): (
             _package(path),
@@ -130,7 +130,7 @@ def test_no_modules_import_each_other() -> None:
     [["-c", "import eventpound"], ["-m", "eventpound", "--help"]],
     ids=["import", "help"],
 )
-def test_nothing_heavy_is_imported(arguments: list[str]) -> None:
+def test_nothing_heavy_is_imported(arguments):
     run = subprocess.run(
         [sys.executable, "-X", "importtime", *arguments],
         capture_output=True,

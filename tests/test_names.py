@@ -1,7 +1,5 @@
 """One meaning a name: a class or function stands for one thing in the whole package."""
 
-from __future__ import annotations
-
 import ast
 from collections import defaultdict
 from pathlib import Path
@@ -13,7 +11,7 @@ ALONE = "score/"
 """Travels without the package, so it has words of its own."""
 
 
-def test_no_two_classes_have_one_name() -> None:
+def test_no_two_classes_have_one_name():
     places = defaultdict(list)
     for path in ROOT.rglob("*.py"):
         name = path.relative_to(ROOT).as_posix()
@@ -30,7 +28,7 @@ LEFT = {"number", "numbers_of"}
 """Of `eventpound.basics.given` and of one of these rooms; the list shrinks."""
 
 
-def test_no_two_modules_have_a_public_function_of_one_name() -> None:
+def test_no_two_modules_have_a_public_function_of_one_name():
     places = defaultdict(set)
     for path in ROOT.rglob("*.py"):
         name = path.relative_to(ROOT).as_posix()
@@ -46,7 +44,7 @@ MOST_BY_POSITION = 12
 """Arguments that a reader still counts."""
 
 
-def test_long_calls_name_their_arguments() -> None:
+def test_long_calls_name_their_arguments():
     for path in ROOT.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Call):

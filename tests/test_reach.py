@@ -1,7 +1,5 @@
 """How many modules know the constants of a spring with a memory: what a new law would touch."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 
@@ -42,7 +40,7 @@ def _names(path: Path) -> set[str]:
     return found
 
 
-def test_few_modules_name_a_constant_of_a_law_with_a_memory() -> None:
+def test_few_modules_name_a_constant_of_a_law_with_a_memory():
     naming = {
         path.relative_to(ROOT).as_posix() for path in ROOT.rglob("*.py") if _names(path) & CONSTANTS
     }
@@ -53,7 +51,7 @@ def test_few_modules_name_a_constant_of_a_law_with_a_memory() -> None:
     assert len(inside) <= MOST_IN_SOLVERS, sorted(inside)
 
 
-def test_the_fast_solver_tells_no_law_with_a_memory_itself() -> None:
+def test_the_fast_solver_tells_no_law_with_a_memory_itself():
     table = {path.name for path in (ROOT / "mechanics").glob("*.py") if _names(path) & KINDS}
     assert {"elements.py", "link_law.py"} <= table
     for path in (ROOT / "solvers" / "fast").rglob("*.py"):

@@ -1,7 +1,5 @@
 """What the README shows works as it stands there."""
 
-from __future__ import annotations
-
 import re
 from importlib.util import find_spec
 from typing import Any

@@ -1,12 +1,9 @@
 """The package as a notebook has it: names, short texts, tables, units, solvers of one's own."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from importlib.resources import files
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -34,11 +31,11 @@ CASE = ROOT / "cases" / "bilinear-barrier"
 
 
 @pytest.fixture(scope="module")
-def response() -> Response:
+def response():
     return simulate(load_case(CASE), energy=True)
 
 
-def test_every_public_name_is_listed_and_there() -> None:
+def test_every_public_name_is_listed_and_there():
     named = [name for name in dir(eventpound) if not name.startswith("__")]
     assert named == eventpound.__all__
     for name in eventpound.__all__:
@@ -46,7 +43,7 @@ def test_every_public_name_is_listed_and_there() -> None:
     assert files("eventpound").joinpath("py.typed").is_file()
 
 
-def test_texts_are_short(response: Response) -> None:
+def test_texts_are_short(response):
     case = load_case(CASE)
     many = simulate_many(case, {"contact.joint.gap": [0.01, 0.02, 0.03]})
     for thing, words in (
@@ -61,7 +58,7 @@ def test_texts_are_short(response: Response) -> None:
     assert many._repr_html_().count("<table") == 1
 
 
-def test_tables_have_units_and_the_numbers_of_the_summary(response: Response) -> None:
+def test_tables_have_units_and_the_numbers_of_the_summary(response):
     spring, contact = response.springs, response.contacts
     name = response.scene.springs[0].name
     assert spring.loc[name, "ductility"] == response.summary[f"springs.{name}.ductility"]
@@ -77,7 +74,7 @@ def test_tables_have_units_and_the_numbers_of_the_summary(response: Response) ->
     assert response.pi["epsilon"] == response.scene.contacts[0].restitution
 
 
-def test_rows_without_jumps_are_those_after_them(response: Response) -> None:
+def test_rows_without_jumps_are_those_after_them(response):
     rows = response.rows(jumps=False)
     assert (np.diff(rows["t"]) > 0.0).all()
     whole = response.history
@@ -87,7 +84,7 @@ def test_rows_without_jumps_are_those_after_them(response: Response) -> None:
         assert (rows[rows["t"] == t].iloc[0] == after).all()
 
 
-def test_plot_draws_into_given_axes(response: Response) -> None:
+def test_plot_draws_into_given_axes(response):
     from matplotlib.figure import Figure
 
     axes = Figure().add_subplot()
@@ -97,7 +94,7 @@ def test_plot_draws_into_given_axes(response: Response) -> None:
     assert len(circles.get_xdata()) == (response.events["kind"] == "impact").sum()
 
 
-def test_a_response_with_further_runs_can_be_pickled(response: Response) -> None:
+def test_a_response_with_further_runs_can_be_pickled(response):
     body = response.scene.bodies[0].name
     value = response.quantity(f"velocity.{body}.abs_max")
     copy = pickle.loads(pickle.dumps(response))
@@ -106,7 +103,7 @@ def test_a_response_with_further_runs_can_be_pickled(response: Response) -> None
     assert response == response != copy
 
 
-def test_laws_from_what_engineers_know() -> None:
+def test_laws_from_what_engineers_know():
     law = BoucWen.from_yield("233443 kN/m", "3621 kN", "5 %")
     given = {
         Parameter.INITIAL_STIFFNESS: 233443e3,
@@ -119,7 +116,7 @@ def test_laws_from_what_engineers_know() -> None:
     assert Dashpot.from_ratio(("ground", "a"), "5 %", 4.0, 9.0).coefficient == pytest.approx(0.6)
 
 
-def test_rayleigh_damping_of_a_building() -> None:
+def test_rayleigh_damping_of_a_building():
     bodies = tuple(Body(name, 1e5) for name in "abc")
     ends = ("ground", "a", "b", "c")
     springs = tuple(Spring(b, (a, b), Linear(9e7)) for a, b in pairwise(ends))
@@ -136,16 +133,14 @@ def test_rayleigh_damping_of_a_building() -> None:
         rayleigh(bodies, springs, 0.04, modes=(1, 4))
 
 
-def test_progress_on_stderr(capsys: pytest.CaptureFixture[str]) -> None:
+def test_progress_on_stderr(capsys):
     response = simulate(load_case(CASE), "fast", progress=True)
     assert capsys.readouterr().err.endswith(f"{response.recording.t:.6g} s\n")
     pickle.dumps(response)
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "docs" / "notebooks").glob("*.ipynb")))
-def test_notebooks_of_the_docs_run(
-    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_notebooks_of_the_docs_run(path, tmp_path, monkeypatch):
     import matplotlib
 
     monkeypatch.setattr(matplotlib, "get_backend", lambda: "agg")

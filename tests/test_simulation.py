@@ -1,7 +1,5 @@
 """What the one call takes: a solver of one's own, units, and what it refuses."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import ClassVar
@@ -45,7 +43,7 @@ class Still:
         return sampled_recording(task, t, rows, rows, np.zeros((t.size, springs)))
 
 
-def test_a_solver_of_ones_own_is_an_object() -> None:
+def test_a_solver_of_ones_own_is_an_object():
     case = load_case(CASE)
     response = simulate(case, Still(), settings={"time_step": 0.1})
     assert response.solver == "motionless"
@@ -58,12 +56,12 @@ def test_a_solver_of_ones_own_is_an_object() -> None:
 
 
 @pytest.mark.parametrize("solver", [5, object(), type("Short", (), {"name": "short"})()])
-def test_what_is_no_solver(solver: object) -> None:
+def test_what_is_no_solver(solver):
     with pytest.raises(InputError, match=r"has no .*solve"):
         simulate(load_case(CASE), solver)  # type: ignore[arg-type]
 
 
-def test_a_name_that_is_taken() -> None:
+def test_a_name_that_is_taken():
     taken = Still()
     taken.name = "fast"
     with pytest.raises(InputError, match="another solver is called 'fast'"):
@@ -80,13 +78,13 @@ def test_a_name_that_is_taken() -> None:
         ({"output_step": None, "duration": True}, "duration: found True"),
     ],
 )
-def test_wrong_arguments_are_named(options: dict, said: str) -> None:
+def test_wrong_arguments_are_named(options, said):
     with pytest.raises(InputError) as caught:
         simulate(load_case(CASE), **options)
     assert said in str(caught.value)
 
 
-def test_units_in_arguments_and_parts() -> None:
+def test_units_in_arguments_and_parts():
     case = load_case(CASE)
     said = simulate(case, "fast", "1e-6", duration="1500 ms", output_step="0.5 s")
     meant = simulate(case, "fast", 1e-6, duration=1.5, output_step=0.5)

@@ -1,7 +1,5 @@
 """Thresholds stand in one module, each with a reason, and each is used."""
 
-from __future__ import annotations
-
 import ast
 import io
 import math
@@ -28,12 +26,12 @@ def _thresholds(text: str) -> Iterator[tuple[int, str]]:
                 yield token.start[0], token.string
 
 
-def test_what_counts_as_a_threshold() -> None:
+def test_what_counts_as_a_threshold():
     text = "a = 1e-9 * b + 0.001 - 0.5 + 100_000 + 2.5E3 + 0xE1\n"
     assert [found for _, found in _thresholds(text)] == ["1e-9", "0.001", "2.5E3"]
 
 
-def test_no_other_module_of_the_engine_has_a_threshold() -> None:
+def test_no_other_module_of_the_engine_has_a_threshold():
     found = [
         f"{path.relative_to(ROOT)}:{line}: {number}"
         for folder in ENGINE
@@ -43,7 +41,7 @@ def test_no_other_module_of_the_engine_has_a_threshold() -> None:
     assert not found, "thresholds belong in eventpound/tolerances.py: " + ", ".join(found)
 
 
-def test_each_has_a_reason_and_a_use() -> None:
+def test_each_has_a_reason_and_a_use():
     body = ast.parse(Path(tolerances.__file__).read_text()).body
     told = {
         before.targets[0].id

@@ -1,7 +1,5 @@
 """Units at the border, against their definitions."""
 
-from __future__ import annotations
-
 import math
 import subprocess
 import sys
@@ -43,12 +41,12 @@ from eventpound.units import USUAL, Dimension, quantity
         ("1.5e2 mm", Dimension.LENGTH, 0.15),
     ],
 )
-def test_value_in_si(value: object, dimension: Dimension, expected: float) -> None:
+def test_value_in_si(value, dimension, expected):
     # One rounding of the factor, one of the product.
     assert quantity(value, dimension) == pytest.approx(expected, rel=4e-16)
 
 
-def test_a_decimal_with_a_unit_is_the_nearest_double() -> None:
+def test_a_decimal_with_a_unit_is_the_nearest_double():
     assert quantity("1.27 cm", Dimension.LENGTH) == 0.0127
     assert quantity("0.3 kN", Dimension.FORCE) == 300.0
 
@@ -56,14 +54,14 @@ def test_a_decimal_with_a_unit_is_the_nearest_double() -> None:
 @pytest.mark.parametrize(
     ("dimension", "unit"), [(kind, unit) for kind, units in USUAL.items() for unit in units]
 )
-def test_usual_units_are_those_of_pint(dimension: Dimension, unit: str) -> None:
+def test_usual_units_are_those_of_pint(dimension, unit):
     assert f"1*{unit}" not in USUAL[dimension]
     # pint makes a kip of several factors, each rounded.
     by_pint = quantity(f"0.3 1*{unit}", dimension)
     assert quantity(f"0.3 {unit}", dimension) == pytest.approx(by_pint, rel=4e-16)
 
 
-def test_usual_units_do_not_start_pint() -> None:
+def test_usual_units_do_not_start_pint():
     program = (
         "import sys\n"
         "from eventpound.units import Dimension, quantity\n"
@@ -99,7 +97,7 @@ def test_usual_units_do_not_start_pint() -> None:
         (10**400, Dimension.LENGTH, "not finite"),
     ],
 )
-def test_refused(value: object, dimension: Dimension, fragment: str) -> None:
+def test_refused(value, dimension, fragment):
     with pytest.raises(InputError) as caught:
         quantity(value, dimension)
     message = str(caught.value)
@@ -108,7 +106,7 @@ def test_refused(value: object, dimension: Dimension, fragment: str) -> None:
     assert len(message.splitlines()) == 1
 
 
-def test_every_example_is_accepted() -> None:
+def test_every_example_is_accepted():
     for dimension in Dimension:
         example = dimension.value[2]
         assert example in dimension.accepted
@@ -116,12 +114,12 @@ def test_every_example_is_accepted() -> None:
 
 
 @pytest.mark.parametrize("unit", ["degC", "t", "kg/m"])
-def test_a_unit_of_another_kind_is_refused(unit: str) -> None:
+def test_a_unit_of_another_kind_is_refused(unit):
     with pytest.raises(InputError, match="is no unit of time"):
         quantity(f"5 {unit}", Dimension.TIME)
 
 
-def test_a_mass_for_a_force_is_answered() -> None:
+def test_a_mass_for_a_force_is_answered():
     for text, dimension in (("500 t", Dimension.FORCE), ("500 t/m", Dimension.STIFFNESS)):
         with pytest.raises(InputError, match="a mass for a force: write kN, or tf"):
             quantity(text, dimension)

@@ -1,7 +1,5 @@
 """Files that grow, lead in circles or are too large, and patterns of names."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,9 +1,6 @@
 """Files of matrices in every form, and what is refused."""
 
-from __future__ import annotations
-
 import io
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -44,7 +41,7 @@ WAYS: dict[str, tuple[str, bytes, tuple[str, ...]]] = {
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_a_file_is_read_in_every_form(way: str, tmp_path: Path) -> None:
+def test_a_file_is_read_in_every_form(way, tmp_path):
     name, content, names = WAYS[way]
     (tmp_path / name).write_bytes(content)
     found = read_matrix(tmp_path / name)
@@ -73,7 +70,7 @@ BROKEN: dict[str, tuple[str, bytes, str]] = {
 
 
 @pytest.mark.parametrize("way", BROKEN)
-def test_a_broken_file_is_refused(way: str, tmp_path: Path) -> None:
+def test_a_broken_file_is_refused(way, tmp_path):
     name, content, said = BROKEN[way]
     (tmp_path / name).write_bytes(content)
     with pytest.raises(InputError) as caught:

@@ -1,7 +1,5 @@
 """Dashpots by a ratio, and Rayleigh damping of bodies and springs."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -22,7 +20,7 @@ HYSTERETIC = spring(law="bouc-wen", stiffness=8.0, strength=1.0, yield_displacem
     ],
     ids=", ".join,
 )
-def test_rayleigh(keys: Table) -> None:
+def test_rayleigh(keys):
     # a = 2 x 0.05 x 2 x 8 / 10 = 0.16 1/s, b = 2 x 0.05 / 10 = 0.01 s
     between = {"between": ["a", "b"], "law": "linear", "stiffness": 30.0}
     scene = case_with(spring=[HYSTERETIC, between], rayleigh=[{"bodies": ["a", "b"], **keys}]).scene
@@ -32,7 +30,7 @@ def test_rayleigh(keys: Table) -> None:
     assert coefficients == pytest.approx([0.32, 0.48, 0.72, 0.3], rel=CLOSE)
 
 
-def test_rayleigh_damps_a_kinked_spring_as_it_is_at_rest() -> None:
+def test_rayleigh_damps_a_kinked_spring_as_it_is_at_rest():
     """At its kink by the smaller of two stiffnesses, which is said; slack not at all."""
     group: Table = {"bodies": ["a"], "mass_coefficient": 0.1, "stiffness_coefficient": 0.1}
     kinked = spring(law="bilinear-elastic", compression=3.0, extension=2.0, name="stop")
@@ -44,7 +42,7 @@ def test_rayleigh_damps_a_kinked_spring_as_it_is_at_rest() -> None:
     assert len(case_with(spring=[slack], rayleigh=[group]).scene.dashpots) == 1
 
 
-def test_a_body_in_two_rayleigh_groups() -> None:
+def test_a_body_in_two_rayleigh_groups():
     group: Table = {"bodies": ["a"], "mass_coefficient": 0.1}
     assert "found 'a' again" in problems(rayleigh=[group, group])
 
@@ -66,14 +64,14 @@ ISOLATED = [
         ({"ratio": "5 %", "period": "0.5 s"}, 0.05 * 0.5 / math.pi * 30.0),
     ],
 )
-def test_rayleigh_damping_of_springs(keys: Table, expected: float) -> None:
+def test_rayleigh_damping_of_springs(keys, expected):
     group: Table = {"springs": ["storey"], **keys}
     (found,) = case_with(spring=ISOLATED[:2], rayleigh=[group]).scene.dashpots
     assert found.between == ("a", "b")
     assert found.coefficient == pytest.approx(expected, rel=CLOSE)
 
 
-def test_a_ratio_of_springs_holds_at_a_mode_with_the_others_yielded() -> None:
+def test_a_ratio_of_springs_holds_at_a_mode_with_the_others_yielded():
     group: Table = {"springs": ["storey"], "ratio": "5 %", "mode": 2}
     scene = case_with(spring=ISOLATED[:2], rayleigh=[group]).scene
     assert modes_of(scene, ["a", "b"], yielded=True).damping[1] == pytest.approx(0.05, rel=1e-12)
@@ -96,13 +94,13 @@ def test_a_ratio_of_springs_holds_at_a_mode_with_the_others_yielded() -> None:
         ({"ratio": -0.05}, "ratio: found -0.05; accepted: a ratio that is not negative"),
     ],
 )
-def test_rayleigh_damping_of_springs_that_is_refused(keys: Table, said: str) -> None:
+def test_rayleigh_damping_of_springs_that_is_refused(keys, said):
     group: Table = {"springs": ["storey"], "ratio": 0.05, "mode": 2, **keys}
     (line,) = [x for x in problems(spring=ISOLATED, rayleigh=[group]).splitlines() if said in x]
     assert line.startswith("case.toml: [[rayleigh]] 1: ")
 
 
-def test_a_spring_in_two_rayleigh_groups() -> None:
+def test_a_spring_in_two_rayleigh_groups():
     named: Table = {"springs": ["storey"], "stiffness_coefficient": 0.1}
     both: Table = {"bodies": ["a", "b"], "mass_coefficient": 0.1}
     case_with(spring=ISOLATED[:2], rayleigh=[named, both])

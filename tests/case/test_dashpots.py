@@ -1,7 +1,5 @@
 """Dashpots by a ratio of critical damping."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -23,20 +21,20 @@ from tests.case.test_springs import CLOSE, Table, case_with, problems, spring
         ("0.5 s", 2 * 0.05 * 2.0 * 4.0 * math.pi),
     ],
 )
-def test_damping_ratio(refers_to: object, expected: float) -> None:
+def test_damping_ratio(refers_to, expected):
     dashpot: Table = {"between": ["a", "ground"], "ratio": "5 %", "refers_to": refers_to}
     (found,) = case_with(spring=[HYSTERETIC], dashpot=[dashpot]).scene.dashpots
     assert found.coefficient == pytest.approx(expected, rel=CLOSE)
 
 
-def test_ratio_of_springs_in_parallel() -> None:
+def test_ratio_of_springs_in_parallel():
     linear = [spring(law="linear", stiffness=k) for k in (10.0, 8.0)]
     dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5}
     (found,) = case_with(spring=linear, dashpot=[dashpot]).scene.dashpots
     assert found == Dashpot(("ground", "a"), 6.0)
 
 
-def test_ratio_beside_a_kinked_spring_is_of_its_stiffness_at_rest() -> None:
+def test_ratio_beside_a_kinked_spring_is_of_its_stiffness_at_rest():
     kinked = spring(law="bilinear-elastic", compression=0.0, extension=8.0, name="cable")
     dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5}
     # 2 xi sqrt(k m), m = 2.
@@ -46,6 +44,6 @@ def test_ratio_beside_a_kinked_spring_is_of_its_stiffness_at_rest() -> None:
     assert "coefficient; spring 'cable' does not resist at rest, refer to a frequency" in said
 
 
-def test_hertz_is_refused_for_what_a_ratio_refers_to() -> None:
+def test_hertz_is_refused_for_what_a_ratio_refers_to():
     dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5, "refers_to": "1 Hz"}
     assert "refers_to: found '1 Hz'" in problems(spring=[HYSTERETIC], dashpot=[dashpot])

@@ -1,7 +1,5 @@
 """Contact elements as laws of a case: what is read, shown and refused."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -57,14 +55,14 @@ def problems(**keys: object) -> str:
     ],
     ids=lambda value: str(value.get("law")) if isinstance(value, dict) else "",
 )
-def test_read_and_understood(keys: Table, contact: Contact) -> None:
+def test_read_and_understood(keys, contact):
     case = case_with(**keys)
     assert case.scene.contacts == (contact,)
     again = read_case(case.understood, Path("case.toml"))
     assert again.scene.contacts == case.scene.contacts
 
 
-def test_constants_are_shown() -> None:
+def test_constants_are_shown():
     (row,) = inputs_of(case_with(law="kelvin-voigt", stiffness=1e4, restitution=0.5))["contacts"]
     ratio = math.log(2.0) / math.hypot(math.pi, math.log(2.0))
     assert row["effective_mass"] == pytest.approx(1.2)
@@ -107,7 +105,7 @@ def test_constants_are_shown() -> None:
         ({"law": "newton"}, ("restitution: missing",)),
     ],
 )
-def test_refused(keys: Table, fragments: tuple[str, ...]) -> None:
+def test_refused(keys, fragments):
     said = problems(**keys)
     assert said.startswith("case.toml: [[contact]] 1: ")
     assert "\n" not in said
@@ -115,14 +113,14 @@ def test_refused(keys: Table, fragments: tuple[str, ...]) -> None:
         assert fragment in said
 
 
-def test_a_contact_with_a_law_may_be_pressed_shut_at_the_start() -> None:
+def test_a_contact_with_a_law_may_be_pressed_shut_at_the_start():
     scene = case_with(law="linear", stiffness=1.0, gap=-0.01).scene
     check_scene(scene)
     with pytest.raises(InputError, match="not penetrated"):
         check_scene(replace(scene, contacts=(replace(scene.contacts[0], restitution=1, law=None),)))
 
 
-def test_numbers_by_their_keys() -> None:
+def test_numbers_by_their_keys():
     scene = case_with(law="kelvin-voigt", stiffness=1e4, restitution=0.5).scene
     places = number_places(scene)
     place = places["contact.a-b.stiffness"]
@@ -132,7 +130,7 @@ def test_numbers_by_their_keys() -> None:
     assert "contact.a-b.stiffness" not in number_places(case_with(restitution=0.5).scene)
 
 
-def test_solvers_without_a_law_refuse_it() -> None:
+def test_solvers_without_a_law_refuse_it():
     case = case_with(law="hertz", stiffness=1e4)
     with pytest.raises(
         InputError, match=r"moreau does not know the laws of contacts 'a-b' \(hertz"
@@ -141,7 +139,7 @@ def test_solvers_without_a_law_refuse_it() -> None:
     check_solver(replace(case.solver, name="moreau"), replace(case.scene, contacts=()))
 
 
-def test_a_scene_built_in_python_is_checked() -> None:
+def test_a_scene_built_in_python_is_checked():
     bodies = case_with(restitution=0.5).scene.bodies
     contact = Contact("wall", "a", BARRIER, 0.1, 0.5, ContactLaw("herz", 1.0))
     with pytest.raises(InputError, match="contact 1 \\(wall\\): law: found 'herz'"):

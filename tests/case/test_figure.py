@@ -1,14 +1,10 @@
 """What a figure of a case asks for."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 from eventpound import load_case
 from eventpound.case.figure import FigureKind
 
 
-def test_contours_need_no_bodies(tmp_path: Path) -> None:
+def test_contours_need_no_bodies(tmp_path):
     (tmp_path / "case.toml").write_text(
         '[excitation]\nkind = "record"\nsynthetic = { count = 2 }\n'
         '[figure]\nkind = "similarity-contours"\ncontours = [0.1, 1]\n'

@@ -1,8 +1,5 @@
 """Frames read from files in every form, and joints of buildings from their heights."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +42,7 @@ def files(folder: Path) -> None:
     (folder / "C.csv").write_text(lines(C))
 
 
-def test_a_case_has_the_frame_that_python_makes(tmp_path: Path) -> None:
+def test_a_case_has_the_frame_that_python_makes(tmp_path):
     files(tmp_path)
     case = case_of(tmp_path, FRAME + 'damping = "C.csv"\n')
     parts = frame("T", K, M, C)
@@ -56,7 +53,7 @@ def test_a_case_has_the_frame_that_python_makes(tmp_path: Path) -> None:
     assert (again.scene.springs, again.scene.dashpots) == (parts.springs, parts.dashpots)
 
 
-def test_units_and_names_are_those_of_the_case(tmp_path: Path) -> None:
+def test_units_and_names_are_those_of_the_case(tmp_path):
     # The masses stand in another order than the rows; numbers without a unit are in the units.
     rows = "".join(f"{n},{lines(row)}" for n, row in zip("abc", K / 1e3, strict=True))
     (tmp_path / "K.csv").write_text(f"-,a,b,c\n{rows}")
@@ -78,7 +75,7 @@ def test_units_and_names_are_those_of_the_case(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("how", ["rayleigh", "modal"])
-def test_a_ratio_is_that_of_its_modes(how: str, tmp_path: Path) -> None:
+def test_a_ratio_is_that_of_its_modes(how, tmp_path):
     files(tmp_path)
     scene = case_of(tmp_path, FRAME + f'ratio = 0.04\ndamping = "{how}"\n').scene
     names = ["T1", "T2", "T3"]
@@ -116,7 +113,7 @@ ratio = "3 %"
 """
 
 
-def test_a_building_stands_on_a_slab(tmp_path: Path) -> None:
+def test_a_building_stands_on_a_slab(tmp_path):
     scene = case_of(tmp_path, SLAB).scene
     assert [(s.name, s.between) for s in scene.springs] == [
         ("bearing", ("ground", "slab")),
@@ -156,7 +153,7 @@ def contact(name: str, left: Any, right: Any) -> Contact:
     return Contact(name, left, right, 0.02, 0.5)
 
 
-def test_contacts_of_two_buildings_follow_from_their_heights(tmp_path: Path) -> None:
+def test_contacts_of_two_buildings_follow_from_their_heights(tmp_path):
     # A has floors at 3, 6 and 9 m, B at 4 and 6: the third of A is above B.
     at_3, at_4 = {"ground": 0.25, "B1": 0.75}, {"A1": 1.0 - 1.0 / 3.0, "A2": 1.0 / 3.0}
     assert case_of(tmp_path, BUILDINGS + JOINT).scene.contacts == (
@@ -172,7 +169,7 @@ def test_contacts_of_two_buildings_follow_from_their_heights(tmp_path: Path) -> 
     assert roof.scene.contacts == (contact("A1+A2-B2", Point(at_4), "B2"),)
 
 
-def test_a_frame_with_levels_is_a_building(tmp_path: Path) -> None:
+def test_a_frame_with_levels_is_a_building(tmp_path):
     files(tmp_path)
     text = BUILDINGS + FRAME + "levels = [4, 8, 12]\n" + JOINT.replace('["A", "B"]', '["T", "B"]')
     assert case_of(tmp_path, text).scene.contacts == (
@@ -205,12 +202,7 @@ def test_a_frame_with_levels_is_a_building(tmp_path: Path) -> None:
     ],
     ids=range(15),
 )
-def test_what_is_wrong_is_told(
-    change: Callable[[str], str],
-    said: str,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_what_is_wrong_is_told(change, said, tmp_path, capsys):
     files(tmp_path)
     (tmp_path / "case.toml").write_text(PULSE + change(FRAME))
     assert main(["check", str(tmp_path)]) == 2
@@ -218,9 +210,7 @@ def test_what_is_wrong_is_told(
     assert not (tmp_path / "results").exists()
 
 
-def test_a_table_of_inputs_has_the_frame_in_a_row(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_table_of_inputs_has_the_frame_in_a_row(tmp_path, capsys):
     files(tmp_path)
     case_of(tmp_path, FRAME)
     assert main(["check", str(tmp_path)]) == 0
@@ -230,7 +220,7 @@ def test_a_table_of_inputs_has_the_frame_in_a_row(
     assert "T1 and damping: frame T\n" in out
 
 
-def test_springs_are_linear_and_marked(tmp_path: Path) -> None:
+def test_springs_are_linear_and_marked(tmp_path):
     files(tmp_path)
     scene = case_of(tmp_path, FRAME).scene
     assert all(isinstance(spring.law, Linear) and spring.frame == "T" for spring in scene.springs)

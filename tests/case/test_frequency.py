@@ -1,7 +1,5 @@
 """Frequencies, periods and the masses that they are of."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -9,11 +7,11 @@ import pytest
 from eventpound.scene import (
     Linear,
 )
-from tests.case.test_springs import CLOSE, Table, case_with, problems, spring
+from tests.case.test_springs import CLOSE, case_with, problems, spring
 
 
 @pytest.mark.parametrize("mass", [5.0, "5 kg", ["a", "b"]])
-def test_mass_of_a_period_that_is_not_the_body_s(mass: object) -> None:
+def test_mass_of_a_period_that_is_not_the_body_s(mass):
     tables = [
         {**spring(law="linear", period="2 s", of_mass=mass), "between": ends}
         for ends in (["ground", "a"], ["a", "b"])
@@ -40,5 +38,5 @@ def test_mass_of_a_period_that_is_not_the_body_s(mass: object) -> None:
         ({"initial_period": 1}, "initial_period: unknown key"),
     ],
 )
-def test_wrong_frequencies_and_masses(keys: Table, said: str) -> None:
+def test_wrong_frequencies_and_masses(keys, said):
     assert said in problems(spring=[spring(law="linear", **keys)])

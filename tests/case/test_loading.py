@@ -1,10 +1,7 @@
 """Defaults, options, the round trip of what was understood, and the case that `new` writes."""
 
-from __future__ import annotations
-
 import hashlib
 import time
-from pathlib import Path
 
 import pytest
 
@@ -81,7 +78,7 @@ theta = 0.5
 """
 
 
-def test_full_case(tmp_path: Path) -> None:
+def test_full_case(tmp_path):
     (tmp_path / "case.toml").write_text(FULL)
     case = load_case(tmp_path)
     assert case.title == tmp_path.name
@@ -109,7 +106,7 @@ def test_full_case(tmp_path: Path) -> None:
     assert "body 'b': a dashpot joins it to the ground past the springs that yield" in damping
 
 
-def test_defaults(tmp_path: Path) -> None:
+def test_defaults(tmp_path):
     document = {
         "title": "plain",
         "excitation": {"kind": "sine", "amplitude": 1, "period": 1},
@@ -128,7 +125,7 @@ def test_defaults(tmp_path: Path) -> None:
     assert case.warnings == ()
 
 
-def test_template_runs(tmp_path: Path) -> None:
+def test_template_runs(tmp_path):
     case = load_case(write_template(tmp_path / "new" / "case").parent)
     (spring,) = case.scene.springs
     assert isinstance(spring.law, BoucWen)
@@ -140,7 +137,7 @@ def test_template_runs(tmp_path: Path) -> None:
     assert sorted(path.name for path in (tmp_path / "new" / "case").iterdir()) == ["case.toml"]
 
 
-def test_a_byte_order_mark_is_passed_over(tmp_path: Path) -> None:
+def test_a_byte_order_mark_is_passed_over(tmp_path):
     file = write_template(tmp_path)
     plain = load_case(tmp_path)
     file.write_bytes(b"\xef\xbb\xbf" + file.read_bytes())
@@ -153,9 +150,7 @@ def test_a_byte_order_mark_is_passed_over(tmp_path: Path) -> None:
     ids=["a key", "a table", "an inline table", "a key of a list"],
 )
 @pytest.mark.parametrize("part", ["a", '"a b"', "'a.b'", "a "])
-def test_a_key_of_thousands_of_parts_is_refused_at_once(
-    tmp_path: Path, line: str, part: str
-) -> None:
+def test_a_key_of_thousands_of_parts_is_refused_at_once(tmp_path, line, part):
     text = "title = 'x'\n" + line.format(".".join([part] * 50_000))
     (tmp_path / "case.toml").write_text(text)
     began = time.monotonic()
@@ -165,7 +160,7 @@ def test_a_key_of_thousands_of_parts_is_refused_at_once(
     assert time.monotonic() - began < 5.0
 
 
-def test_words_with_many_dots_are_no_keys(tmp_path: Path) -> None:
+def test_words_with_many_dots_are_no_keys(tmp_path):
     file = write_template(tmp_path)
     dots = "\n# " + "." * 200 + " . " * 200 + "1.2.3. and so on" * 100
     file.write_text(file.read_text() + dots)

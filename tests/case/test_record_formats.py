@@ -1,9 +1,6 @@
 """A case with a record in every format, from its file to its results."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -29,7 +26,7 @@ name = "fast"
 
 
 @pytest.mark.parametrize("name", WRITERS)
-def test_run_of_a_case_with_every_format(name: str, tmp_path: Path) -> None:
+def test_run_of_a_case_with_every_format(name, tmp_path):
     written = WRITERS[name](motion(SIZE, STEP), STEP)
     keys = [f'units = "{written.units}"'] if written.units else []
     keys += [f"time_step = {written.time_step}"] if written.time_step else []

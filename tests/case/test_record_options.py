@@ -1,7 +1,5 @@
 """Processing of a record in a case: what is done, what is recorded, what is refused."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -27,7 +25,7 @@ def write_case(directory: Path, processing: str) -> Path:
     return directory
 
 
-def test_samples_are_processed_then_scaled_and_the_manifest_says_so(tmp_path: Path) -> None:
+def test_samples_are_processed_then_scaled_and_the_manifest_says_so(tmp_path):
     keys = '{ baseline = 1, highpass = "0.2 Hz", lowpass = 20 }'
     write_case(tmp_path, f"processing = {keys}")
     assert main(["run", str(tmp_path), "--no-figures"]) == 0
@@ -46,7 +44,7 @@ def test_samples_are_processed_then_scaled_and_the_manifest_says_so(tmp_path: Pa
     assert any("processed: baseline of degree 1" in warning for warning in again.warnings)
 
 
-def test_without_it_nothing_is_done_and_nothing_is_said(tmp_path: Path) -> None:
+def test_without_it_nothing_is_done_and_nothing_is_said(tmp_path):
     write_case(tmp_path, "")
     assert main(["run", str(tmp_path), "--no-figures"]) == 0
     manifest = json.loads((tmp_path / "results" / "manifest.json").read_text())
@@ -67,7 +65,7 @@ def test_without_it_nothing_is_done_and_nothing_is_said(tmp_path: Path) -> None:
         ("4", r"processing: found 4; accepted: a table"),
     ],
 )
-def test_refusals(tmp_path: Path, keys: str, message: str) -> None:
+def test_refusals(tmp_path, keys, message):
     from eventpound.case import load_case
 
     with pytest.raises(InputError, match=message):

@@ -1,7 +1,5 @@
 """Which solver computes what names none: one rule for every way to run."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -63,9 +61,7 @@ def written(folder: Path, text: str) -> Path:
     ("text", "many"),
     [(CASE, "fast"), (SOIL, "fast"), (AT_POINT, "fast"), (WITH_LAW, "cvode"), (SLIDER, "fast")],
 )
-def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
-    tmp_path: Path, text: str, many: str
-) -> None:
+def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(tmp_path, text, many):
     case = load_case(written(tmp_path, text))
     assert case.solver.name == "cvode"
     assert (many == FAST) == knows_scene(solver_named(FAST), case.scene)
@@ -82,9 +78,7 @@ def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
     [(AT_POINT, "fast"), (WITH_LAW, "cvode"), (SLIDER, "fast")],
     ids=["at a point", "with a law", "with a slider"],
 )
-def test_what_no_compiled_call_takes_at_once_runs_where_no_solver_is_named(
-    tmp_path: Path, text: str, solver: str
-) -> None:
+def test_what_no_compiled_call_takes_at_once_runs_where_no_solver_is_named(tmp_path, text, solver):
     """Rows of a suite, of a study and of `simulate_many` are those of single runs."""
     case = load_case(written(tmp_path, text))
     names = ["impacts", "peaks.floor.abs_max"]
@@ -121,8 +115,8 @@ def with_gap(case: Case, gap: float) -> Case:
     ids=["at a point", "with a law, fast", "with a law, ida"],
 )
 def test_a_named_solver_that_does_not_take_the_scene_is_refused_before_anything_runs(
-    tmp_path: Path, text: str, solver: str, said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+    tmp_path, text, solver, said, capsys
+):
     case = load_case(written(tmp_path, text))
     with pytest.raises(InputError, match=f"{solver} {said}"):
         simulate(case, solver)
@@ -136,7 +130,7 @@ def test_a_named_solver_that_does_not_take_the_scene_is_refused_before_anything_
     assert not (tmp_path / "results").exists()
 
 
-def test_a_part_of_a_study_cannot_name_a_solver_of_its_own(tmp_path: Path) -> None:
+def test_a_part_of_a_study_cannot_name_a_solver_of_its_own(tmp_path):
     part = '[[study.part]]\nname = "a"\nsolver = { name = "ida" }\n'
     with pytest.raises(InputError, match=r"solver: found .*'ida'.*those of .solver. in all parts"):
         load_study(written(tmp_path, f"{CASE}{STUDY}values = [0.01]\n{part}"))

@@ -1,7 +1,5 @@
 """Every way of giving a spring, a frequency and a damping ratio, against values by hand."""
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib
@@ -66,7 +64,7 @@ def problems(**tables: list[Table]) -> str:
     ],
     ids=", ".join,
 )
-def test_bouc_wen(keys: Table) -> None:
+def test_bouc_wen(keys):
     (s,) = case_with(spring=[spring(law="bouc-wen", **keys)]).scene.springs
     assert isinstance(s.law, BoucWen)
     # 1 - alpha and the like lose at most a factor 1/alpha = 20 of the last digit.
@@ -76,20 +74,20 @@ def test_bouc_wen(keys: Table) -> None:
     assert (s.law.exponent, s.law.beta, s.law.gamma, s.law.initial_z) == (20.0, 0.5, 0.5, 0.0)
 
 
-def test_shape_of_the_loop() -> None:
+def test_shape_of_the_loop():
     keys: Table = {"stiffness": 0, "strength": 1, "yield_displacement": 1}
     shape: Table = {"exponent": 2, "beta": 0.1, "gamma": 0.9, "initial_z": -0.5}
     (s,) = case_with(spring=[spring(law="bouc-wen", **keys, **shape)]).scene.springs
     assert s.law == BoucWen(0.0, 1.0, 1.0, 2.0, 0.1, 0.9, -0.5)
 
 
-def test_frequency_zero_is_a_plastic_spring() -> None:
+def test_frequency_zero_is_a_plastic_spring():
     keys: Table = {"frequency": 0, "strength": 1, "yield_displacement": 1}
     (s,) = case_with(spring=[spring(law="bouc-wen", **keys)]).scene.springs
     assert s.law == BoucWen(0.0, 1.0, 1.0)
 
 
-def test_kinked_laws() -> None:
+def test_kinked_laws():
     bilinear: Table = {"law": "bilinear-elastic", "compression": "2 kN/m", "extension": 0}
     parts = [{"law": "linear", "stiffness": 4.0}, {**bilinear, "offset": "1 cm"}]
     tables = [spring(**bilinear), spring(law="series", parts=parts)]
@@ -98,7 +96,7 @@ def test_kinked_laws() -> None:
     assert second.law == Series((Linear(4.0), BilinearElastic(2000.0, 0.0, 0.01)))
 
 
-def test_backfill() -> None:
+def test_backfill():
     soil: Table = {"law": "backfill", "initial_stiffness": "200 MN/m", "ultimate_force": "3 MN"}
     (read,) = case_with(spring=[spring(**soil, failure_ratio=0.7, gap="5 cm")]).scene.springs
     assert read.law == Backfill(2e8, 3e6, 0.7, 0.05)
@@ -107,7 +105,7 @@ def test_backfill() -> None:
     assert "[[spring]] 1: gap: found -1.0; accepted: a length >= 0 (m)" in said
 
 
-def test_soil_behind_a_wall_is_that_of_caltrans_sdc() -> None:
+def test_soil_behind_a_wall_is_that_of_caltrans_sdc():
     wall: Table = {"law": "backfill", "wall_height": "1.6764 m", "wall_width": "3 m"}
     (read,) = case_with(spring=[spring(**wall, gap="5 cm")]).scene.springs
     law = read.law
@@ -124,7 +122,7 @@ def test_soil_behind_a_wall_is_that_of_caltrans_sdc() -> None:
     assert stiffness / 3.0 == pytest.approx(28.7e6, rel=0.02)
 
 
-def test_size_of_a_wall_that_is_not_a_size_is_told_by_its_key() -> None:
+def test_size_of_a_wall_that_is_not_a_size_is_told_by_its_key():
     wall: Table = {"law": "backfill", "wall_height": 5.0, "wall_width": 0.0}
     said = problems(spring=[spring(**wall)])
     heights = "accepted: from 0.6096 to 3.048 m (Caltrans SDC 2.0)"
@@ -137,7 +135,7 @@ def test_size_of_a_wall_that_is_not_a_size_is_told_by_its_key() -> None:
     assert said.count("\n") == 1
 
 
-def test_slider() -> None:
+def test_slider():
     bearing: Table = {"law": "slider", "friction": 0.05, "normal_force": "2 MN"}
     tables = [spring(**bearing), spring(**bearing, radius="4 m"), spring(**bearing, stiffness=3.0)]
     laws = [read.law for read in case_with(spring=tables).scene.springs]
@@ -154,7 +152,7 @@ def test_slider() -> None:
     assert "[[spring]] 1: normal_force: found -1.0; accepted: a positive force (N)" in said
 
 
-def test_degrading_bouc_wen() -> None:
+def test_degrading_bouc_wen():
     law: Table = {"law": "degrading-bouc-wen", "stiffness": 0.0, "strength": "2 MN", "gamma": 0.6,
                   "yield_displacement": "1 cm", "strength_degradation": 0.1}  # fmt: skip
     (read,) = case_with(spring=[spring(**law, initial_loss="3")]).scene.springs
@@ -166,7 +164,7 @@ def test_degrading_bouc_wen() -> None:
     assert "[[spring]] 1: beta: found 0.7; accepted: |beta| <= gamma of a law that degrades" in said
 
 
-def test_names_by_default_are_those_of_the_ends() -> None:
+def test_names_by_default_are_those_of_the_ends():
     tables = [spring(law="linear", stiffness=1) for _ in range(3)]
     tables[1]["name"] = "ground-a-2"
     names = [s.name for s in case_with(spring=tables).scene.springs]
@@ -181,7 +179,7 @@ def test_names_by_default_are_those_of_the_ends() -> None:
     [(CASES / "isolated-building" / "case.toml").read_text(), template("isolated")],
     ids=["case", "template"],
 )
-def test_what_is_shipped_on_isolators_damps_its_storeys_only(text: str) -> None:
+def test_what_is_shipped_on_isolators_damps_its_storeys_only(text):
     pulse = {"kind": "cosine", "amplitude": 4.0, "period": 1.0}
     case = read_case({**tomllib.loads(text), "excitation": pulse}, Path("case.toml"))
     assert not any("isolated mode" in warning for warning in case.warnings)
@@ -194,7 +192,7 @@ def test_what_is_shipped_on_isolators_damps_its_storeys_only(text: str) -> None:
 
 
 @pytest.mark.parametrize("law", ["bilinear", "elastoplastic", "Elasto-plastic", "elastic_plastic"])
-def test_what_others_call_a_yielding_spring_is_answered_by_bouc_wen(law: str) -> None:
+def test_what_others_call_a_yielding_spring_is_answered_by_bouc_wen(law):
     found = problems(spring=[spring(law=law, stiffness=5.0)])
     assert "'bouc-wen' with exponent = 20" in found
     assert "did you mean" not in found
@@ -220,18 +218,18 @@ def test_what_others_call_a_yielding_spring_is_answered_by_bouc_wen(law: str) ->
         ("hyperbolic", "'backfill'"),
     ],
 )
-def test_laws_by_the_names_of_the_trade_are_answered_with_ours(law: str, ours: str) -> None:
+def test_laws_by_the_names_of_the_trade_are_answered_with_ours(law, ours):
     found = problems(spring=[spring(law=law, stiffness=5.0)])
     assert re.search(f"found '{law}', .*{ours}.*; accepted: one of linear", found)
 
 
-def test_a_part_of_a_series_by_the_name_of_the_trade() -> None:
+def test_a_part_of_a_series_by_the_name_of_the_trade():
     for law, answer in (("cable", "'bilinear-elastic'"), ("coulomb", "no part of a series yields")):
         parts = [{"law": law, "stiffness": 5.0}]
         assert answer in problems(spring=[spring(law="series", parts=parts)])
 
 
-def test_the_answer_to_gap_is_a_stop_at_the_gap() -> None:
+def test_the_answer_to_gap_is_a_stop_at_the_gap():
     """Elongated by -gap it begins to push, and never pulls: what the answer promises."""
     stop = spring(law="bilinear-elastic", extension=0, compression=7.0, offset="-2 cm")
     (read,) = case_with(spring=[stop]).scene.springs

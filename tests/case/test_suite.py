@@ -1,7 +1,5 @@
 """What a case says of a suite: which records, how they are read, and what is understood."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -27,7 +25,7 @@ HUMP = "\n".join(str(x) for x in (0.0, 0.2, 0.3, 0.1, -0.2, -0.3, 0.0, 0.1, 0.0)
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def folder(tmp_path):
     for name in ("b.txt", "a.txt", "deeper/c.txt"):
         file = tmp_path / "records" / name
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -40,7 +38,7 @@ def write(folder: Path, excitation: str) -> Path:
     return folder
 
 
-def test_pattern(folder: Path) -> None:
+def test_pattern(folder):
     text = 'suite = "records/**/*.txt"\nunits = "g"\ntime_step = 0.1\nscale = 2\nreverse = true'
     case = load_case(write(folder, text))
     assert case.suite is not None
@@ -58,7 +56,7 @@ def test_pattern(folder: Path) -> None:
     assert one.run.output_step == 0.1
 
 
-def test_what_was_understood_is_a_case_again(folder: Path) -> None:
+def test_what_was_understood_is_a_case_again(folder):
     text = 'suite = "records/*"\nunits = "g"\ntime_step = "0.1 s"\npga = "0.4 g"'
     first = load_case(write(folder, text))
     again = read_case(first.understood, folder / "case.toml")
@@ -71,7 +69,7 @@ def test_what_was_understood_is_a_case_again(folder: Path) -> None:
     assert again.suite.synthetic == synthetic.suite.synthetic
 
 
-def test_a_member_is_a_case_again(folder: Path) -> None:
+def test_a_member_is_a_case_again(folder):
     case = load_case(write(folder, 'suite = "records/*"\nunits = "g"\ntime_step = "0.1 s"'))
     assert case.suite is not None
     member = case.suite.members(case.directory)[0]
@@ -81,7 +79,7 @@ def test_a_member_is_a_case_again(folder: Path) -> None:
     assert simulate(again).peaks.equals(simulate(one).peaks)
 
 
-def test_list_with_units_and_time_steps(folder: Path) -> None:
+def test_list_with_units_and_time_steps(folder):
     lines = ["file,units,dt_s,remark", "records/b.txt,g,0.1,x", "records/a.txt,cm/s2,0.2,y"]
     lines += ["records/b.txt,g,fast,z", "records/b.txt,g,0.1,", "gone.txt,g,0.1,"]
     (folder / "list.csv").write_text("\n".join(lines))
@@ -98,7 +96,7 @@ def test_list_with_units_and_time_steps(folder: Path) -> None:
         members[4].read()
 
 
-def test_other_records_for_a_case(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_records_for_a_case(folder, monkeypatch):
     write(folder, "synthetic = { count = 2 }\nunits = 'g'\ntime_step = 0.1")
     monkeypatch.chdir(folder / "records")
     case = load_case(folder, "a*")
@@ -106,7 +104,7 @@ def test_other_records_for_a_case(folder: Path, monkeypatch: pytest.MonkeyPatch)
     assert [m.name for m in case.suite.members(case.directory)] == ["a.txt"]
 
 
-def test_synthetic_motions_are_those_of_the_files(folder: Path) -> None:
+def test_synthetic_motions_are_those_of_the_files(folder):
     case = load_case(write(folder, "synthetic = { seed = 2, first = 4, count = 1 }"))
     assert case.suite is not None
     (member,) = case.suite.members(case.directory)
@@ -114,13 +112,13 @@ def test_synthetic_motions_are_those_of_the_files(folder: Path) -> None:
     assert (member.read().acceleration == synthetic_motion(2, 4).record.acceleration).all()
 
 
-def test_simulate_takes_no_suite(folder: Path) -> None:
+def test_simulate_takes_no_suite(folder):
     case = load_case(write(folder, "synthetic = {}"))
     with pytest.raises(InputError, match="the case holds a suite of records"):
         simulate(case)
 
 
-def test_wrong_lengths_are_named(tmp_path: Path) -> None:
+def test_wrong_lengths_are_named(tmp_path):
     (tmp_path / "case.toml").write_text(
         '[excitation]\nkind = "record"\nsynthetic = { count = 2 }\n'
         '[figure]\nkind = "similarity-contours"\ncontours = [1, 0.1]\n'
@@ -132,7 +130,7 @@ def test_wrong_lengths_are_named(tmp_path: Path) -> None:
     assert any("contours: found [1, 0.1]" in line for line in caught.value.problems)
 
 
-def test_component_of_a_list_is_for_files_that_hold_several(folder: Path) -> None:
+def test_component_of_a_list_is_for_files_that_hold_several(folder):
     rows = "\n".join(f"{0.1 * i:.1f} {a} {b}" for i, (a, b) in enumerate([(0, 0), (1, 3), (0, 0)]))
     (folder / "records" / "two.txt").write_text(rows)
     lines = ["file,units,dt_s,component", "records/two.txt,m/s2,,#2", "records/a.txt,g,0.1,N"]

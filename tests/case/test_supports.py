@@ -1,7 +1,5 @@
 """Supports and forces in a case: read, understood again, and refused in one message."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -34,7 +32,7 @@ def problems(directory: Path = Path(), **tables: object) -> tuple[str, ...]:
     return tuple(caught.value.problems)
 
 
-def test_a_support_is_an_end() -> None:
+def test_a_support_is_an_end():
     case = case_with(
         spring=[{"between": ["pier", "a"], "law": "linear", "period": 2.0}],
         dashpot=[{"between": ["a", "pier"], "ratio": "5 %"}],
@@ -54,7 +52,7 @@ def test_a_support_is_an_end() -> None:
     assert again.scene == case.scene
 
 
-def test_rayleigh_damping_from_a_support() -> None:
+def test_rayleigh_damping_from_a_support():
     case = case_with(
         spring=[{"between": ["pier", "a"], "law": "linear", "stiffness": 8.0}],
         rayleigh=[
@@ -67,7 +65,7 @@ def test_rayleigh_damping_from_a_support() -> None:
     assert (stiffness.between, stiffness.coefficient) == (("pier", "a"), 0.1 * 8.0)
 
 
-def test_a_motion_of_its_own() -> None:
+def test_a_motion_of_its_own():
     own = {"kind": "cosine", "amplitude": "0.2 g", "period": 0.5, "start": 0.1}
     case = case_with(support=[{"name": "pier", "excitation": own}])
     (pier,) = case.scene.supports
@@ -77,7 +75,7 @@ def test_a_motion_of_its_own() -> None:
     assert read_case(case.understood, Path("case.toml")).scene == case.scene
 
 
-def test_forces(tmp_path: Path) -> None:
+def test_forces(tmp_path):
     (tmp_path / "push.csv").write_text("t, p\n0.5, 1.0\n0.6, 3.0\n0.7, -2.0\n")
     case = case_with(
         tmp_path,
@@ -112,7 +110,7 @@ def test_forces(tmp_path: Path) -> None:
         ("0,1\n1,inf\n", "finite"),
     ],
 )
-def test_files_of_forces_that_are_none(tmp_path: Path, text: str, holds: str) -> None:
+def test_files_of_forces_that_are_none(tmp_path, text, holds):
     (tmp_path / "p.csv").write_text(text)
     with pytest.raises(InputError, match=holds):
         read_force(tmp_path / "p.csv")
@@ -165,14 +163,14 @@ BROKEN: list[tuple[str, Table, tuple[str, ...]]] = [
 
 
 @pytest.mark.parametrize(("tables", "holds"), [x[1:] for x in BROKEN], ids=[x[0] for x in BROKEN])
-def test_one_message(tables: Table, holds: tuple[str, ...]) -> None:
+def test_one_message(tables, holds):
     (problem,) = problems(**tables)
     for part in holds:
         assert part in problem
 
 
 @pytest.mark.parametrize("delay", [math.nan, -1.0])
-def test_a_delay_that_is_none_is_the_only_problem(delay: float) -> None:
+def test_a_delay_that_is_none_is_the_only_problem(delay):
     """The gap beside it is not judged by where the support would stand."""
     record = Record(np.array([0.0, 1.0, 0.0]), 0.1)
     contacts = (Contact("joint", "pier", "a", 0.0, 0.5),)
@@ -188,7 +186,7 @@ def test_a_delay_that_is_none_is_the_only_problem(delay: float) -> None:
     assert len(refused.value.problems) == 1
 
 
-def test_warnings() -> None:
+def test_warnings():
     drifting = Record(np.full(11, 1.0), 0.1)
     case = case_with(
         support=[
@@ -208,7 +206,7 @@ def test_warnings() -> None:
     assert drifting.velocity(np.array(1.0)) == pytest.approx(1.0)
 
 
-def test_check_shows_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_shows_them(tmp_path, capsys):
     (tmp_path / "case.toml").write_text(
         '[excitation]\nkind = "sine"\namplitude = 1.0\nperiod = 1.0\n'
         '[[body]]\nname = "a"\nmass = 2.0\n'
@@ -224,7 +222,7 @@ def test_check_shows_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "19.62" in out
 
 
-def test_titles_of_forces_say_their_units(tmp_path: Path) -> None:
+def test_titles_of_forces_say_their_units(tmp_path):
     rows = "".join(f"{1000.0 * i / 512.0:.1f}\t{i % 7}\n" for i in range(100))
     (tmp_path / "p.txt").write_text("t [ms]\tF [kN]\n" + rows)
     start, step, force = read_force(tmp_path / "p.txt")
@@ -238,7 +236,7 @@ def test_titles_of_forces_say_their_units(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "title", ["t [s],Fx (kN)", "t,wind_kN", "Zeit,Kraft [kN]", "# force in kN", "# units: kN"]
 )
-def test_forces_of_any_name_have_their_unit(tmp_path: Path, title: str) -> None:
+def test_forces_of_any_name_have_their_unit(tmp_path, title):
     rows = "".join(f"{0.01 * i:.2f},{i % 7}\n" for i in range(100))
     (tmp_path / "p.txt").write_text(f"{title}\n{rows}")
     _, step, force = read_force(tmp_path / "p.txt")
@@ -255,7 +253,7 @@ def test_forces_of_any_name_have_their_unit(tmp_path: Path, title: str) -> None:
         ("PK\x03\x04", ",", "a zip archive .*; times and forces are needed"),
     ],
 )
-def test_forces_that_are_refused(tmp_path: Path, before: str, mark: str, message: str) -> None:
+def test_forces_that_are_refused(tmp_path, before, mark, message):
     rows = "".join(f"{0.01 * i:.2f}{mark}{i % 7}\n" for i in range(100))
     (tmp_path / "p.txt").write_text(before + rows)
     with pytest.raises(InputError, match=message):

@@ -1,7 +1,5 @@
 """Every broken case gets one clear message, exit code 2, no traceback, and nothing written."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -202,7 +200,7 @@ FILES = {
 
 
 @pytest.fixture
-def directory(tmp_path: Path) -> Path:
+def directory(tmp_path):
     for name, content in FILES.items():
         (tmp_path / name).write_text(content)
     return tmp_path
@@ -220,14 +218,7 @@ def refused(directory: Path, capsys: pytest.CaptureFixture[str], *arguments: str
 
 
 @pytest.mark.parametrize(("name", "old", "new", "fragments"), BROKEN, ids=[b[0] for b in BROKEN])
-def test_one_clear_message(
-    directory: Path,
-    capsys: pytest.CaptureFixture[str],
-    name: str,
-    old: str,
-    new: str,
-    fragments: tuple[str, ...],
-) -> None:
+def test_one_clear_message(directory, capsys, name, old, new, fragments):
     assert old in SOUND
     text = SOUND.replace(old, new, 1)
     (directory / "case.toml").write_text(text)
@@ -238,12 +229,12 @@ def test_one_clear_message(
         assert fragment in message
 
 
-def test_the_sound_case_is_sound(directory: Path) -> None:
+def test_the_sound_case_is_sound(directory):
     (directory / "case.toml").write_text(SOUND)
     assert len(load_case(directory).scene.bodies) == 2
 
 
-def test_all_problems_together(directory: Path) -> None:
+def test_all_problems_together(directory):
     text = SOUND.replace('"1301 t"', '"1301 m"').replace("strength", "strenght")
     text = text.replace("restitution = 0.7", "restitution = 2.0").replace('"0.4 g"', '"0.4 Hz"')
     (directory / "case.toml").write_text(text)
@@ -254,35 +245,35 @@ def test_all_problems_together(directory: Path) -> None:
         assert any(fragment in problem for problem in caught.value.problems)
 
 
-def test_no_case_file(directory: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_case_file(directory, capsys):
     message = refused(directory, capsys, "run", str(directory))
     assert "no case.toml" in message
     assert "eventpound new" in message
 
 
-def test_no_directory(directory: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_directory(directory, capsys):
     message = refused(directory, capsys, "run", str(directory / "nowhere"))
     assert "nowhere: no such file or directory" in message
 
 
-def test_not_text(directory: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_not_text(directory, capsys):
     (directory / "case.toml").write_bytes(b'title = "\xff\xfe"\n')
     assert "not UTF-8" in refused(directory, capsys, "check", str(directory))
 
 
-def test_nowhere_to_write(directory: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_nowhere_to_write(directory, capsys):
     (directory / "case.toml").write_text(SOUND)
     out = str(directory / "good.txt" / "results")
     message = refused(directory, capsys, "run", str(directory), "--out", out)
     assert "cannot be written to" in message
 
 
-def test_plot_without_results(directory: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_plot_without_results(directory, capsys):
     (directory / "case.toml").write_text(SOUND)
     assert "run the case first" in refused(directory, capsys, "plot", str(directory))
 
 
-def test_new_does_not_overwrite(directory: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_new_does_not_overwrite(directory, capsys):
     (directory / "case.toml").write_text(SOUND)
     assert "not overwritten" in refused(directory, capsys, "new", str(directory))
     assert (directory / "case.toml").read_text() == SOUND

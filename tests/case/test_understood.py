@@ -1,9 +1,6 @@
 """A case as it was understood, in a file that says the same."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 
 import pytest
 
@@ -11,7 +8,7 @@ from eventpound.case import load_case, read_case
 from tests.case.test_loading import FULL
 
 
-def test_understood_is_the_case_again(tmp_path: Path) -> None:
+def test_understood_is_the_case_again(tmp_path):
     (tmp_path / "case.toml").write_text(FULL)
     case = load_case(tmp_path / "case.toml")
     written = json.loads(json.dumps(case.understood, allow_nan=False))
@@ -22,7 +19,7 @@ def test_understood_is_the_case_again(tmp_path: Path) -> None:
     assert again.understood == case.understood == written
 
 
-def test_a_large_case_reports_ends_briefly(tmp_path: Path) -> None:
+def test_a_large_case_reports_ends_briefly(tmp_path):
     document = {
         "excitation": {"kind": "sine", "amplitude": 1, "period": 1},
         "body": [{"name": f"b{i}", "mass": 1} for i in range(100)],

@@ -1,7 +1,5 @@
 """Buildings written out, forces as parts of a weight, and cases to begin with."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +29,7 @@ def case_of(folder: Path, text: str):
     return load_case(folder)
 
 
-def test_a_building_is_its_bodies_and_springs(tmp_path: Path) -> None:
+def test_a_building_is_its_bodies_and_springs(tmp_path):
     scene = case_of(tmp_path, FRAME + 'height = [4, "3.2 m", 3.2]\n').scene
     assert scene.bodies == (Body("A1", 2e5), Body("A2", 1.8e5), Body("A3", 1e5))
     ends = [GROUND, "A1", "A2", "A3"]
@@ -42,7 +40,7 @@ def test_a_building_is_its_bodies_and_springs(tmp_path: Path) -> None:
     assert scene.dashpots == ()
 
 
-def test_a_part_of_the_weight_is_of_what_the_storey_carries(tmp_path: Path) -> None:
+def test_a_part_of_the_weight_is_of_what_the_storey_carries(tmp_path):
     scene = case_of(tmp_path, FRAME + 'yield_force = ["0.2 W", "0.3 W", "500 kN"]\n').scene
     expected = [0.2 * 480e3 * STANDARD_GRAVITY, 0.3 * 280e3 * STANDARD_GRAVITY, 5e5]
     for spring, force in zip(scene.springs, expected, strict=True):
@@ -52,7 +50,7 @@ def test_a_part_of_the_weight_is_of_what_the_storey_carries(tmp_path: Path) -> N
         assert spring.law.yield_displacement == pytest.approx(law.yield_displacement, rel=1e-14)
 
 
-def test_its_damping_is_the_ratio_at_two_modes(tmp_path: Path) -> None:
+def test_its_damping_is_the_ratio_at_two_modes(tmp_path):
     scene = case_of(tmp_path, FRAME + 'ratio = "4 %"\nmodes = [1, 3]\n').scene
     damping = modes_of(scene, ["A1", "A2", "A3"]).damping
     assert damping[[0, 2]] == pytest.approx(0.04, rel=1e-12)
@@ -63,7 +61,7 @@ def test_its_damping_is_the_ratio_at_two_modes(tmp_path: Path) -> None:
     assert modes_of(single, ["A1"]).damping == pytest.approx([0.05], rel=1e-12)
 
 
-def test_buildings_stand_beside_bodies_and_are_understood(tmp_path: Path) -> None:
+def test_buildings_stand_beside_bodies_and_are_understood(tmp_path):
     more = '[[body]]\nname = "wall"\nmass = 1e5\n[[contact]]\nbetween = ["A3", "wall"]\n'
     case = case_of(tmp_path, FRAME + more + "gap = 0.1\nrestitution = 0.5\n")
     assert [body.name for body in case.scene.bodies] == ["wall", "A1", "A2", "A3"]
@@ -83,9 +81,7 @@ def test_buildings_stand_beside_bodies_and_are_understood(tmp_path: Path) -> Non
         ("storeys = 3", "storeys = 3\nstorey = 2", "storey: unknown key, did you mean 'storeys'?"),
     ],
 )
-def test_what_is_wrong_is_said_of_the_building(
-    tmp_path: Path, old: str, new: str, said: str
-) -> None:
+def test_what_is_wrong_is_said_of_the_building(tmp_path, old, new, said):
     with pytest.raises(InputError) as caught:
         case_of(tmp_path, FRAME.replace(old, new))
     assert str(caught.value).startswith(f"{tmp_path / 'case.toml'}: [[building]] 1 (A): ")
@@ -108,7 +104,7 @@ yield_force = "0.15 W"
 """
 
 
-def test_a_spring_by_a_part_of_the_weight(tmp_path: Path) -> None:
+def test_a_spring_by_a_part_of_the_weight(tmp_path):
     for more, mass in (("", 1e5), ('of_mass = ["deck", "top"]\n', 1.5e5)):
         law = case_of(tmp_path, SPRING + more).scene.springs[0].law
         assert isinstance(law, BoucWen)
@@ -120,15 +116,13 @@ def test_a_spring_by_a_part_of_the_weight(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_cases_to_begin_with_run_without_a_doubt(scene: str, tmp_path: Path) -> None:
+def test_cases_to_begin_with_run_without_a_doubt(scene, tmp_path):
     case = load_case(write_template(tmp_path / scene, scene))
     assert case.warnings == ()
     assert simulate(case, rtol=1e-6).impacts > 0
 
 
-def test_a_case_to_begin_with_under_a_record(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_case_to_begin_with_under_a_record(tmp_path, capsys):
     record = tmp_path / 'a "record".AT2'
     values = " ".join(f"{v:.6E}" for v in np.random.default_rng(0).normal(0.0, 0.1, 500))
     record.write_text(

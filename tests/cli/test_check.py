@@ -1,11 +1,8 @@
 """`check` says what was understood, and refuses what `run` refuses, in the same words."""
 
-from __future__ import annotations
-
 import json
 import math
 import re
-from pathlib import Path
 
 import pytest
 
@@ -50,7 +47,7 @@ name = "cvode"
 
 
 @pytest.fixture
-def case(tmp_path: Path) -> Path:
+def case(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
     return tmp_path
 
@@ -62,9 +59,7 @@ def said(words: list[str], code: int, capsys: pytest.CaptureFixture[str]) -> tup
     return out, err
 
 
-def test_both_periods_of_a_spring_and_of_the_scene(
-    case: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_both_periods_of_a_spring_and_of_the_scene(case, capsys):
     out, err = said(["check", str(case)], 0, capsys)
     assert err == ""
     # K_s = 1.25e6 (2 pi / 2.5)^2 = 7.8957e6 N/m, K0 = K_s + Q/u_y = 9.7896e7 N/m.
@@ -80,7 +75,7 @@ def test_both_periods_of_a_spring_and_of_the_scene(
     assert float(mode[4]) == pytest.approx(later, rel=1e-4)
 
 
-def test_json_is_in_si(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_is_in_si(case, capsys):
     out, _ = said(["check", str(case), "--json"], 0, capsys)
     found = json.loads(out)
     isolators = found["springs"][0]
@@ -119,9 +114,7 @@ def _longest(k: float) -> float:
         ('"cvode"', '"penalty"\ntime_step = 1\nsteps_per_period = 9', "accepted: one of them"),
     ],
 )
-def test_check_and_run_refuse_the_same(
-    case: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, message: str
-) -> None:
+def test_check_and_run_refuse_the_same(case, capsys, old, new, message):
     (case / "case.toml").write_text(CASE.replace(old, new))
     _, of_check = said(["check", str(case)], 2, capsys)
     assert len(of_check.splitlines()) == 1
@@ -195,13 +188,7 @@ _ADDED = {
 
 @pytest.mark.parametrize("added", [*_ADDED, "step"])
 @pytest.mark.parametrize("solver", OWN_SOLVERS)
-def test_check_refuses_what_run_refuses_of_every_solver(
-    solver: str,
-    added: str,
-    case: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_check_refuses_what_run_refuses_of_every_solver(solver, added, case, capsys, monkeypatch):
     def solve(self: object, task: Task) -> None:
         raise ComputationError("began to run", task.start)
 
@@ -230,7 +217,7 @@ def test_check_refuses_what_run_refuses_of_every_solver(
     assert (checked == 2) == (added in not_taken[solver])
 
 
-def test_a_warning_is_given_once_a_command(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_warning_is_given_once_a_command(case, capsys):
     ratio = '[[dashpot]]\nbetween = ["ground", "slab"]\nratio = 5\nrefers_to = "2.5 s"\n[solver]'
     (case / "case.toml").write_text(CASE.replace("[solver]", ratio))
     _, err = said(["check", str(case)], 0, capsys)
@@ -238,7 +225,7 @@ def test_a_warning_is_given_once_a_command(case: Path, capsys: pytest.CaptureFix
     assert "[[dashpot]] 1: ratio = 5 is 500 % of critical damping" in err
 
 
-def test_pi_terms_are_not_doubted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_pi_terms_are_not_doubted(tmp_path, capsys):
     text = (
         '[excitation]\nkind = "cosine"\namplitude = 1e5\nperiod = 1e-6\n'
         '[pi]\nstructure = "elastic"\nomega_s = 0.5\ndelta = 0.1\nepsilon = 0.6\nperiods = 5\n'
@@ -247,13 +234,11 @@ def test_pi_terms_are_not_doubted(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert said(["check", str(tmp_path)], 0, capsys)[1] == ""
 
 
-def test_own_solvers_are_those_that_need_nothing_else() -> None:
+def test_own_solvers_are_those_that_need_nothing_else():
     assert set(OWN_SOLVERS) == set(available()) - {"opensees"}
 
 
-def test_a_dashpot_where_stiffness_times_mass_is_no_double(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_dashpot_where_stiffness_times_mass_is_no_double(tmp_path, capsys):
     text = (
         '[excitation]\nkind = "none"\n[run]\nduration = 1.0\n[[body]]\nname = "b"\nmass = 1e-200\n'
         '[[spring]]\nbetween = ["ground", "b"]\nlaw = "linear"\nstiffness = 1e-200\n'
@@ -266,9 +251,7 @@ def test_a_dashpot_where_stiffness_times_mass_is_no_double(
 
 
 @pytest.mark.parametrize("command", ["check", "run"])
-def test_a_solver_that_takes_no_forces_is_refused(
-    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_solver_that_takes_no_forces_is_refused(command, tmp_path, capsys):
     text = (CASES / "bead-column" / "case.toml").read_text()
     (tmp_path / "case.toml").write_text(text + '\n[solver]\nname = "moreau"\n')
     assert main([command, str(tmp_path)]) == 2
@@ -277,7 +260,7 @@ def test_a_solver_that_takes_no_forces_is_refused(
     assert not (tmp_path / "results").exists()
 
 
-def test_the_number_of_pi_terms_is_that_of_the_paper(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_number_of_pi_terms_is_that_of_the_paper(capsys):
     for name, count in (("figure-04", 5), ("figure-07", 10), ("figure-08", 14)):
         out, _ = said(["check", str(CASES / name)], 0, capsys)
         assert f"Pi-terms  dimensionless numbers, {count} with the peak's" in out
@@ -285,9 +268,7 @@ def test_the_number_of_pi_terms_is_that_of_the_paper(capsys: pytest.CaptureFixtu
     assert "Pi-terms  dimensionless numbers, 10 with the peak's: omega_s = " in out
 
 
-def test_a_study_shows_the_scene_of_its_first_run(
-    case: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_study_shows_the_scene_of_its_first_run(case, capsys):
     alone, _ = said(["check", str(case)], 0, capsys)
     axis = '[[study.axis]]\nkey = "spring.isolators.strength"\nvalues = ["900 kN", "2e3 kN"]\n'
     (case / "case.toml").write_text(CASE + axis)
@@ -299,7 +280,7 @@ def test_a_study_shows_the_scene_of_its_first_run(
     assert "shown     what the first run has: spring.isolators.strength = 900000" in out
 
 
-def test_of_many_dashpots_a_few_are_listed(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_of_many_dashpots_a_few_are_listed(case, capsys):
     bodies = "".join(f'[[body]]\nname = "b{i}"\nmass = 1e5\n' for i in range(6))
     springs = "".join(
         f'[[spring]]\nbetween = ["{f"b{i - 1}" if i else "ground"}", "b{i}"]\nlaw = "linear"\n'

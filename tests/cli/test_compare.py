@@ -1,7 +1,5 @@
 """``eventpound compare``: what it writes, and what it refuses."""
 
-from __future__ import annotations
-
 import csv
 import math
 import shutil
@@ -37,7 +35,7 @@ class Heun:
 
 
 @pytest.fixture(scope="module")
-def history(tmp_path_factory) -> Path:
+def history(tmp_path_factory):
     """A history by another program."""
     file = tmp_path_factory.mktemp("other") / "other.csv"
     subprocess.run([sys.executable, str(OTHER), str(file)], check=True)
@@ -45,7 +43,7 @@ def history(tmp_path_factory) -> Path:
 
 
 @pytest.fixture
-def case(tmp_path) -> Path:
+def case(tmp_path):
     shutil.copytree(ROOT / "cases" / "elastic-barrier", tmp_path / "case")
     return tmp_path / "case"
 

@@ -1,7 +1,5 @@
 """Signals, full disks, vanishing files, two runs at once: whole files or none, the right code."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import os

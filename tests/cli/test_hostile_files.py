@@ -1,7 +1,5 @@
 """Names that lead elsewhere, files that are none or do not end, patterns, suites cut short."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os
@@ -251,7 +249,7 @@ def as_nobody() -> Iterator[None]:
 
 
 @pytest.fixture
-def open_folder() -> Iterator[Path]:
+def open_folder():
     """A folder with a case that anybody may enter and read, which those of pytest are not."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

@@ -1,7 +1,5 @@
 """What the command draws, in which kinds of files."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 
@@ -11,7 +9,7 @@ from eventpound.cli import main
 from tests.models import CASES
 
 
-def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command(tmp_path, capsys):
     folder = tmp_path / "pair"
     shutil.copytree(CASES / "pair", folder)
     assert main(["run", str(folder), "--no-figures"]) == 0

@@ -1,16 +1,10 @@
 """What is said while kernels are compiled."""
 
-from __future__ import annotations
-
-import pytest
-
 from eventpound.cli.progress import CompilationLine
 from eventpound.numerics.compiling import Compiling
 
 
-def test_every_long_compilation_is_announced_the_short_ones_once(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_every_long_compilation_is_announced_the_short_ones_once(capsys):
     """Those of the steps are short; that of the events comes later, in the same run or another."""
     line = CompilationLine()
     for name, total in (("steps", 40), ("steps", 40), ("looks", 20), ("events", 300)):

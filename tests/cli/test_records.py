@@ -1,7 +1,5 @@
 """The command for records: what it prints and writes, for a file and for a folder."""
 
-from __future__ import annotations
-
 import csv
 import hashlib
 import json
@@ -21,7 +19,7 @@ A = motion(1500, 0.01)
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     records = tmp_path / "records"
     records.mkdir()
@@ -36,7 +34,7 @@ def table(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def test_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file(folder, capsys):
     path = folder / "at2.txt"
     assert main(["records", str(path)]) == 0
     out = Path("at2-record")
@@ -64,9 +62,7 @@ def test_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert f"T_m       {period:.4f} s (padded {period:.4f}, literal " in printed
 
 
-def test_what_a_file_does_not_say_is_asked_for(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_a_file_does_not_say_is_asked_for(folder, capsys):
     path = str(folder / "one_column.txt")
     assert main(["records", path]) == 2
     assert "does not state its units and its time step" in capsys.readouterr().err
@@ -80,9 +76,7 @@ def test_what_a_file_does_not_say_is_asked_for(
     assert "#1 N28W, #2 S62W, #3 Up" in capsys.readouterr().err
 
 
-def test_a_folder_goes_on_past_what_cannot_be_read(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_folder_goes_on_past_what_cannot_be_read(folder, capsys):
     assert main(["records", str(folder), "--out", "out", "--units", "m/s2"]) == 0
     output = capsys.readouterr()
     assert "records   4 in 2 of 4 files" in output.out
@@ -98,9 +92,7 @@ def test_a_folder_goes_on_past_what_cannot_be_read(
     assert len(manifest["unread"]) == 2
 
 
-def test_the_table_of_a_folder_is_a_list(
-    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_table_of_a_folder_is_a_list(folder, capsys, monkeypatch):
     """Blanks filled in, it names every component, wherever it is read from."""
     monkeypatch.chdir(folder.parent)
     assert main(["records", folder.name, "--out", "out/deep"]) == 0
@@ -121,7 +113,7 @@ def test_the_table_of_a_folder_is_a_list(
     ]
 
 
-def test_a_list_names_the_files(folder: Path) -> None:
+def test_a_list_names_the_files(folder):
     (folder / "list.csv").write_text("file,units,time_step\none_column.txt,m/s2,0.01\n")
     arguments = ["records", str(folder), "--list", str(folder / "list.csv"), "--out", "out"]
     assert main([*arguments, "--figures"]) == 0
@@ -130,7 +122,7 @@ def test_a_list_names_the_files(folder: Path) -> None:
     assert main(["records", str(folder / "at2.txt"), "--list", "x"]) == 2
 
 
-def test_processing_is_recorded_and_changes_the_samples(folder: Path) -> None:
+def test_processing_is_recorded_and_changes_the_samples(folder):
     path = str(folder / "at2.txt")
     more = ["--baseline", "1", "--highpass", "0.2", "--lowpass", "20", "--order", "2"]
     assert main(["records", path, *more, "--out", "out", "--no-figures"]) == 0
@@ -142,9 +134,7 @@ def test_processing_is_recorded_and_changes_the_samples(folder: Path) -> None:
     assert main(["records", path, "--highpass", "90"]) == 2
 
 
-def test_a_folder_without_a_record_is_an_error(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_folder_without_a_record_is_an_error(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "records").mkdir()
     assert main(["records", "records"]) == 2
@@ -156,16 +146,14 @@ def test_a_folder_without_a_record_is_an_error(
 
 
 @pytest.mark.parametrize("convention", ["literal", "slammer"])
-def test_the_convention_of_the_mean_period(folder: Path, convention: str) -> None:
+def test_the_convention_of_the_mean_period(folder, convention):
     path = str(folder / "at2.txt")
     assert main(["records", path, "--mean-period", convention, "--out", "o", "--no-figures"]) == 0
     (row,) = table(Path("o/records.csv"))
     assert row["tm_s"] == row[f"tm_{convention}_s"]
 
 
-def test_pulse_of_a_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_pulse_of_a_file(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     t = np.arange(0.0, 10.0, 0.01)
     ricker = Ricker(amplitude=0.3, period=1.2, start=3.0)
@@ -185,5 +173,5 @@ def test_pulse_of_a_file(
     assert not list(Path("all").glob("*.png"))
 
 
-def test_words_for_pulses_are_those_that_can_be_fitted() -> None:
+def test_words_for_pulses_are_those_that_can_be_fitted():
     assert list(PULSE_WORDS) == ["all", *PULSES]

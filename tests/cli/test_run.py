@@ -1,7 +1,5 @@
 """`run --solver NAME:key=value`: settings of a solver on the command line."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -51,7 +49,7 @@ class Still:
 
 
 @pytest.fixture
-def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def case(tmp_path, monkeypatch):
     plug_in(monkeypatch, tmp_path / "plugin", {"still.py": PLUGIN}, {"still": "still:Still"})
     folder = tmp_path / "case"
     folder.mkdir()
@@ -73,7 +71,7 @@ def options(case: Path) -> dict[str, object]:
         (["--solver", "still:time_step=10 ms"], "still", {"time_step": 0.01}),
     ],
 )
-def test_settings(case: Path, words: list[str], solver: str, settings: dict[str, object]) -> None:
+def test_settings(case, words, solver, settings):
     assert main(["run", str(case), "--no-figures", *words]) == 0
     found = options(case)
     assert (found["solver"], found["settings"]) == (solver, settings)
@@ -94,9 +92,7 @@ def test_settings(case: Path, words: list[str], solver: str, settings: dict[str,
         (["--rtol", "1e-20"], "[solver]: rtol: found 1e-20; accepted: a number from 1e-14"),
     ],
 )
-def test_refused(
-    case: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
-) -> None:
+def test_refused(case, capsys, words, message):
     assert main(["run", str(case), *words]) == 2
     out, err = capsys.readouterr()
     assert out == ""
@@ -105,15 +101,13 @@ def test_refused(
     assert not (case / "results").exists()
 
 
-def test_check_asks_a_solver_for_its_settings(
-    case: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_check_asks_a_solver_for_its_settings(case, capsys):
     file = case / "case.toml"
     file.write_text(CASE.replace('"cvode"\nmethod = "BDF"', '"still"\ntime_step = "2 s"'))
     assert main(["check", str(case)]) == 2
     assert f"{file}: [solver]: time_step: found a large one" in capsys.readouterr().err
 
 
-def test_a_fault_of_a_plug_in_is_not_taken_for_a_missing_setting(case: Path) -> None:
+def test_a_fault_of_a_plug_in_is_not_taken_for_a_missing_setting(case):
     with pytest.raises(KeyError, match="mauve"):
         main(["run", str(case), "--solver", "still:time_step=0.1:colour=mauve"])

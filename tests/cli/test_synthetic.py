@@ -1,9 +1,6 @@
 """The command for synthetic motions: files, table, and what it prints."""
 
-from __future__ import annotations
-
 import csv
-from pathlib import Path
 
 import pytest
 
@@ -11,9 +8,7 @@ from eventpound.cli import main
 from eventpound.motion import Record, read_record
 
 
-def test_writes_motions_and_their_parameters(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_writes_motions_and_their_parameters(tmp_path, capsys):
     words = ["records", "synthetic", str(tmp_path / "a"), "--count", "3", "--seed", "7"]
     assert main(words) == 0
     assert "3 synthetic motions, seed 7" in capsys.readouterr().out
@@ -28,7 +23,7 @@ def test_writes_motions_and_their_parameters(
         assert row["kind"] == "synthetic"
 
 
-def test_the_same_seed_gives_the_same_bytes_however_many(tmp_path: Path) -> None:
+def test_the_same_seed_gives_the_same_bytes_however_many(tmp_path):
     for name, count in (("a", "2"), ("b", "3")):
         assert main(["records", "synthetic", str(tmp_path / name), "--count", count]) == 0
     for file in (tmp_path / "a").glob("*.AT2"):
@@ -36,9 +31,7 @@ def test_the_same_seed_gives_the_same_bytes_however_many(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("words", [["--count", "0"], ["--seed", "x"], ["--count", "1.5"]])
-def test_wrong_numbers(
-    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_wrong_numbers(words, tmp_path, capsys):
     with pytest.raises(SystemExit) as caught:
         main(["records", "synthetic", str(tmp_path / "a"), *words])
     assert caught.value.code == 2

@@ -1,7 +1,5 @@
 """Printing neither fails nor stops the work, whatever the terminal is."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -28,7 +26,7 @@ COMMAND = [sys.executable, "-m", "eventpound"]
 
 
 @pytest.fixture
-def case(tmp_path: Path) -> Path:
+def case(tmp_path):
     (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
     return tmp_path
 
@@ -37,7 +35,7 @@ def case(tmp_path: Path) -> Path:
     "encoding",
     ["ascii", *(pytest.param(e, marks=pytest.mark.sweep) for e in ("latin-1", "cp1252"))],
 )
-def test_a_terminal_that_is_not_utf_8(case: Path, encoding: str) -> None:
+def test_a_terminal_that_is_not_utf_8(case, encoding):
     done = subprocess.run(
         [*COMMAND, "run", str(case), "--no-figures"],
         capture_output=True,
@@ -51,7 +49,7 @@ def test_a_terminal_that_is_not_utf_8(case: Path, encoding: str) -> None:
 
 
 @pytest.mark.parametrize("words", [["check", "{case}"], ["solvers"], ["run", "{case}"], ["--help"]])
-def test_a_reader_that_stops_reading(case: Path, words: list[str]) -> None:
+def test_a_reader_that_stops_reading(case, words):
     reading, writing = os.pipe()
     os.close(reading)
     try:
@@ -72,7 +70,7 @@ def test_a_reader_that_stops_reading(case: Path, words: list[str]) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-def test_a_file_on_a_full_disk(case: Path) -> None:
+def test_a_file_on_a_full_disk(case):
     with open("/dev/full", "w") as full:
         done = subprocess.run(
             [*COMMAND, "check", str(case)],
@@ -86,9 +84,7 @@ def test_a_file_on_a_full_disk(case: Path) -> None:
 
 
 @pytest.mark.filterwarnings("default")
-def test_a_warning_is_a_line_without_its_place_in_the_source(
-    case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_warning_is_a_line_without_its_place_in_the_source(case, monkeypatch, capsys):
     def names(_: object) -> list[str]:
         warnings.warn("the peak is not known", AccuracyWarning, stacklevel=2)
         warnings.warn("divided\nby zero", RuntimeWarning, stacklevel=2)
@@ -101,7 +97,7 @@ def test_a_warning_is_a_line_without_its_place_in_the_source(
     assert capsys.readouterr().err == said
 
 
-def test_without_a_command_the_help_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_a_command_the_help_is_shown(capsys):
     assert main([]) == 2
     out, err = capsys.readouterr()
     assert out == ""

@@ -1,7 +1,5 @@
 """The table of docs/solvers.md, by what solvers refuse: `python -m tests.docs.solvers`."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -4,5 +4,5 @@ import pytest
 
 
 @pytest.fixture(autouse=True)
-def by_python(interpreted: None) -> None:
+def by_python(interpreted):
     """Nothing is compiled here."""

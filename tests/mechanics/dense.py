@@ -5,8 +5,6 @@
 solved as one linear system for u'' and λ: no clusters, no links, no branches.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The backbone Φ against the hypergeometric function, the rate law and itself."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -45,7 +43,7 @@ def _sample(n: float) -> np.ndarray:
 
 
 @every_law
-def test_against_the_hypergeometric_function(n: float, beta: float, gamma: float) -> None:
+def test_against_the_hypergeometric_function(n, beta, gamma):
     # ∫_0^y ds / (1 - κ s^n) = y 2F1(1, 1/n; 1 + 1/n; κ y^n); SciPy's is good to 1e-13 or so
     # of its value, and an error of ξ is one of Φ times 1 - κ y^n.
     table = backbone_table(n, beta, gamma)
@@ -67,7 +65,7 @@ def test_against_the_hypergeometric_function(n: float, beta: float, gamma: float
     ],
 )
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_against_the_rate_law(n: float, beta: float, gamma: float, sign: float) -> None:
+def test_against_the_rate_law(n, beta, gamma, sign):
     # From z = 0 with x' = 1 both ways: loading is Φ(ξ > 0); unloading is found on the way
     # from Φ(ξ < 0) = y up to zero.
     u_y, memory = 0.3, memory_of(n, beta, gamma, 0.3)
@@ -92,7 +90,7 @@ def test_against_the_rate_law(n: float, beta: float, gamma: float, sign: float) 
 
 
 @every_law
-def test_the_inverse_undoes_it(n: float, beta: float, gamma: float) -> None:
+def test_the_inverse_undoes_it(n, beta, gamma):
     # A rounding of y is one of ξ divided by Φ' = 1 - κ |y|^n: so conditioned is the inverse.
     table = backbone_table(n, beta, gamma)
     y = np.concatenate((_sample(n), -_sample(n), [0.0, -1.0, 1.0 - 1e-9, 1.0 - 1e-12]))
@@ -110,7 +108,7 @@ def test_the_inverse_undoes_it(n: float, beta: float, gamma: float) -> None:
 
 
 @every_law
-def test_continuous_and_monotone_within_its_bound(n: float, beta: float, gamma: float) -> None:
+def test_continuous_and_monotone_within_its_bound(n, beta, gamma):
     table = backbone_table(n, beta, gamma)
     low, high = backbone_inverse(table, 0, -1.0), table[6]
     xi = np.concatenate((np.linspace(max(low, -3.0), high, 2_001), [high, 2.0 * high, 1e9]))
@@ -122,7 +120,7 @@ def test_continuous_and_monotone_within_its_bound(n: float, beta: float, gamma: 
 
 
 @every_law
-def test_no_jump_between_cells(n: float, beta: float, gamma: float) -> None:
+def test_no_jump_between_cells(n, beta, gamma):
     table = backbone_table(n, beta, gamma)
     borders = [0.0, table[3], *(table[3] + np.arange(1, int(table[5]) + 1) / table[4])]
     if _rho(beta, gamma) != 0.0:
@@ -134,7 +132,7 @@ def test_no_jump_between_cells(n: float, beta: float, gamma: float) -> None:
         assert abs(backbone(table, 0, above) - backbone(table, 0, below)) <= ROUNDING + steep
 
 
-def test_an_elastic_perfectly_plastic_limit() -> None:
+def test_an_elastic_perfectly_plastic_limit():
     # n → ∞: Φ = min(ξ, 1), the difference at the corner ln 2/n.
     table = backbone_table(1e4, 0.5, 0.5)
     xi = np.linspace(-0.99, 3.0, 400)

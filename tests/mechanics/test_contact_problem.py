@@ -1,7 +1,5 @@
 """The complementarity problem part by part against the problem as a whole."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.optimize import nnls
@@ -37,7 +35,7 @@ def _check(contacts: Contacts, p: np.ndarray) -> None:
     assert (np.abs(G @ x + q - w) <= rounding(G, x, q)).all()
 
 
-def test_many_parts() -> None:
+def test_many_parts():
     rng = np.random.default_rng(81)
     for _ in range(60):
         parts = [graph(rng, 1.0) for _ in range(rng.integers(1, 5))]
@@ -47,7 +45,7 @@ def test_many_parts() -> None:
 
 @pytest.mark.parametrize("barriers", ["none", "left", "right", "both"])
 @pytest.mark.parametrize("decades", [0.0, 1.0, 2.0])
-def test_long_rows_in_any_order(barriers: str, decades: float) -> None:
+def test_long_rows_in_any_order(barriers, decades):
     rng = np.random.default_rng(82)
     for _ in range(5):
         bodies = int(rng.integers(LONG_ROW + 2, 3 * LONG_ROW))
@@ -55,7 +53,7 @@ def test_long_rows_in_any_order(barriers: str, decades: float) -> None:
         _check(contacts, rng.normal(size=contacts.mass.size))
 
 
-def test_two_rows_that_share_a_body_are_one_problem() -> None:
+def test_two_rows_that_share_a_body_are_one_problem():
     # A body that heads two long rows: no single row, so the dense method has to see it.
     rng = np.random.default_rng(83)
     size = LONG_ROW
@@ -66,7 +64,7 @@ def test_two_rows_that_share_a_body_are_one_problem() -> None:
     _check(contacts, rng.normal(size=contacts.mass.size))
 
 
-def test_a_ring_of_contacts() -> None:
+def test_a_ring_of_contacts():
     # No first contact to start a row from.
     size = LONG_ROW + 6
     left = np.arange(size)
@@ -74,7 +72,7 @@ def test_a_ring_of_contacts() -> None:
     _check(contacts, np.random.default_rng(84).normal(size=size))
 
 
-def test_short_row_against_nnls() -> None:
+def test_short_row_against_nnls():
     contacts = row(np.random.default_rng(85), 8, 0.3, "left")
     A = contacts.factor
     p = np.random.default_rng(86).normal(size=8)
@@ -83,7 +81,7 @@ def test_short_row_against_nnls() -> None:
     np.testing.assert_allclose(x, nnls(A, -p)[0], rtol=1e-11, atol=1e-12)
 
 
-def test_no_contacts() -> None:
+def test_no_contacts():
     none = np.empty(0, np.int64)
     x, w, solved = solve_contacts(joints(none, none, np.ones(3)), np.empty(0), 0.0)
     assert solved

@@ -1,7 +1,5 @@
 """The descriptor form of a mode against full matrices, its Jacobian against differences."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 
@@ -60,7 +58,7 @@ def _all_rows(
 
 @pytest.mark.parametrize("squeezed", [False, True])
 @pytest.mark.parametrize("frame", [NO_FRAME, FRAME], ids=["relative", "moving"])
-def test_the_residual_vanishes_on_the_motion(squeezed: bool, frame: np.ndarray) -> None:
+def test_the_residual_vanishes_on_the_motion(squeezed, frame):
     rng = np.random.default_rng(33)
     for _ in range(30):
         at = random_instant(rng, squeezed=squeezed)
@@ -79,7 +77,7 @@ def test_the_residual_vanishes_on_the_motion(squeezed: bool, frame: np.ndarray) 
 
 
 @pytest.mark.parametrize("frame", [NO_FRAME, FRAME], ids=["relative", "moving"])
-def test_jacobian_by_central_differences(frame: np.ndarray) -> None:
+def test_jacobian_by_central_differences(frame):
     # Entries up to κ n |z|^(n-1) x'/u_y of order 1e2, third derivatives n² of that:
     # h² 4e4/6 = 1e-6 at h = 1e-5; rounding 1e-15 · 1e2/h = 1e-8.
     rng, cj, h = np.random.default_rng(34), 3.7, 1e-5
@@ -108,7 +106,7 @@ def test_jacobian_by_central_differences(frame: np.ndarray) -> None:
             )
 
 
-def test_the_gaps_determine_the_dependent_bodies() -> None:
+def test_the_gaps_determine_the_dependent_bodies():
     """Their columns of W have an inverse, of entries 0, 1 and -1 since gaps form trees."""
     rng = np.random.default_rng(35)
     for squeezed in (False, True):
@@ -120,7 +118,7 @@ def test_the_gaps_determine_the_dependent_bodies() -> None:
                 assert abs(np.linalg.det(d.W[:, d.dependent])) == pytest.approx(1.0, abs=1e-12)
 
 
-def test_the_loop_has_the_momentum_of_the_bodies_and_no_gaps() -> None:
+def test_the_loop_has_the_momentum_of_the_bodies_and_no_gaps():
     rng = np.random.default_rng(36)
     for squeezed in (False, True):
         at = random_instant(rng, squeezed=squeezed)
@@ -138,7 +136,7 @@ def test_the_loop_has_the_momentum_of_the_bodies_and_no_gaps() -> None:
             assert d.mass[moves] @ (u[part] - own)[moves] == pytest.approx(0.0, abs=1e-13)
 
 
-def test_constraint_errors() -> None:
+def test_constraint_errors():
     at = random_instant(np.random.default_rng(37), squeezed=True)
     d = _descriptor(at)
     y = np.zeros(d.size)
@@ -150,7 +148,7 @@ def test_constraint_errors() -> None:
     assert constraint_errors(d, y) == pytest.approx((1e-3, 2e-3), rel=1e-12)
 
 
-def test_sizes() -> None:
+def test_sizes():
     at = random_instant(np.random.default_rng(38))
     d = _descriptor(at)
     assert d.size == 2 * at.u.size + at.z.size + len(at.resting) + LEDGER

@@ -1,7 +1,5 @@
 """The laws of springs: eq. 3 as printed, its bound, its series, in each form that is used."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 
 import numpy as np
@@ -32,7 +30,7 @@ from tests.mechanics.dense import literal_z_rate, memory_of
 EPS = np.finfo(float).eps
 
 
-def test_rate_is_the_printed_one() -> None:
+def test_rate_is_the_printed_one():
     rng = np.random.default_rng(41)
     for _ in range(1000):
         n, beta = rng.choice([1.0, 1.5, 2.0, 7.3, 20.0]), rng.uniform(-1.0, 1.0)
@@ -49,7 +47,7 @@ def test_rate_is_the_printed_one() -> None:
 
 @pytest.mark.parametrize(("beta", "gamma"), [(0.5, 0.5), (0.1, 0.9), (-0.2, 1.0), (2.0, 3.0)])
 @pytest.mark.parametrize("n", [1.0, 2.0, 20.0])
-def test_loading_ends_at_the_bound(beta: float, gamma: float, n: float) -> None:
+def test_loading_ends_at_the_bound(beta, gamma, n):
     law = memory_of(n, beta, gamma)
     (bound,) = z_bound(law)
     # Terms of size one cancel there; n of the roundings of |z|^n come on top.
@@ -59,12 +57,12 @@ def test_loading_ends_at_the_bound(beta: float, gamma: float, n: float) -> None:
     assert z_rate(0, law, -1.0, -1.0, bound, 0.0) < 0.0
 
 
-def test_default_bound_is_one() -> None:
+def test_default_bound_is_one():
     assert z_bound(memory_of(20.0, 0.5, 0.5)) == 1.0
 
 
 @pytest.mark.parametrize("n", [1.0, 2.0, 5.0, 20.0])
-def test_backbone(n: float) -> None:
+def test_backbone(n):
     # Loading from zero: x/u_y = z 2F1(1, 1/n; 1 + 1/n; z^n), and z_rate integrated.
     u_y = 0.3
     ends = np.array([0.2, 0.6, 0.9, 0.99])
@@ -84,7 +82,7 @@ def test_backbone(n: float) -> None:
 @pytest.mark.parametrize("n", [1.0, 1.5, 20.0])
 @pytest.mark.parametrize("z", [-0.8, -0.3, 0.4, 0.9])
 @pytest.mark.parametrize("x_rate", [-0.7, 1.3])
-def test_slopes_are_those_of_the_rate(n: float, z: float, x_rate: float) -> None:
+def test_slopes_are_those_of_the_rate(n, z, x_rate):
     law, small = memory_of(n, 0.3, 0.6, 0.1), 1e-6
     by_rate, by_z = z_slopes(0, law, x_rate, z, 0.0)
     assert by_rate == pytest.approx(z_rate(0, law, x_rate, x_rate, z, 0.0) / x_rate, rel=1e-13)
@@ -94,9 +92,7 @@ def test_slopes_are_those_of_the_rate(n: float, z: float, x_rate: float) -> None
 
 @pytest.mark.parametrize("z", [0.4, -0.7])
 @pytest.mark.parametrize("x_rate", [0.3, -0.3])
-def test_a_law_that_degrades_has_the_rates_slopes_and_series_of_its_equations(
-    z: float, x_rate: float
-) -> None:
+def test_a_law_that_degrades_has_the_rates_slopes_and_series_of_its_equations(z, x_rate):
     plain = BoucWen(0.0, 1.0, 0.25, 2.0, 0.2, 0.7)
     own = DegradingBoucWen(**asdict(plain), strength_degradation=0.3, stiffness_degradation=0.2)
     memory, energy, small = link_law([own], [0.0, 0.0], {0: 1}).memory, 1.5, 1e-6
@@ -132,7 +128,7 @@ def test_a_law_that_degrades_has_the_rates_slopes_and_series_of_its_equations(
     np.testing.assert_allclose(Y @ t ** np.arange(x.size), exact, rtol=1e-12)
 
 
-def test_a_law_that_does_not_degrade_has_bouc_wens_rates_to_the_last_bit() -> None:
+def test_a_law_that_does_not_degrade_has_bouc_wens_rates_to_the_last_bit():
     plain = BoucWen(0.0, 1.0, 0.3, 3.0, 0.2, 0.7)
     pair = [link_law([law], [0.0]).memory for law in (plain, DegradingBoucWen(**asdict(plain)))]
     for z, x_rate in ((0.37, 0.1), (-0.9, 0.7), (0.6, -0.2)):
@@ -143,7 +139,7 @@ def test_a_law_that_does_not_degrade_has_bouc_wens_rates_to_the_last_bit() -> No
         assert first == second
 
 
-def test_soil_yields_along_its_backbone() -> None:
+def test_soil_yields_along_its_backbone():
     """``z = -y/(1 + y)`` at the depth y in parts of u_y: its rate, slopes and series."""
     law = link_law([Backfill(4.0, 0.5, 0.5)], [0.0]).memory
     law = memory_on_branches(law, np.array([YIELDING]))
@@ -164,7 +160,7 @@ def test_soil_yields_along_its_backbone() -> None:
     )
 
 
-def test_branches_of_soil_end_where_it_was_left_and_where_it_comes_apart() -> None:
+def test_branches_of_soil_end_where_it_was_left_and_where_it_comes_apart():
     # K0 = F_ult = R_f = 1, pushed in by 1 and unloaded by 1/4: apart at -1/2, as by hand.
     law = link_law([Backfill(1.0, 1.0, 1.0)], [0.0]).memory
     for branch, ends in ((CLOSED, (-1.0, -0.5)), (YIELDING, (-np.inf, 0.0))):
@@ -192,7 +188,7 @@ def _series_of_z(law: np.ndarray, x: np.ndarray, z_0: float, sigma: float) -> np
     return z
 
 
-def test_soil_that_is_hardly_pressed_has_a_series() -> None:
+def test_soil_that_is_hardly_pressed_has_a_series():
     law = link_law([Backfill(1.0, 1.0, 0.5)], [0.0]).memory
     law = memory_on_branches(law, np.array([CLOSED]))
     # As it arrives at rest after a cascade.
@@ -202,7 +198,7 @@ def test_soil_that_is_hardly_pressed_has_a_series() -> None:
 
 @pytest.mark.parametrize("n", [1.0, 2.5, 20.0])
 @pytest.mark.parametrize(("z_0", "sigma"), [(0.7, 1.0), (-0.6, 1.0), (0.6, -1.0), (-0.8, -1.0)])
-def test_series_on_a_curve_is_the_general_one(n: float, z_0: float, sigma: float) -> None:
+def test_series_on_a_curve_is_the_general_one(n, z_0, sigma):
     rng = np.random.default_rng(7)
     law, x = memory_of(n, 0.3, 0.6, 0.5), rng.normal(size=20) * 0.3 ** np.arange(20)
     x[1] = sigma * 0.2
@@ -217,7 +213,7 @@ def test_series_on_a_curve_is_the_general_one(n: float, z_0: float, sigma: float
 
 
 @pytest.mark.parametrize("kappa", [1.0, 0.2])
-def test_series_of_one_body_is_the_general_one(kappa: float) -> None:
+def test_series_of_one_body_is_the_general_one(kappa):
     """The recurrence that the kernel of one body has for itself, κ > 0 for y of either sign."""
     body = np.zeros(1, SdofBody.layout)[0]
     body.step, body.z, body.exponent, body.per_scale = 0.2, 0.7 if kappa == 1.0 else -0.7, 5.0, 2.0
@@ -233,7 +229,7 @@ def test_series_of_one_body_is_the_general_one(kappa: float) -> None:
     np.testing.assert_allclose(body.z_terms[: order - 1], wanted[: order - 1], rtol=1e-10)
 
 
-def test_slider_pulls_with_its_friction_in_the_direction_of_its_slip() -> None:
+def test_slider_pulls_with_its_friction_in_the_direction_of_its_slip():
     law = link_law([Slider(0.1, 5.0, 2.0), BoucWen(0.0, 1.0, 0.1)], [0.0, 0.0]).memory
     for branch, ends in ((1, (0.0, np.inf)), (-1, (-np.inf, 0.0))):
         memory = memory_on_branches(law, np.array([branch, 0]))

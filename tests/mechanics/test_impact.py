@@ -1,7 +1,5 @@
 """Newton's impact law: identities on random chains, closed forms on simple ones."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,7 +46,7 @@ def impact(
     return Impact(contacts, restitution, closed, rate, v, after, v_after, impulse, involved, lost)
 
 
-def test_a_support_is_moved_by_nothing() -> None:
+def test_a_support_is_moved_by_nothing():
     """It is as a barrier that has a velocity, to which the bodies on its sides are nothing."""
     mass, left, right = np.array([np.inf, 2.0, 3.0]), np.array([1, 0]), np.array([0, 2])
     v, restitution = np.array([0.5, 2.0, -1.0]), np.array([0.6, 0.2])
@@ -84,7 +82,7 @@ def _random_impacts(count: int) -> list[Impact]:
 
 
 @pytest.fixture(scope="module")
-def impacts() -> list[Impact]:
+def impacts():
     with by_python():
         return _random_impacts(300)
 
@@ -94,7 +92,7 @@ def _noise(i: Impact) -> float:
     return 2048.0 * EPS * i.speed * np.sqrt(i.contacts.mass.max() / i.contacts.mass.min())
 
 
-def test_momentum_of_every_body(impacts: list[Impact]) -> None:
+def test_momentum_of_every_body(impacts):
     # M (v⁺ - v⁻) = W Λ to rounding, hence the whole momentum where no barrier is touched.
     for i in impacts:
         mass, W = i.contacts.mass, i.contacts.W
@@ -108,7 +106,7 @@ def test_momentum_of_every_body(impacts: list[Impact]) -> None:
             assert abs(momentum.sum()) <= 16 * EPS * size.sum()
 
 
-def test_kinetic_energy_never_grows(impacts: list[Impact]) -> None:
+def test_kinetic_energy_never_grows(impacts):
     for i in impacts:
         mass = i.contacts.mass
         before = 0.5 * mass @ i.v_before**2
@@ -118,7 +116,7 @@ def test_kinetic_energy_never_grows(impacts: list[Impact]) -> None:
         assert i.energy_lost == pytest.approx(before - after, abs=slack)
 
 
-def test_newtons_law_and_complementarity(impacts: list[Impact]) -> None:
+def test_newtons_law_and_complementarity(impacts):
     for i in impacts:
         noise = _noise(i)
         np.testing.assert_array_equal(i.involved, i.closed & (i.before <= 0.0))
@@ -133,7 +131,7 @@ def test_newtons_law_and_complementarity(impacts: list[Impact]) -> None:
         assert (np.abs(i.after - i.contacts.W.T @ i.v_after) <= noise).all()
 
 
-def test_involved_contacts_do_not_approach_any_more(impacts: list[Impact]) -> None:
+def test_involved_contacts_do_not_approach_any_more(impacts):
     for i in impacts:
         assert (i.after[i.involved] >= 0.0).all()
 
@@ -145,7 +143,7 @@ def _pair(m: tuple[float, float], eps: float, v: tuple[float, float]) -> Impact:
 
 @pytest.mark.parametrize("eps", [0.0, 0.3, 1.0])
 @pytest.mark.parametrize("ratio", [1e-6, 0.01, 1.0, 7.0, 1e6])
-def test_two_bodies(eps: float, ratio: float) -> None:
+def test_two_bodies(eps, ratio):
     m, v = (ratio, 1.0), (2.0, -0.5)
     hit = _pair(m, eps, v)
     reduced = m[0] * m[1] / sum(m)
@@ -157,7 +155,7 @@ def test_two_bodies(eps: float, ratio: float) -> None:
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_body_against_a_wall(side: str) -> None:
+def test_body_against_a_wall(side):
     ends = ([0], [-1]) if side == "right" else ([-1], [0])
     contacts = Contacts(np.array(ends[0]), np.array(ends[1]), np.array([3.0]))
     speed = 0.7 if side == "right" else -0.7
@@ -177,7 +175,7 @@ def _row_at_rest(bodies: int, eps: float) -> Impact:
 
 
 @pytest.mark.parametrize("bodies", [2, 3, 5, 40])
-def test_row_of_equal_bodies(bodies: int) -> None:
+def test_row_of_equal_bodies(bodies):
     # As one problem the resting bodies stay together (γ⁺ = -ε·0) and only the first
     # contact opens, at ε: v_1 = (1 - (N-1) ε)/N, the others (1 + ε)/N. This is Moreau's
     # answer; the cradle's, where the last leaves alone, needs one impact after the other.
@@ -190,7 +188,7 @@ def test_row_of_equal_bodies(bodies: int) -> None:
     assert not hit.after[1:].any()
 
 
-def test_cradle_one_impact_after_the_other() -> None:
+def test_cradle_one_impact_after_the_other():
     # With ε = 1 and gaps between them, equal bodies exchange their velocities.
     left = np.arange(4)
     contacts = Contacts(left, left + 1, np.full(5, 2.0))
@@ -202,7 +200,7 @@ def test_cradle_one_impact_after_the_other() -> None:
 
 
 @pytest.mark.parametrize("eps", [0.0, 0.7, 1.0])
-def test_symmetric_collision(eps: float) -> None:
+def test_symmetric_collision(eps):
     # Two equal bodies run into a third from both sides: it stays, they return at ε.
     contacts = Contacts(np.array([0, 1]), np.array([1, 2]), np.array([1.5, 0.3, 1.5]))
     hit = impact(contacts, np.full(2, eps), np.ones(2, bool), np.array([1.0, 0.0, -1.0]))
@@ -210,7 +208,7 @@ def test_symmetric_collision(eps: float) -> None:
     assert hit.impulse[0] == pytest.approx(hit.impulse[1], rel=4 * EPS)
 
 
-def test_resting_group_rebounds_from_a_barrier_as_a_whole() -> None:
+def test_resting_group_rebounds_from_a_barrier_as_a_whole():
     contacts = Contacts(np.array([0, 1]), np.array([1, -1]), np.array([2.0, 1.0]))
     hit = impact(contacts, np.array([0.1, 0.5]), np.ones(2, bool), np.array([1.0, 1.0]))
     # γ⁻ = 0 between the bodies, 1 against the barrier: both return at ε = 0.5.
@@ -218,7 +216,7 @@ def test_resting_group_rebounds_from_a_barrier_as_a_whole() -> None:
     assert hit.after[0] == 0.0
 
 
-def test_separating_contacts_take_no_part() -> None:
+def test_separating_contacts_take_no_part():
     contacts = Contacts(np.array([0, 1]), np.array([1, 2]), np.ones(3))
     hit = impact(contacts, np.ones(2), np.ones(2, bool), np.array([1.0, 0.0, 0.5]))
     np.testing.assert_array_equal(hit.involved, [True, False])
@@ -227,7 +225,7 @@ def test_separating_contacts_take_no_part() -> None:
     assert hit.after[1] == pytest.approx(-0.5, abs=4 * EPS)
 
 
-def test_a_single_contact_needs_no_problem() -> None:
+def test_a_single_contact_needs_no_problem():
     # A chain of four bodies and two barriers, one contact closed: the scalar law and the problem.
     rng = np.random.default_rng(11)
     left, right = np.array([-1, 0, 1, 2, 3]), np.array([0, 1, 2, 3, -1])
@@ -252,7 +250,7 @@ def test_a_single_contact_needs_no_problem() -> None:
         np.testing.assert_allclose(rate, g, rtol=0.0, atol=1e-13 * np.abs(g).max())
 
 
-def test_no_play_leaves_no_speed_of_rounding() -> None:
+def test_no_play_leaves_no_speed_of_rounding():
     # A body between two barriers that it touches meets one and parts from the other: with
     # ε = 0 it stands still, at both of them, and not at a speed of 1e-17.
     left, right = np.array([-1, 0]), np.array([0, -1])

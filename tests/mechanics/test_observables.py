@@ -1,7 +1,5 @@
 """What is observed of a state against full matrices, and its rates against differences."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -22,7 +20,7 @@ def _observe(at: Instant, tau: float, y: np.ndarray) -> Observed:
 
 
 @pytest.mark.parametrize("squeezed", [False, True])
-def test_values(squeezed: bool) -> None:
+def test_values(squeezed):
     rng = np.random.default_rng(71)
     for _ in range(40):
         at = random_instant(rng, squeezed=squeezed)
@@ -67,7 +65,7 @@ def _rows_with_rates(observed: Observed) -> np.ndarray:
 
 
 @pytest.mark.parametrize("squeezed", [False, True])
-def test_rates_by_central_differences(squeezed: bool) -> None:
+def test_rates_by_central_differences(squeezed):
     # Five points: error h⁴ f⁽⁵⁾/30. Rates up to 20/s (n = 20, near the bound) make
     # f⁽⁵⁾ ≤ 20⁵ of values of order ten: 1e-16 · 3e6 · 10/30 = 1e-10, and rounding
     # 1e-15 · 10/h = 1e-10.

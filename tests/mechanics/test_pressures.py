@@ -1,7 +1,5 @@
 """The smallest forces of locked contacts that do not pull."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 
@@ -39,7 +37,7 @@ def _left_of(W: np.ndarray, x: np.ndarray) -> float:
     return float(found.fun)
 
 
-def test_random_locked_groups_are_pressed_as_little_as_may_be() -> None:
+def test_random_locked_groups_are_pressed_as_little_as_may_be():
     dice, several, shifted = np.random.default_rng(36), 0, 0
     for _ in range(60):
         rows = graph(dice, 0.0).W.T
@@ -58,7 +56,7 @@ def test_random_locked_groups_are_pressed_as_little_as_may_be() -> None:
     assert shifted > 60
 
 
-def test_a_long_squeezed_row_is_pressed_until_none_pulls() -> None:
+def test_a_long_squeezed_row_is_pressed_until_none_pulls():
     # The self-stress is (1, ..., 1): the smallest forces are those whose smallest is none.
     bodies = 60
     row = [BARRIER, *(f"b{i}" for i in range(bodies)), BARRIER]
@@ -73,7 +71,7 @@ def test_a_long_squeezed_row_is_pressed_until_none_pulls() -> None:
 
 
 @pytest.mark.parametrize("at_point", [False, True])
-def test_what_is_not_locked_keeps_its_forces(at_point: bool) -> None:
+def test_what_is_not_locked_keeps_its_forces(at_point):
     """A row between barriers, beside it two contacts between a free pair and one that is open."""
     right = Point({"a": 1.0}) if at_point else "a"
     scene = Scene(
@@ -96,7 +94,7 @@ def test_what_is_not_locked_keeps_its_forces(at_point: bool) -> None:
     assert (contact_rows(model)[0] == [1.0, 0.0, 0.0, 0.0]).all()
 
 
-def test_what_two_supports_lock_is_pressed_as_between_barriers() -> None:
+def test_what_two_supports_lock_is_pressed_as_between_barriers():
     row = ("pier", "a", "b", "wall")
     contacts = tuple(Contact(x + y, x, y, 0.0, 0.5) for x, y in pairwise(row))
     scene = Scene((Body("a", 1.0), Body("b", 2.0)), contacts=contacts, motion=Sine(1.0, 1.0))

@@ -1,7 +1,5 @@
 """Equations of motion of a mode against full matrices written anew."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -28,7 +26,7 @@ def _ground(at: Instant) -> float:
 
 
 @pytest.mark.parametrize("squeezed", [False, True])
-def test_random_scenes(squeezed: bool) -> None:
+def test_random_scenes(squeezed):
     rng = np.random.default_rng(21)
     for _ in range(60):
         at = random_instant(rng, squeezed=squeezed)
@@ -54,7 +52,7 @@ def test_random_scenes(squeezed: bool) -> None:
 
 
 @pytest.mark.parametrize("squeezed", [False, True])
-def test_state_vector_of_random_scenes(squeezed: bool) -> None:
+def test_state_vector_of_random_scenes(squeezed):
     rng = np.random.default_rng(22)
     for _ in range(60):
         at = random_instant(rng, squeezed=squeezed)
@@ -67,7 +65,7 @@ def test_state_vector_of_random_scenes(squeezed: bool) -> None:
         np.testing.assert_array_equal(y[at.system.ledger :], works)
 
 
-def test_time_counts_from_the_start_of_the_segment() -> None:
+def test_time_counts_from_the_start_of_the_segment():
     at = random_instant(np.random.default_rng(5))
     later = at.forcing._replace(start=at.forcing.start + 0.7)
     one, other = np.empty(at.system.size), np.empty(at.system.size)
@@ -76,7 +74,7 @@ def test_time_counts_from_the_start_of_the_segment() -> None:
     np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-14)
 
 
-def test_only_what_the_scene_has() -> None:
+def test_only_what_the_scene_has():
     """An elastic body carries no z, a scene without ledger none, a rigid link nothing."""
     body = (Body("a", 1.0), Body("b", 2.0))
     elastic = assemble(Scene(body[:1], (Spring("s", (GROUND, "a"), Linear(1.0)),)))
@@ -99,7 +97,7 @@ def test_only_what_the_scene_has() -> None:
     assert size(both, [0], False) == 2
 
 
-def test_jacobian_of_a_row_is_banded() -> None:
+def test_jacobian_of_a_row_is_banded():
     # Neighbours joined by Bouc–Wen springs: q, v, z stand in blocks of three.
     names = [f"b{i}" for i in range(30)]
     scene = Scene(

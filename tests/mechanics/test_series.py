@@ -1,7 +1,5 @@
 """Taylor coefficients of the motion: closed form, order of convergence, an integrator."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -28,7 +26,7 @@ def _integrated(at: Instant, y: np.ndarray, h: float) -> np.ndarray:
     return np.asarray(path.y[:, -1])
 
 
-def test_elastic_oscillator_under_a_sine() -> None:
+def test_elastic_oscillator_under_a_sine():
     # u'' + ω² u = -a sin(p t): u = A cos ωt + B sin ωt + D sin pt, D = -a/(ω² - p²).
     omega, p, a, t0, u0, v0 = 2.0, 3.0, 1.5, 0.4, 0.3, -0.7
     scene = Scene((Body("m", 2.0),), (Spring("k", (GROUND, "m"), Linear(2.0 * omega**2)),))
@@ -62,7 +60,7 @@ def _smooth_instants(rng: np.random.Generator, count: int) -> list[tuple[Instant
     return found
 
 
-def test_random_scenes_against_an_integrator() -> None:
+def test_random_scenes_against_an_integrator():
     h = 0.01
     for at, y in _smooth_instants(np.random.default_rng(61), 40):
         Y = motion_series(0.0, y, at.system, at.forcing, ORDER, 1e-13)
@@ -77,7 +75,7 @@ def test_random_scenes_against_an_integrator() -> None:
 
 
 @pytest.mark.parametrize(("order", "longest"), [(2, 0.02), (3, 0.04), (5, 0.06), (8, 0.15)])
-def test_order_of_convergence(order: int, longest: float) -> None:
+def test_order_of_convergence(order, longest):
     # A series cut after τ^p errs by O(h^(p+1)): slope of log error over log h. The next
     # term shifts the slope by O(h), less than would confuse it with a neighbour.
     law = BoucWen(0.5, 1.0, 0.8, 2.0, 0.3, 0.7, 0.3)
@@ -94,7 +92,7 @@ def test_order_of_convergence(order: int, longest: float) -> None:
 @pytest.mark.parametrize("z", [0.0, 0.6, -0.6])
 @pytest.mark.parametrize("pull", [1.0, -1.0])
 @pytest.mark.parametrize("n", [1.0, 2.0, 20.0])
-def test_start_from_rest(z: float, pull: float, n: float) -> None:
+def test_start_from_rest(z, pull, n):
     # x' = 0 at first: its sign is that of the first coefficient that does not vanish.
     law = BoucWen(0.5, 1.0, 0.4, n, 0.3, 0.7, z)
     scene = Scene((Body("m", 1.0),), (Spring("k", (GROUND, "m"), law),))
@@ -110,7 +108,7 @@ def test_start_from_rest(z: float, pull: float, n: float) -> None:
     )
 
 
-def test_rate_of_a_series_is_its_derivative() -> None:
+def test_rate_of_a_series_is_its_derivative():
     rng = np.random.default_rng(63)
     Y = rng.normal(size=(9, 4))
     state, rate = evaluate_series(Y, 0.7)

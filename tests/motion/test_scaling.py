@@ -1,7 +1,5 @@
 """Records scaled by their spectra, against the spectrum of what comes out."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +18,7 @@ RECORD = Record(SAMPLES, 0.02)
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.3])
-def test_psa_is_that_of_the_fast_solver(damping: float) -> None:
+def test_psa_is_that_of_the_fast_solver(damping):
     periods = np.array([0.03, 0.1, 0.5, 1.7, 9.0])
     found = psa_of(SAMPLES, 0.02, periods, damping)
     expected = response_spectrum(RECORD, damping, periods)["PSA"].to_numpy()
@@ -28,13 +26,13 @@ def test_psa_is_that_of_the_fast_solver(damping: float) -> None:
     assert found == pytest.approx(expected, rel=1e-6)
 
 
-def test_psa_of_a_constant_acceleration() -> None:
+def test_psa_of_a_constant_acceleration():
     # For a whole undamped period: u swings to twice a/w^2.
     found = psa_of(np.full(201, 3.0), 0.01, np.array([2.0]), 0.0)
     assert found[0] == pytest.approx(6.0, rel=1e-12)
 
 
-def test_record_of_a_psa() -> None:
+def test_record_of_a_psa():
     record = Record(SAMPLES, 0.02, psa=4.0, psa_period=0.6, psa_damping=0.02, reverse=True)
     assert response_spectrum(record, 0.02, [0.6])["PSA"][0] == pytest.approx(4.0, rel=1e-6)
     assert record.values[0] * SAMPLES[0] < 0.0
@@ -45,7 +43,7 @@ def test_record_of_a_psa() -> None:
     assert "recorded_psa" not in vars(record.like(psa_period=0.7))
 
 
-def test_least_squares_to_a_target() -> None:
+def test_least_squares_to_a_target():
     period = np.geomspace(0.1, 3.0, 40)
     psa = psa_of(SAMPLES, 0.02, period, 0.05)
     own = Target(tuple(period), tuple(2.5 * psa), 0.1, 3.0)
@@ -71,7 +69,7 @@ def test_least_squares_to_a_target() -> None:
         ({"psa": 1.0, "psa_period": 1.0, "psa_damping": 1.0}, "psa_damping is 1.0"),
     ],
 )
-def test_refused(numbers: dict[str, float], said: str) -> None:
+def test_refused(numbers, said):
     with pytest.raises(InputError, match=said):
         Record(SAMPLES, 0.02, **numbers)
 
@@ -89,7 +87,7 @@ TARGET = 'target_periods = ["0.2 s", 2]\ntarget_damping = "2 %"'
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def folder(tmp_path):
     (tmp_path / "a.txt").write_text("\n".join(map(repr, SAMPLES.tolist())))
     (tmp_path / "code.csv").write_text("period,PSA_g\n0.1,0.5\n0.5,0.5\n4,0.1\n")
     return tmp_path
@@ -107,13 +105,13 @@ def motion(folder: Path, text: str) -> Record:
     return record
 
 
-def test_case_by_psa(folder: Path) -> None:
+def test_case_by_psa(folder):
     record = motion(folder, 'psa = "0.5 g"\npsa_period = "1.2 s"')
     found = response_spectrum(record, 0.05, [1.2])["PSA_g"][0]
     assert found == pytest.approx(0.5, rel=1e-6)
 
 
-def test_case_by_target(folder: Path) -> None:
+def test_case_by_target(folder):
     record = motion(folder, f'target = "code.csv"\n{TARGET}')
     g = 9.80665
     points = ((0.1, 0.5, 4.0), (0.5 * g, 0.5 * g, 0.1 * g))
@@ -123,7 +121,7 @@ def test_case_by_target(folder: Path) -> None:
     assert motion(folder, f"{listed}\n{TARGET}").factor == pytest.approx(expected, rel=1e-12)
 
 
-def test_suite_by_psa(folder: Path) -> None:
+def test_suite_by_psa(folder):
     text = 'suite = "*.txt"\npsa = 3\npsa_period = 1'
     (folder / "case.toml").write_text(CASE.format(text))
     case = load_case(folder)
@@ -152,7 +150,7 @@ def test_suite_by_psa(folder: Path) -> None:
         ("target_periods = [1, 2]", "target_periods: .*a target beside it"),
     ],
 )
-def test_case_refused(folder: Path, text: str, said: str) -> None:
+def test_case_refused(folder, text, said):
     (folder / "case.toml").write_text(CASE.format(f'file = "a.txt"\n{text}'))
     with pytest.raises(InputError, match=said):
         load_case(folder)

@@ -5,8 +5,6 @@ unique: joints between the same two, along cycles, to supports, at points, with 
 equal, infinite or of a few digits, so that some are exactly reached.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import product
 from typing import NamedTuple
@@ -122,7 +120,7 @@ def _could_fall(box: _Box, x: np.ndarray) -> tuple[float, float]:
 
 @pytest.mark.parametrize("points", [False, True])
 @pytest.mark.parametrize("digits", [False, True])
-def test_no_other_forces_are_less(*, digits: bool, points: bool) -> None:
+def test_no_other_forces_are_less(*, digits, points):
     rng = np.random.default_rng(9)
     seen = none = 0
     for _ in range(400):
@@ -170,7 +168,7 @@ def _every_way(G: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.ndarray) 
     return found
 
 
-def test_limit_is_that_of_small_changes_tried_in_every_way() -> None:
+def test_limit_is_that_of_small_changes_tried_in_every_way():
     rng = np.random.default_rng(5)
     seen = none = 0
     for _ in range(150):
@@ -198,14 +196,14 @@ def test_limit_is_that_of_small_changes_tried_in_every_way() -> None:
     assert none > 3
 
 
-def test_a_force_that_nothing_moves_stays_at_its_start() -> None:
+def test_a_force_that_nothing_moves_stays_at_its_start():
     box = _box([1.0], np.array([[0, 0], [-1, -1]]), np.zeros(1), np.ones(2))
     x, found = box._replace(start=np.array([1.0, -1.0])).least()
     assert found
     assert x == pytest.approx([1.0, -1.0])
 
 
-def test_sliders_beside_bodies_of_very_unlike_masses_do_not_go_round_in_circles() -> None:
+def test_sliders_beside_bodies_of_very_unlike_masses_do_not_go_round_in_circles():
     # Of 63 000, 105 and 0.3 t; three sliders and the ground are a cycle.
     bound = np.array([600.0, 600000.0, 20000.0, 300000.0])
     ends = np.array([[-1, 0, 2, 1], [1, 1, -1, 2]])
@@ -217,7 +215,7 @@ def test_sliders_beside_bodies_of_very_unlike_masses_do_not_go_round_in_circles(
     np.testing.assert_allclose(box.W @ x / box.mass, 0.0, atol=ROUNDING * np.abs(a).max())
 
 
-def test_rounding_of_unknowns_that_vanish_does_not_decide() -> None:
+def test_rounding_of_unknowns_that_vanish_does_not_decide():
     # Two contacts and three sliders, which may all let go; next, two supports part.
     mass = [np.inf, np.inf, 1.2692442401767902, 1.5612784402796849, 1.7015906954878348]
     bound = np.array([np.inf, np.inf, 0.29824614543211375, 4.986009876809242, 0.4319888918413696])

@@ -1,9 +1,6 @@
 """The page of a comparison."""
 
-from __future__ import annotations
-
 import shutil
-from pathlib import Path
 
 import pandas as pd
 
@@ -12,7 +9,7 @@ from tests.models import CASES
 from tests.report.test_html import whole
 
 
-def test_page_of_a_comparison(tmp_path: Path) -> None:
+def test_page_of_a_comparison(tmp_path):
     folder = tmp_path / "pair"
     shutil.copytree(CASES / "pair", folder)
     words = ["--solvers", "fast,moreau", "--rtol", "1e-6", "--steps", "0.01", "--repeats", "1"]

@@ -1,7 +1,5 @@
 """The report of design numbers: two sheets of A4, in units of the trade, from matplotlib alone."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil
@@ -73,7 +71,7 @@ def bridge() -> str:
 
 
 @pytest.fixture(scope="module")
-def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def suite(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bridge")
     for name, amplitude in (("a", 0.2), ("b", 0.5), ("c", 0.8)):
         (folder / f"{name}.txt").write_text(time_series(amplitude))
@@ -102,7 +100,7 @@ def printed(folder: Path, html: bytes) -> int:
     return pages(file.read_bytes())
 
 
-def test_the_command_writes_two_sheets_without_a_browser(suite: Path) -> None:
+def test_the_command_writes_two_sheets_without_a_browser(suite):
     assert pages((suite / "report.pdf").read_bytes()) == 2
     text = (suite / "report.html").read_text(encoding="utf-8")
     parser = Balanced()
@@ -113,12 +111,12 @@ def test_the_command_writes_two_sheets_without_a_browser(suite: Path) -> None:
     assert text.count('<section class="sheet">') == 2
 
 
-def test_a_browser_prints_two_pages_of_it(suite: Path, tmp_path: Path) -> None:
+def test_a_browser_prints_two_pages_of_it(suite, tmp_path):
     sheets, *_ = (suite / "report.html").read_text(encoding="utf-8").partition(APPENDIX)
     assert printed(tmp_path, sheets.encode()) == 2
 
 
-def test_it_speaks_as_the_trade_does(suite: Path) -> None:
+def test_it_speaks_as_the_trade_does(suite):
     text = (suite / "report.html").read_text(encoding="utf-8")
     sheets, *_ = text.partition(APPENDIX)
     plain = re.sub(r"<svg.*?</svg>|<style.*?</style>", "", sheets, flags=re.DOTALL)
@@ -134,7 +132,7 @@ def test_it_speaks_as_the_trade_does(suite: Path) -> None:
     assert "3 records are few" in plain
 
 
-def test_it_says_what_is_left_out(suite: Path, tmp_path: Path) -> None:
+def test_it_says_what_is_left_out(suite, tmp_path):
     for file in suite.parents[1].glob("*.t*"):
         shutil.copy(file, tmp_path)
     (tmp_path / "d.txt").write_text("0.1\nNaN\n")
@@ -143,7 +141,7 @@ def test_it_says_what_is_left_out(suite: Path, tmp_path: Path) -> None:
     assert "Left out, because it failed: d.txt: " in text
 
 
-def test_decks_stand_on_bearings_on_piers(suite: Path) -> None:
+def test_decks_stand_on_bearings_on_piers(suite):
     scene = load_case(suite.parents[1]).scene
     boxes = layout_of(scene).boxes
     decks, piers = (
@@ -155,7 +153,7 @@ def test_decks_stand_on_bearings_on_piers(suite: Path) -> None:
         assert decks[i].x < pier.x < decks[i + 1].x
 
 
-def test_the_sources_of_numbers_stand_in_the_model(tmp_path: Path) -> None:
+def test_the_sources_of_numbers_stand_in_the_model(tmp_path):
     (tmp_path / "a.txt").write_text(time_series(0.3))
     text = bridge().replace('gap = "80 mm"', 'gap = "80 mm"\nsource = "drawing B-12"', 1)
     (tmp_path / "case.toml").write_text(text)
@@ -174,7 +172,7 @@ def test_the_sources_of_numbers_stand_in_the_model(tmp_path: Path) -> None:
         load_case(tmp_path)
 
 
-def test_scaling_is_said_in_the_chosen_unit(tmp_path: Path) -> None:
+def test_scaling_is_said_in_the_chosen_unit(tmp_path):
     (tmp_path / "a.txt").write_text(time_series(0.3))
     (tmp_path / "case.toml").write_text(bridge() + '[run]\nunits = ["m/s^2"]\n')
     case = load_case(tmp_path)
@@ -182,7 +180,7 @@ def test_scaling_is_said_in_the_chosen_unit(tmp_path: Path) -> None:
     assert said.startswith("every record to a PSA of 4.90 m/s² at T1 of deck 2 = ")
 
 
-def test_the_workbook_has_the_numbers_of_the_table_in_its_units(suite: Path) -> None:
+def test_the_workbook_has_the_numbers_of_the_table_in_its_units(suite):
     sheets = read_workbook((suite / "report.xlsx").read_bytes())
     table = pd.read_csv(suite / "report.csv").set_index("quantity")
     headings, *rows = sheets["Piers and other yielding springs"[:31]]
@@ -197,7 +195,7 @@ def test_the_workbook_has_the_numbers_of_the_table_in_its_units(suite: Path) -> 
     assert [row[0] for row in sheets["Records"][1:]] == ["1 a.txt", "2 b.txt", "3 c.txt"]
 
 
-def test_bearings_hide_no_piers(suite: Path) -> None:
+def test_bearings_hide_no_piers(suite):
     text = (suite / "report.html").read_text(encoding="utf-8")
     first, *_ = text.partition('<section class="sheet">\n<h2')
     for kind in ("Structure", "Piers and other yielding springs (2)", "Bodies (5)"):
@@ -208,7 +206,7 @@ def test_bearings_hide_no_piers(suite: Path) -> None:
     assert all(f">bearing {i}<" in appendix for i in range(1, 7))
 
 
-def test_the_page_that_zooms_is_whole_in_itself(suite: Path, tmp_path: Path) -> None:
+def test_the_page_that_zooms_is_whole_in_itself(suite, tmp_path):
     page = suite / "motion.html"
     text = page.read_text(encoding="utf-8")
     parser = Balanced()

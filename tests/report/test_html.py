@@ -1,7 +1,5 @@
 """The page of a run: whole in itself, with the numbers of its files, and opened in a browser."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil
@@ -46,14 +44,14 @@ class Balanced(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def page(tmp_path_factory):
     folder = tmp_path_factory.mktemp("page") / "pair"
     shutil.copytree(CASES / "pair", folder)
     assert main(["report", str(folder)]) == 0
     return folder / "results" / "report" / "report.html"
 
 
-def test_nothing_is_loaded_from_elsewhere(page: Path) -> None:
+def test_nothing_is_loaded_from_elsewhere(page):
     text = page.read_text(encoding="utf-8")
     parser = Balanced()
     parser.feed(text)
@@ -66,7 +64,7 @@ def test_nothing_is_loaded_from_elsewhere(page: Path) -> None:
     assert len(parser.ids) >= 7
 
 
-def test_it_has_the_numbers_of_the_files(page: Path) -> None:
+def test_it_has_the_numbers_of_the_files(page):
     text = page.read_text(encoding="utf-8")
     summary = read(page.parent).summary
     for name, peak in summary["peaks"].items():
@@ -79,13 +77,13 @@ def test_it_has_the_numbers_of_the_files(page: Path) -> None:
     assert text.count("<svg") == 6
 
 
-def test_the_same_results_make_the_same_page(page: Path) -> None:
+def test_the_same_results_make_the_same_page(page):
     before = page.read_bytes()
     assert main(["report", str(page.parents[2])]) == 0
     assert page.read_bytes() == before
 
 
-def test_a_certificate_is_one_sentence_and_of_this_run(page: Path) -> None:
+def test_a_certificate_is_one_sentence_and_of_this_run(page):
     folder = page.parents[2]
     peak = read(page.parent).summary["peaks"]["stiff"]["max"]
     for value, said in ((peak, "1 of 2 numbers hold to 11 digits"), (9.9, "is of another case")):
@@ -99,9 +97,7 @@ def test_a_certificate_is_one_sentence_and_of_this_run(page: Path) -> None:
     assert main(["report", str(folder)]) == 0
 
 
-def test_a_folder_of_cases_has_a_report_each(
-    page: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_folder_of_cases_has_a_report_each(page, tmp_path, capsys):
     shutil.copytree(CASES / "pair", tmp_path / "one")
     (tmp_path / "two").mkdir()
     (tmp_path / "two" / "case.toml").write_text("title = 2\n")
@@ -117,7 +113,7 @@ def test_a_folder_of_cases_has_a_report_each(
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
-def test_a_browser_shows_it(page: Path, tmp_path: Path) -> None:
+def test_a_browser_shows_it(page, tmp_path):
     assert CHROMIUM is not None
     picture = tmp_path / "page.png"
     flags = [
@@ -180,7 +176,7 @@ restitution = 0.6
 
 
 @pytest.fixture(scope="module")
-def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def suite(tmp_path_factory):
     folder = tmp_path_factory.mktemp("suite")
     (folder / "records").mkdir()
     rng = np.random.default_rng(3)
@@ -193,7 +189,7 @@ def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "results" / "report"
 
 
-def test_page_of_a_suite(suite: Path) -> None:
+def test_page_of_a_suite(suite):
     text = whole(suite / "report.html")
     table = pd.read_csv(suite / "suite.csv")
     done = table[table["failed"].isna()]
@@ -242,7 +238,7 @@ claim = "Wide gaps are never closed."
 """
 
 
-def test_page_of_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_page_of_a_study(tmp_path, capsys):
     (tmp_path / "case.toml").write_text(STUDY)
     assert main(["study", str(tmp_path), "--no-figures"]) == 0
     assert main(["report", str(tmp_path)]) == 0
@@ -274,7 +270,7 @@ def test_page_of_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert "no table of this case as it is; `eventpound study`" in capsys.readouterr().err
 
 
-def test_page_of_a_study_under_records(tmp_path: Path) -> None:
+def test_page_of_a_study_under_records(tmp_path):
     for name, amplitude in (("a", 0.2), ("b", 0.5)):
         (tmp_path / f"{name}.txt").write_text(time_series(amplitude))
     study = '[study]\nrecords = "?.txt"\nquantities = ["peaks.deck.abs_max"]\n'

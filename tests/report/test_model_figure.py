@@ -1,9 +1,6 @@
 """The picture of a scene: who stands where, and that nothing is left out."""
 
-from __future__ import annotations
-
 from itertools import combinations, pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -45,7 +42,7 @@ def places(scene: Scene) -> dict[str, tuple[float, float]]:
     return {name: (box.x, box.y) for name, box in layout_of(scene).boxes.items()}
 
 
-def test_buildings_stand_floor_over_floor_in_the_order_of_contacts() -> None:
+def test_buildings_stand_floor_over_floor_in_the_order_of_contacts():
     scene = Scene(
         tuple(Body(name, 1.0) for name in ("B1", "B2", "A1", "A2", "A3")),
         (*storeys("A", 3), *storeys("B", 2)),
@@ -56,7 +53,7 @@ def test_buildings_stand_floor_over_floor_in_the_order_of_contacts() -> None:
     assert place["A1"][1] == place["B1"][1] < place["A2"][1] == place["B2"][1] < place["A3"][1]
 
 
-def test_decks_stand_in_a_row() -> None:
+def test_decks_stand_in_a_row():
     scene = Scene(
         tuple(Body(name, 1.0) for name in "cab"),
         (
@@ -81,7 +78,7 @@ def assert_nothing_is_in_the_way(layout: Layout, routes: list[LinkPath]) -> None
                 assert not crosses(box, start, end), (route.link, name)
 
 
-def test_floor_and_column_that_meet_are_drawn_at_one_height() -> None:
+def test_floor_and_column_that_meet_are_drawn_at_one_height():
     high = [Spring(s.name, s.between, s.law, 3.6) for s in storeys("A", 3)]
     low = [Spring(s.name, s.between, s.law, 3.0) for s in storeys("B", 4)]
     column = Point((("A2", 1.8 / 3.6), ("A3", 1.8 / 3.6)))
@@ -115,13 +112,13 @@ def everything() -> Scene:
     )
 
 
-def test_bodies_that_can_touch_stand_side_by_side() -> None:
+def test_bodies_that_can_touch_stand_side_by_side():
     place = places(everything())
     assert place["deck $1"][1] == place["deck2"][1]
     assert place["deck $1"][0] < place["deck2"][0]
 
 
-def test_everything_is_drawn_once_and_named() -> None:
+def test_everything_is_drawn_once_and_named():
     figure = model_figure(everything(), "A bridge")
     (axes,) = figure.axes
     texts = "|".join(text.get_text() for text in axes.texts)
@@ -140,7 +137,7 @@ def test_everything_is_drawn_once_and_named() -> None:
 
 
 @pytest.mark.parametrize("name", ["bridge-el-centro", "adjacent-buildings", "row-of-eight"])
-def test_bodies_do_not_overlap_and_stand_within_the_picture(name: str) -> None:
+def test_bodies_do_not_overlap_and_stand_within_the_picture(name):
     figure = model_figure(load_case(CASES / name).scene)
     (axes,) = figure.axes
     figure.canvas.draw()
@@ -153,7 +150,7 @@ def test_bodies_do_not_overlap_and_stand_within_the_picture(name: str) -> None:
     assert (boxes[:, 2] < figure.bbox.width).all()
 
 
-def test_laws_that_differ_are_drawn_below_the_scene() -> None:
+def test_laws_that_differ_are_drawn_below_the_scene():
     scene = load_case(CASES / "bridge-pulse").scene
     axes = model_figure(scene, with_laws=True).axes[1:]
     assert [a.get_title() for a in axes] == [
@@ -175,7 +172,7 @@ def test_laws_that_differ_are_drawn_below_the_scene() -> None:
     assert "extension 1.731 MN/m" in said
 
 
-def test_the_slack_of_a_cable_is_told_and_seen() -> None:
+def test_the_slack_of_a_cable_is_told_and_seen():
     scene = Scene(
         (Body("deck", 1e6),),
         (
@@ -190,14 +187,14 @@ def test_the_slack_of_a_cable_is_told_and_seen() -> None:
     assert 0.2 < 0.02 / (x.max() - x.min()) < 0.5
 
 
-def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command(tmp_path, capsys):
     for name in ("bridge-pulse", "figure-07"):
         assert main(["plot", "--model", str(CASES / name), "--out", str(tmp_path / name)]) == 0
         assert capsys.readouterr().out.strip() == str(tmp_path / name / "model.png")
         assert (tmp_path / name / "model.png").stat().st_size > 5000
 
 
-def test_corners_of_one_joint_are_named_one_above_the_other() -> None:
+def test_corners_of_one_joint_are_named_one_above_the_other():
     joint = [
         Contact(name, "A1", "B1", gap, 0.5) for name, gap in (("acute", 0.03), ("obtuse", 0.05))
     ]
@@ -207,5 +204,5 @@ def test_corners_of_one_joint_are_named_one_above_the_other() -> None:
     assert said.split("\n")[::2] == ["acute", "obtuse"]
 
 
-def test_every_law_has_its_look() -> None:
+def test_every_law_has_its_look():
     assert {_CALLED.get(word, word) for word in LawName} <= set(_LAWS)

@@ -1,7 +1,5 @@
 """Where bodies and structures stand in the drawing of a model."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -21,7 +19,7 @@ from eventpound.scene import (
 from tests.report.test_model_figure import assert_nothing_is_in_the_way, places, storeys
 
 
-def test_floors_stand_at_the_heights_of_their_storeys() -> None:
+def test_floors_stand_at_the_heights_of_their_storeys():
     high = [Spring(s.name, s.between, s.law, 3.6) for s in storeys("A", 3)]
     low = [Spring(s.name, s.between, s.law, 3.0) for s in storeys("B", 4)]
     scene = Scene(tuple(Body(s.between[1], 1.0) for s in (*high, *low)), (*high, *low))
@@ -74,7 +72,7 @@ BRIDGES = [
 
 
 @pytest.mark.parametrize("scene", BRIDGES)
-def test_decks_stand_on_their_piers_between_the_abutments(scene: Scene) -> None:
+def test_decks_stand_on_their_piers_between_the_abutments(scene):
     layout = layout_of(scene)
     routes = links_drawn(scene, layout)
     assert_nothing_is_in_the_way(layout, routes)
@@ -91,13 +89,13 @@ def test_decks_stand_on_their_piers_between_the_abutments(scene: Scene) -> None:
             assert layout.boxes[end].left < route.corners[-1][0] < layout.boxes[end].right
 
 
-def test_two_piers_at_one_joint_stand_beside_each_other() -> None:
+def test_two_piers_at_one_joint_stand_beside_each_other():
     scene = decks_on_piers(3, caps=2, inside=1)
     layout = layout_of(scene)
     assert_nothing_is_in_the_way(layout, links_drawn(scene, layout))
 
 
-def test_bodies_of_any_scene_stand_apart() -> None:
+def test_bodies_of_any_scene_stand_apart():
     rng = np.random.default_rng(5)
     for _ in range(300):
         names = [f"b{i}" for i in range(rng.integers(1, 9))]

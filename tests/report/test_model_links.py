@@ -1,7 +1,5 @@
 """How springs and dashpots are led between the bodies of a drawing."""
 
-from __future__ import annotations
-
 from eventpound import modal_damping
 from eventpound.report.model_layout import layout_of
 from eventpound.report.model_links import links_drawn
@@ -17,7 +15,7 @@ from eventpound.scene import (
 from tests.report.test_model_figure import assert_nothing_is_in_the_way, everything, storeys
 
 
-def test_a_spring_goes_round_what_is_between_its_ends() -> None:
+def test_a_spring_goes_round_what_is_between_its_ends():
     names = "abc"
     scene = Scene(
         tuple(Body(name, 1.0) for name in names),
@@ -33,7 +31,7 @@ def test_a_spring_goes_round_what_is_between_its_ends() -> None:
     assert len(routes[-1].corners) == 4
 
 
-def test_soil_stands_beside_its_body_at_a_wall() -> None:
+def test_soil_stands_beside_its_body_at_a_wall():
     scene = everything()
     layout = layout_of(scene)
     (route,) = (r for r in links_drawn(scene, layout) if r.label == "soil")
@@ -41,7 +39,7 @@ def test_soil_stands_beside_its_body_at_a_wall() -> None:
     assert [x < layout.boxes["deck $1"].left for x, _ in route.corners] == [True, False]
 
 
-def test_dashpots_of_modal_damping_are_drawn_beside_springs_alone() -> None:
+def test_dashpots_of_modal_damping_are_drawn_beside_springs_alone():
     springs = storeys("A", 4)
     bodies = tuple(Body(spring.between[1], 1.0) for spring in springs)
     scene = Scene(bodies, tuple(springs), modal_damping(bodies, springs, 0.05))

@@ -1,7 +1,5 @@
 """A pulse over the record that it was fitted to."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,7 @@ from eventpound.report.pulse_fit import pulse_fit_figure
 from tests.models import CASES
 
 
-def test_pulse_over_the_record() -> None:
+def test_pulse_over_the_record():
     t = np.arange(0.0, 8.0, 0.01)
     record = Record(Ricker(2.0, 1.0, start=2.0).acceleration(t), 0.01)
     fits = fit_pulse(record, ["ricker", "sine"])
@@ -25,7 +23,7 @@ def test_pulse_over_the_record() -> None:
     assert len(lower.get_lines()) == 4
 
 
-def test_the_added_pulse_is_found_again() -> None:
+def test_the_added_pulse_is_found_again():
     case = load_case(CASES / "figure-01")
     assert case.figures
     pulse = case.figures[0].added_pulse

@@ -1,7 +1,5 @@
 """The figure of a record shows the record: its series, its peaks and its mean period."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -19,7 +17,7 @@ def characteristics(acceleration: np.ndarray) -> Characteristics:
     return Characteristics(data)
 
 
-def test_series_peaks_and_mean_period() -> None:
+def test_series_peaks_and_mean_period():
     record = characteristics(motion(2000, 0.01))
     figure = record_figure(record)
     acceleration, velocity, displacement, spectrum = figure.axes
@@ -41,13 +39,13 @@ def test_series_peaks_and_mean_period() -> None:
     assert bool(displacement.get_title(loc="left")) == bool(final > 0.5 * record.intensity.pgd)
 
 
-def test_a_drift_is_named() -> None:
+def test_a_drift_is_named():
     figure = record_figure(characteristics(motion(2000, 0.01) + 0.05))
     assert figure.axes[2].get_title(loc="left") == "drifts"
     assert figure.axes[2].get_ylabel() == "displacement (m)"
 
 
-def test_a_record_without_a_mean_period_is_drawn() -> None:
+def test_a_record_without_a_mean_period_is_drawn():
     data = RecordData(np.ones(2), 10.0, "m/s^2", "columns", "a.txt", "0" * 64)
     spectrum = record_figure(Characteristics(data)).axes[-1]
     assert spectrum.get_title(loc="left").startswith("no $T_m$")

@@ -1,17 +1,14 @@
 """Two runs in one figure, Π-terms, profiles and drifts, loops between rows."""
 
-from __future__ import annotations
-
 import shutil
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from eventpound import Response, load_case, simulate
+from eventpound import load_case, simulate
 from eventpound.case import write_template
 from eventpound.cli import main
 from eventpound.errors import InputError
@@ -24,7 +21,7 @@ from tests.solvers.scenes import pounding_pair
 
 
 @pytest.fixture(scope="module")
-def buildings(tmp_path_factory: pytest.TempPathFactory) -> Response:
+def buildings(tmp_path_factory):
     case = load_case(write_template(tmp_path_factory.mktemp("b") / "case", "buildings"))
     return simulate(case, "fast", rtol=1e-6)
 
@@ -33,7 +30,7 @@ def panel(figure: Figure, word: str) -> Axes:
     return next(axes for axes in figure.axes if word in axes.get_ylabel())
 
 
-def test_without_contact_in_one_figure(buildings: Response) -> None:
+def test_without_contact_in_one_figure(buildings):
     free = buildings.without_contact
     drawn = figures(buildings, (free, "without contact"))
     assert list(drawn) == ["displacements.png", "loops.png", "profiles.png"]
@@ -50,13 +47,13 @@ def test_without_contact_in_one_figure(buildings: Response) -> None:
     assert len(right.patches) == 4 * len(towers)
 
 
-def test_another_scene_is_refused(buildings: Response) -> None:
+def test_another_scene_is_refused(buildings):
     other = simulate(pounding_pair(), "fast", rtol=1e-6, duration=0.5)
     with pytest.raises(InputError, match="none of its bodies"):
         figures(buildings, (other, "elsewhere"))
 
 
-def test_pi_terms(buildings: Response) -> None:
+def test_pi_terms(buildings):
     scales = buildings.scene.motion.scales()
     assert scales is not None
     drawn = figures(buildings, (buildings.without_contact, "x"), pi=True)
@@ -74,7 +71,7 @@ def test_pi_terms(buildings: Response) -> None:
         figures(simulate(still, "fast", duration=1.0), pi=True)
 
 
-def test_towers(buildings: Response) -> None:
+def test_towers(buildings):
     view = view_of_run(buildings)
     towers = towers_of(view)
     assert [tower.bodies[0] for tower in towers] == ["A1", "B1"]
@@ -87,7 +84,7 @@ def test_towers(buildings: Response) -> None:
     assert "profiles.png" not in figures(pair.results)
 
 
-def test_heights_make_drift_ratios(buildings: Response) -> None:
+def test_heights_make_drift_ratios(buildings):
     springs = tuple(replace(spring, height=3.0) for spring in buildings.scene.springs)
     scene = replace(buildings.scene, springs=springs)
     response = simulate(scene, "fast", rtol=1e-6, duration=buildings.task.end)
@@ -103,7 +100,7 @@ def test_heights_make_drift_ratios(buildings: Response) -> None:
     assert first.edges[:3] == pytest.approx([0.0, 3.0, 6.0])
 
 
-def test_isolators_have_no_drift_ratio(tmp_path: Path) -> None:
+def test_isolators_have_no_drift_ratio(tmp_path):
     case = load_case(write_template(tmp_path / "case", "isolated"))
     response = simulate(case, "fast", rtol=1e-6, duration=2.0)
     (tower,) = towers_of(view_of_run(response))
@@ -135,7 +132,7 @@ PAIR, SOIL = pounding_pair(), load_case(CASES / "deck-on-backfill").scene
 @pytest.mark.parametrize(
     ("scene", "spring", "solver"), [*((PAIR, i, "fast") for i in range(3)), (SOIL, 2, "cvode")]
 )
-def test_loops_between_coarse_rows(scene: Scene, spring: int, solver: str) -> None:
+def test_loops_between_coarse_rows(scene, spring, solver):
     coarse = simulate(scene, solver, 1e-9, duration=5.0, output_step=0.05)
     fine = simulate(scene, solver, 1e-9, duration=5.0, output_step=0.001)
     view, dense = view_of_run(coarse), view_of_run(fine)
@@ -150,7 +147,7 @@ def test_loops_between_coarse_rows(scene: Scene, spring: int, solver: str) -> No
     assert far(loop / size, true / size) < 1e-3
 
 
-def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_commands(tmp_path, capsys):
     folder = tmp_path / "pair"
     shutil.copytree(CASES / "pair", folder)
     assert main(["run", str(folder), "--no-figures"]) == 0
@@ -167,7 +164,7 @@ def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plot", str(folder), "--beside", str(tmp_path)]) == 2
 
 
-def test_run_draws_what_it_computed_without_contact(tmp_path: Path) -> None:
+def test_run_draws_what_it_computed_without_contact(tmp_path):
     folder = tmp_path / "pair"
     shutil.copytree(CASES / "pair", folder)
     case = folder / "case.toml"
@@ -180,7 +177,7 @@ def test_run_draws_what_it_computed_without_contact(tmp_path: Path) -> None:
     assert (folder / "results" / "displacements.png").read_bytes() != before
 
 
-def test_stored_results_have_the_loops_of_the_response(buildings: Response) -> None:
+def test_stored_results_have_the_loops_of_the_response(buildings):
     case = load_case(CASES / "pair")
     response = simulate(case, "fast", rtol=1e-6)
     stored = view_of_run(gather(response, case))

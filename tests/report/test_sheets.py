@@ -1,9 +1,5 @@
 """Sheets of a report: what fits on them."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 
 from eventpound import design_numbers, load_case, simulate
@@ -21,18 +17,18 @@ def told(case: Case) -> Told:
 
 
 @pytest.mark.parametrize("name", ["adjacent-buildings", "pair", "floor-to-column"])
-def test_runs_of_unlike_scenes_fit_on_two_pages(name: str, tmp_path: Path) -> None:
+def test_runs_of_unlike_scenes_fit_on_two_pages(name, tmp_path):
     sheets = design_sheets(told(load_case(CASES / name)))
     assert pages(as_pdf(name, sheets)) == 2
     assert printed(tmp_path, as_html(name, sheets)) == 2
 
 
-def test_a_scene_without_contacts_has_a_report() -> None:
+def test_a_scene_without_contacts_has_a_report():
     sheets = design_sheets(told(load_case(CASES / "elastic-record")))
     assert "peak displacement" in as_html("", sheets).decode()
 
 
-def test_the_first_sheet_of_tall_buildings_has_room_for_its_sketch(tmp_path: Path) -> None:
+def test_the_first_sheet_of_tall_buildings_has_room_for_its_sketch(tmp_path):
     text = '[excitation]\nkind = "sine"\namplitude = "0.4 g"\nperiod = "0.7 s"\n'
     for name in "AB":
         text += f'[[building]]\nname = "{name}"\nstoreys = 12\nmass = "200 t"\n'

@@ -1,7 +1,5 @@
 """Contours over the Π-terms of records."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,7 @@ from eventpound.case.figure import Figure, FigureKind, LengthRange
 from eventpound.report.similarity_contours import similarity_contours_figure
 
 
-def test_contours_have_their_value_and_records_their_height() -> None:
+def test_contours_have_their_value_and_records_their_height():
     wanted = Figure(
         FigureKind.SIMILARITY_CONTOURS,
         contours=(0.1, 1.0),

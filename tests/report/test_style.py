@@ -1,10 +1,7 @@
 """Figures for papers: kinds of files, widths, windows, names, texts that stay within."""
 
-from __future__ import annotations
-
 import itertools
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,16 +17,16 @@ from eventpound.report.notes import wrapped
 from eventpound.report.run_figures import figures
 from eventpound.report.style import Paper, on_paper, plain_logarithms
 from eventpound.report.view import View
-from eventpound.results import StoredResults, gather
+from eventpound.results import gather
 
 
 @pytest.fixture(scope="module")
-def buildings(tmp_path_factory: pytest.TempPathFactory) -> StoredResults:
+def buildings(tmp_path_factory):
     case = load_case(write_template(tmp_path_factory.mktemp("b") / "case", "buildings"))
     return gather(simulate(case, rtol=1e-6), case)
 
 
-def test_bodies_have_their_names_and_structures_a_colour(buildings: StoredResults) -> None:
+def test_bodies_have_their_names_and_structures_a_colour(buildings):
     axes = displacement_figure(buildings).axes[1]
     names = [f"A{i}" for i in range(1, 6)] + [f"B{i}" for i in range(1, 5)]
     assert [text.get_text() for text in axes.get_legend().get_texts()] == names
@@ -41,7 +38,7 @@ def test_bodies_have_their_names_and_structures_a_colour(buildings: StoredResult
     assert bluer == [True] * 5 + [False] * 4
 
 
-def test_kinds_width_and_resolution(tmp_path: Path, buildings: StoredResults) -> None:
+def test_kinds_width_and_resolution(tmp_path, buildings):
     written = plot(buildings, tmp_path, Paper(("pdf", "svg", "png"), 90.0, 200))
     assert {path.suffix for path in written} == {".pdf", ".svg", ".png"}
     assert (tmp_path / "loops.pdf").read_bytes().startswith(b"%PDF")
@@ -52,21 +49,19 @@ def test_kinds_width_and_resolution(tmp_path: Path, buildings: StoredResults) ->
 
 
 @pytest.mark.parametrize("kind", ["svg", pytest.param("pdf", marks=pytest.mark.sweep)])
-def test_files_of_one_figure_are_the_same(buildings: StoredResults, kind: str) -> None:
+def test_files_of_one_figure_are_the_same(buildings, kind):
     one, two = (on_paper(figures(buildings), Paper((kind,))) for _ in range(2))
     assert one == two
 
 
-def test_a_window_of_time(tmp_path: Path, buildings: StoredResults) -> None:
+def test_a_window_of_time(tmp_path, buildings):
     assert plot(buildings, tmp_path, xlim=(0.3, 1.5))
     with pytest.raises(InputError, match="in which there are no rows to draw"):
         plot(buildings, tmp_path, xlim=(90.0, 91.0))
 
 
 @pytest.mark.parametrize("ends", [(0.1, 3.0), (0.02, 1.0), (1.0, 9.0), (0.05, 10.0)])
-def test_numbers_of_a_logarithmic_axis_do_not_print_over_each_other(
-    ends: tuple[float, float],
-) -> None:
+def test_numbers_of_a_logarithmic_axis_do_not_print_over_each_other(ends):
     figure = Figure(figsize=(3.5, 2.4), layout="constrained")
     axes = figure.add_subplot()
     axes.plot(ends, (0.0, 1.0))
@@ -80,7 +75,7 @@ def test_numbers_of_a_logarithmic_axis_do_not_print_over_each_other(
     assert all(one[2] < two[0] for one, two in itertools.pairwise(boxes))
 
 
-def test_texts_are_broken_between_words_and_formulas_stay_whole() -> None:
+def test_texts_are_broken_between_words_and_formulas_stay_whole():
     text = "Elastic structure beside a barrier: $a_g = 3.9$ m/s², rtol 1e-9, end at $t = 6\\,T_g$"
     lines = wrapped(text, 30)
     assert " ".join(lines) == text
@@ -89,7 +84,7 @@ def test_texts_are_broken_between_words_and_formulas_stay_whole() -> None:
     assert wrapped("short", 30) == ["short"]
 
 
-def test_a_long_title_stays_within_the_figure(tmp_path: Path) -> None:
+def test_a_long_title_stays_within_the_figure(tmp_path):
     case = """title = "%s"
 [excitation]
 kind = "ricker"

@@ -1,7 +1,5 @@
 """Every column that a study can draw is called what it is, with its unit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -60,7 +58,7 @@ def scene(motion: GroundMotion) -> Scene:
 
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=lambda motion: motion.kind)
-def test_no_column_is_shown_as_its_key(motion: GroundMotion) -> None:
+def test_no_column_is_shown_as_its_key(motion):
     from matplotlib.mathtext import MathTextParser
 
     assert all(dimension_of_number(key) is not None for key in number_places(scene(motion)))
@@ -96,18 +94,18 @@ def test_no_column_is_shown_as_its_key(motion: GroundMotion) -> None:
         ("excitation.file", "excitation.file"),
     ],
 )
-def test_labels(key: str, label: str) -> None:
+def test_labels(key, label):
     assert axis_label(key) == label
 
 
-def test_values_in_a_legend() -> None:
+def test_values_in_a_legend():
     assert value_label("contact.floor5.gap", 0.0063591) == "gap of floor5 = 0.6359 cm"
     assert value_label("contact.floor5.restitution", 0.6) == r"$\epsilon$ of floor5 = 0.6"
     assert symbol("contact.floor5.gap") == "gap of floor5"
     assert value_label("pi.row", 2) == "pi.row = 2"
 
 
-def test_units_that_are_easy_to_read() -> None:
+def test_units_that_are_easy_to_read():
     assert display_unit("excitation.psa", 4.0) == Unit("g", STANDARD_GRAVITY)
     assert display_unit("free.acceleration.A5.max", 4.0).name == "g"
     # A strength over a mass is an acceleration, but none of the ground or a floor.

@@ -1,7 +1,5 @@
 """The work-precision diagram shows the numbers of the tables, and the floor."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Which ends and laws a table of inputs names."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from eventpound.case import read_case
@@ -10,7 +8,7 @@ from eventpound.results.inputs import inputs_of
 from tests.scene.test_at_rest import document
 
 
-def test_check_names_what_counts() -> None:
+def test_check_names_what_counts():
     lines = dict(input_lines(inputs_of(read_case(document(0.02), Path("case.toml")))))
     said = "springs that count in modes, T1 and damping: pier; springs that do not: cable"
     assert lines["at rest"] == said

@@ -1,7 +1,5 @@
 """Tables of what a case was understood to be."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -13,7 +11,7 @@ from tests.scene.test_at_rest import CABLE, K, M, document
 
 
 @pytest.mark.parametrize("damping", ["dashpot", "modal_damping", "rayleigh"])
-def test_a_case_that_starts_in_equilibrium_is_damped_as_it_stands(damping: str) -> None:
+def test_a_case_that_starts_in_equilibrium_is_damped_as_it_stands(damping):
     table = {
         "dashpot": {"between": ["ground", "deck"], "ratio": 0.05},
         "modal_damping": {"bodies": ["deck"], "ratio": 0.05},

@@ -1,7 +1,5 @@
 """Units that a case chooses for its design numbers."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path
@@ -48,13 +46,11 @@ def written(folder: Path, units: str) -> Path:
         (("MN", "cm", "m/s^2"), 0.75, "m/s", "0.750 m/s"),
     ],
 )
-def test_a_chosen_unit_stands_for_its_dimension_and_those_that_follow(
-    chosen: tuple[str, ...], value: float, unit: str, words: str
-) -> None:
+def test_a_chosen_unit_stands_for_its_dimension_and_those_that_follow(chosen, value, unit, words):
     assert Trade(heavy=True, chosen=chosen).words(value, unit) == words
 
 
-def test_what_is_nothing_is_so_in_every_unit() -> None:
+def test_what_is_nothing_is_so_in_every_unit():
     """A millionth of N and of mm is what rounding leaves; in MN and m it is no other."""
     for value, unit in ((2e-6, "N"), (2e-9, "m")):
         usual, large = (Trade(False, chosen).number(value, unit) for chosen in ((), ("MN", "m")))
@@ -63,7 +59,7 @@ def test_what_is_nothing_is_so_in_every_unit() -> None:
         assert Trade(False, ("MN", "m")).number(value / 4.0, unit) == "0"
 
 
-def test_a_yield_force_that_is_small_in_its_unit_is_told(tmp_path: Path) -> None:
+def test_a_yield_force_that_is_small_in_its_unit_is_told(tmp_path):
     text = (CASES / "pair" / "case.toml").read_text().replace("500 t", "0.5 kg")
     (tmp_path / "case.toml").write_text(
         text.replace("490.3 kN", "0.5 N") + '\n[run]\nunits = ["MN"]\n'
@@ -75,9 +71,7 @@ def test_a_yield_force_that_is_small_in_its_unit_is_told(tmp_path: Path) -> None
     assert ">0.000000549<" in as_html("", sheets).decode()
 
 
-def test_the_report_and_the_screen_are_in_the_units_of_the_case(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_report_and_the_screen_are_in_the_units_of_the_case(tmp_path, capsys):
     folder = written(tmp_path, 'units = ["MN", "cm", "m/s^2"]')
     assert main(["report", str(folder)]) == 0
     printed = capsys.readouterr().out
@@ -93,7 +87,7 @@ def test_the_report_and_the_screen_are_in_the_units_of_the_case(
     assert re.search(r"opening [\d.]+ cm, .*impulse [\d.]+ MN s", capsys.readouterr().out)
 
 
-def test_files_of_numbers_stay_in_si(tmp_path: Path) -> None:
+def test_files_of_numbers_stay_in_si(tmp_path):
     tables = []
     for units in ("", 'units = ["MN", "cm", "m/s^2"]'):
         assert main(["report", str(written(tmp_path, units)), "--no-pages"]) == 0
@@ -101,9 +95,7 @@ def test_files_of_numbers_stay_in_si(tmp_path: Path) -> None:
     pd.testing.assert_frame_equal(*tables)
 
 
-def test_a_suite_in_other_units_is_not_run_again(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_suite_in_other_units_is_not_run_again(tmp_path, capsys):
     results = tmp_path / "results" / "report"
     for units in ("cm", "mm"):
         case = written(tmp_path, f'units = ["{units}"]') / "case.toml"
@@ -113,7 +105,7 @@ def test_a_suite_in_other_units_is_not_run_again(
     assert not list(results.glob("earlier-*"))
 
 
-def test_a_case_that_was_understood_keeps_its_units(tmp_path: Path) -> None:
+def test_a_case_that_was_understood_keeps_its_units(tmp_path):
     case = load_case(written(tmp_path, 'units = ["cm", "MN"]'))
     again = json.loads(json.dumps(case.understood))
     assert read_case(again, tmp_path / "case.toml").run.stated.units == ("cm", "MN")
@@ -123,7 +115,7 @@ def test_a_case_that_was_understood_keeps_its_units(tmp_path: Path) -> None:
     "units",
     ['["lbf"]', '["cm", "mm"]', '["kN", "kN"]', '["kN", "s"]', '"kN"', "[]", "[1]", '[["kN"]]'],
 )
-def test_other_words_are_refused_in_one_message(tmp_path: Path, units: str) -> None:
+def test_other_words_are_refused_in_one_message(tmp_path, units):
     with pytest.raises(InputError) as caught:
         load_case(written(tmp_path, f"units = {units}"))
     found = units.replace('"', "'")
@@ -132,7 +124,7 @@ def test_other_words_are_refused_in_one_message(tmp_path: Path, units: str) -> N
     ]
 
 
-def test_customary_units_are_told() -> None:
+def test_customary_units_are_told():
     """1 kip is 1000 lbf of 4.4482216152605 N, an inch 25.4 mm."""
     trade = Trade(True, ("kip", "in"))
     assert trade.words(4448.2216152605, "N") == "1.00 kip"

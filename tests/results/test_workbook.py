@@ -1,7 +1,5 @@
 """The workbook, read by the standard library as any reader of the format would."""
 
-from __future__ import annotations
-
 import io
 from xml.etree import ElementTree
 from zipfile import ZipFile
@@ -34,7 +32,7 @@ def read(data: bytes) -> dict[str, list[list[str | float | None]]]:
     return found
 
 
-def test_numbers_and_texts_come_back() -> None:
+def test_numbers_and_texts_come_back():
     data = workbook(SHEETS)
     first, second = read(data).items()
     assert first == (

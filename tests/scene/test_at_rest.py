@@ -1,10 +1,7 @@
 """Springs at rest: periods against SciPy's eigenvalues, tangents against finite differences."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -62,7 +59,7 @@ def beside(law: Law, u: float = 0.0, force: float = 0.0) -> float:
     return float(M * (2.0 * math.pi / period) ** 2 - K)
 
 
-def test_a_cable_counts_where_it_is_taut_at_rest() -> None:
+def test_a_cable_counts_where_it_is_taut_at_rest():
     assert pytest.approx(0.993, abs=5e-4) == SLACK
     for slack in (5.0, 0.02, 1e-6):
         assert longest_period(deck(cable(slack))) == pytest.approx(SLACK, rel=1e-12)
@@ -70,7 +67,7 @@ def test_a_cable_counts_where_it_is_taut_at_rest() -> None:
 
 
 @pytest.mark.parametrize("law", [cable(0.02), Backfill(CABLE, 1e6, 0.8, gap=0.02)])
-def test_where_the_run_starts_in_equilibrium_its_side_counts(law: Law) -> None:
+def test_where_the_run_starts_in_equilibrium_its_side_counts(law):
     way = -1.0 if isinstance(law, Backfill) else 1.0
     scene = deck(law, force=way * 1e6)
     assert longest_period(scene) == pytest.approx(SLACK, rel=1e-12)
@@ -80,7 +77,7 @@ def test_where_the_run_starts_in_equilibrium_its_side_counts(law: Law) -> None:
     assert modes_of(standing, ["deck"]).period == pytest.approx([TAUT], rel=1e-9)
 
 
-def test_displaced_bodies_that_nothing_holds_there_are_not_at_rest() -> None:
+def test_displaced_bodies_that_nothing_holds_there_are_not_at_rest():
     """A deck drawn back by 50 mm swings about where it is slack; one that is held does not."""
     assert beside(cable(0.02), u=0.05) == pytest.approx(0.0, abs=1e-5 * K)
     held = 0.05 * K + (0.05 - 0.02) * CABLE
@@ -98,7 +95,7 @@ def test_displaced_bodies_that_nothing_holds_there_are_not_at_rest() -> None:
         assert longest_period(scene) == pytest.approx(period, rel=1e-9)
 
 
-def test_at_a_kink_the_smaller_counts_whatever_rounding_says() -> None:
+def test_at_a_kink_the_smaller_counts_whatever_rounding_says():
     law, force = BilinearElastic(K, CABLE, 0.3), 0.3 * K
     (u,) = (body.displacement for body in in_equilibrium(deck(law, force=force)).bodies)
     assert u == pytest.approx(0.3, rel=1e-9)
@@ -113,7 +110,7 @@ def test_at_a_kink_the_smaller_counts_whatever_rounding_says() -> None:
         assert beside(law, place, place * K + k * (place - 0.3)) == pytest.approx(k, rel=1e-9)
 
 
-def test_offsets_in_series_that_cancel_but_for_rounding_are_a_kink() -> None:
+def test_offsets_in_series_that_cancel_but_for_rounding_are_a_kink():
     offsets = (0.3, -0.1, -0.2)
     assert sum(offsets) != 0.0
     for order in (offsets, offsets[::-1]):
@@ -122,7 +119,7 @@ def test_offsets_in_series_that_cancel_but_for_rounding_are_a_kink() -> None:
         assert beside(law) == pytest.approx(K, rel=1e-12)
 
 
-def test_a_spring_that_has_yielded_counts_as_it_unloads() -> None:
+def test_a_spring_that_has_yielded_counts_as_it_unloads():
     standing = in_equilibrium(deck(BoucWen(1e6, 5e5, 0.01), force=2e6))
     told = told_at_rest(standing)
     assert told == {"counts": ["pier", "other"], "not": [], "at_kink": [], "at_yield": ["other"]}
@@ -147,7 +144,7 @@ def tangent_forces(scene: Scene, u: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-def test_random_scenes_in_equilibrium_have_the_tangents_of_their_forces() -> None:
+def test_random_scenes_in_equilibrium_have_the_tangents_of_their_forces():
     step, compared = 1e-7, 0
     for seed in range(100):
         try:
@@ -173,7 +170,7 @@ def test_random_scenes_in_equilibrium_have_the_tangents_of_their_forces() -> Non
     assert compared > 250
 
 
-def test_modes_of_random_scenes_at_rest_are_those_of_scipy() -> None:
+def test_modes_of_random_scenes_at_rest_are_those_of_scipy():
     for seed in range(30):
         try:
             scene = in_equilibrium(Drawn(seed).scene())
@@ -191,7 +188,7 @@ def test_modes_of_random_scenes_at_rest_are_those_of_scipy() -> None:
         assert (error <= 1e-13 * order[::-1] ** 2).all()
 
 
-def test_what_is_slack_joins_no_bodies() -> None:
+def test_what_is_slack_joins_no_bodies():
     bodies = Body("a", 1.0), Body("b", 1.0)
     springs = (
         Spring("1", (GROUND, "a"), Linear(4.0)),
@@ -209,7 +206,7 @@ def test_what_is_slack_joins_no_bodies() -> None:
         modal_damping(bodies, springs, 0.05)
 
 
-def test_every_kind_of_damping_is_of_the_same_stiffness() -> None:
+def test_every_kind_of_damping_is_of_the_same_stiffness():
     for slack, k in ((0.02, K), (-0.02, K + CABLE)):
         scene, omega = deck(cable(slack)), math.sqrt(k / M)
         critical = 2.0 * M * omega
@@ -237,9 +234,7 @@ def document(slack: float, **run: object) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("slack", "push", "period"), [(0.02, 0.0, SLACK), (0.02, 2e6, TAUT)])
-def test_a_record_is_scaled_and_a_run_ends_by_the_period_at_rest(
-    tmp_path: Path, slack: float, push: float, period: float
-) -> None:
+def test_a_record_is_scaled_and_a_run_ends_by_the_period_at_rest(tmp_path, slack, push, period):
     (tmp_path / "a.txt").write_text(time_series(0.2))
     given = document(slack, start="equilibrium")
     record = {"kind": "record", "file": "a.txt", "units": "g", "time_step": 0.02}
@@ -258,7 +253,7 @@ def test_a_record_is_scaled_and_a_run_ends_by_the_period_at_rest(
     assert table["Sa_T1"].to_numpy() / 9.80665 == pytest.approx([0.4], rel=1e-8)
 
 
-def test_a_shipped_restrainer_counts_as_it_hangs() -> None:
+def test_a_shipped_restrainer_counts_as_it_hangs():
     case = load_case(CASES / "restrained-decks")
     told = told_at_rest(case.scene)
     for spring, still in zip(case.scene.springs, at_rest(case.scene).springs, strict=True):

@@ -1,7 +1,5 @@
 """Six parameters of a bilinear hysteretic spring from any three independent ones."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import pytest
@@ -39,7 +37,7 @@ GIVEN = [c for n in (3, 4, 5, 6) for c in combinations(Parameter, n)]
 
 
 @pytest.mark.parametrize("given", GIVEN, ids=", ".join)
-def test_every_combination(given: tuple[Parameter, ...]) -> None:
+def test_every_combination(given):
     values = {p: EXACT[p] for p in given}
     if frozenset(given) in DEPENDENT:
         with pytest.raises(InputError, match="add one of") as caught:
@@ -57,20 +55,20 @@ def test_every_combination(given: tuple[Parameter, ...]) -> None:
 
 
 @pytest.mark.parametrize("given", list(combinations(Parameter, 2)), ids=", ".join)
-def test_two_are_too_few(given: tuple[Parameter, ...]) -> None:
+def test_two_are_too_few(given):
     with pytest.raises(InputError, match="three independent ones"):
         bouc_wen_parameters({p: EXACT[p] for p in given})
 
 
 @pytest.mark.parametrize("parameter", list(Parameter))
-def test_values_given_twice_must_agree(parameter: Parameter) -> None:
+def test_values_given_twice_must_agree(parameter):
     with pytest.raises(InputError, match="disagree"):
         bouc_wen_parameters({**EXACT, parameter: EXACT[parameter] * (1.0 + 1e-6)})
     found = bouc_wen_parameters({**EXACT, parameter: EXACT[parameter] * (1.0 + 1e-11)})
     assert found[Parameter.STIFFNESS] == pytest.approx(5.0, rel=1e-10)
 
 
-def test_elastoplastic_with_zeros_that_say_the_same() -> None:
+def test_elastoplastic_with_zeros_that_say_the_same():
     zeros = {Parameter.STIFFNESS: 0.0, Parameter.HARDENING: 0.0, Parameter.STRENGTH: 2.0}
     with pytest.raises(InputError, match="add one of initial_stiffness, yield_displacement"):
         bouc_wen_parameters(zeros)
@@ -79,7 +77,7 @@ def test_elastoplastic_with_zeros_that_say_the_same() -> None:
     assert found[Parameter.YIELD_FORCE] == 2.0
 
 
-def test_elastic_spring_written_as_hysteretic() -> None:
+def test_elastic_spring_written_as_hysteretic():
     found = bouc_wen_parameters(
         {Parameter.STIFFNESS: 3.0, Parameter.STRENGTH: 0.0, Parameter.YIELD_DISPLACEMENT: 0.1}
     )
@@ -87,7 +85,7 @@ def test_elastic_spring_written_as_hysteretic() -> None:
     assert found[Parameter.INITIAL_STIFFNESS] == 3.0
 
 
-def test_softening_is_refused() -> None:
+def test_softening_is_refused():
     with pytest.raises(InputError, match="stiffness = -20 N/m"):
         bouc_wen_parameters(
             {
@@ -98,7 +96,7 @@ def test_softening_is_refused() -> None:
         )
 
 
-def test_rounding_does_not_make_a_plastic_spring_soften() -> None:
+def test_rounding_does_not_make_a_plastic_spring_soften():
     # 0.1 * 3 rounds up to 0.30000000000000004, so that Q/F_y may lie a rounding beyond 1.
     found = bouc_wen_parameters(
         {
@@ -111,7 +109,7 @@ def test_rounding_does_not_make_a_plastic_spring_soften() -> None:
     assert found[Parameter.HARDENING] == 0.0
 
 
-def test_ranges_are_reported_together() -> None:
+def test_ranges_are_reported_together():
     with pytest.raises(InputError) as caught:
         bouc_wen_parameters(
             {

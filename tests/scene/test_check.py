@@ -1,7 +1,5 @@
 """Scenes built in Python are checked as those of cases are."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any
@@ -36,7 +34,7 @@ SCENE = Scene(
 )
 
 
-def test_sound_scene() -> None:
+def test_sound_scene():
     check_scene(SCENE)
     assert scene_warnings(SCENE) == ()
 
@@ -77,14 +75,14 @@ def changed(kind: str, position: int, **values: Any) -> Scene:
         (changed("bodies", 0, displacement=1e-3), "contact 1 (c): gap: found 0.0"),
     ],
 )
-def test_refused(scene: Scene, fragment: str) -> None:
+def test_refused(scene, fragment):
     with pytest.raises(InputError) as caught:
         check_scene(scene)
     assert len(caught.value.problems) == 1
     assert fragment in str(caught.value)
 
 
-def test_rounding_is_no_penetration() -> None:
+def test_rounding_is_no_penetration():
     # 0.3 - 0.1 - 0.2 = -2.8e-17 in doubles.
     scene = Scene(
         (Body("a", 1.0, displacement=0.3), Body("b", 1.0, displacement=0.1)),
@@ -93,7 +91,7 @@ def test_rounding_is_no_penetration() -> None:
     check_scene(scene)
 
 
-def test_rounding_of_a_row_is_no_penetration() -> None:
+def test_rounding_of_a_row_is_no_penetration():
     # Bodies that rest on each other stand at sums along their row, and what rounds there is
     # more than the last of them is long; anything beyond is a penetration.
     def scene(overlap: float) -> Scene:
@@ -107,7 +105,7 @@ def test_rounding_of_a_row_is_no_penetration() -> None:
         check_scene(scene(1e-15))
 
 
-def test_rounding_of_what_a_motion_left_is_no_penetration() -> None:
+def test_rounding_of_what_a_motion_left_is_no_penetration():
     # Bodies that came to rest where they began, without gaps: nothing else has a length.
     def scene(overlap: float) -> Scene:
         contacts = (Contact("wall", "a", "barrier", 0.0, 0.5),)
@@ -118,7 +116,7 @@ def test_rounding_of_what_a_motion_left_is_no_penetration() -> None:
         check_scene(scene(1e-13))
 
 
-def test_bound_of_z() -> None:
+def test_bound_of_z():
     # (beta + gamma)^(-1/n) = 0.25^(-1/2) = 2
     law = replace(BOUC_WEN, beta=0.1, gamma=0.15, exponent=2.0, initial_z=-2.0)
     check_scene(changed("springs", 0, law=law))
@@ -126,7 +124,7 @@ def test_bound_of_z() -> None:
         check_scene(changed("springs", 0, law=replace(law, initial_z=-2.001)))
 
 
-def test_a_law_that_creates_energy_is_warned_of() -> None:
+def test_a_law_that_creates_energy_is_warned_of():
     scene = changed("springs", 0, law=replace(BOUC_WEN, beta=0.7, gamma=0.3))
     check_scene(scene)
     (warning,) = scene_warnings(scene)

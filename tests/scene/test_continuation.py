@@ -1,11 +1,8 @@
 """A run cut in two is the run in one: contacts that rest, memory, residuals."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -65,9 +62,7 @@ def cut(case: Case, solver: str, part: float) -> tuple[Response, Response, Respo
     ["bridge-el-centro", "isolated-building", "hard/chain-of-10-pressed", "hard/plastic-chain"],
 )
 @pytest.mark.parametrize(("solver", "off"), [("fast", 1e-10), ("cvode", 1e-6), ("ida", 1e-7)])
-def test_a_run_cut_in_two_is_the_run_in_one(
-    name: str, solver: str, off: float, part: float
-) -> None:
+def test_a_run_cut_in_two_is_the_run_in_one(name, solver, off, part):
     one, first, second = cut(load_case(CASES / name), solver, part)
     at = second.task.start
     assert resting(one, at) == resting(first, at) == resting(second, at)
@@ -83,7 +78,7 @@ def test_a_run_cut_in_two_is_the_run_in_one(
 # While it yields, is unloaded, is let go before and behind its first gap.
 @pytest.mark.parametrize("part", [0.1, 0.16, 0.25, 0.29, 0.323, 0.6])
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
-def test_soil_remembers_across_the_cut_how_far_it_was_pushed_in(solver: str, part: float) -> None:
+def test_soil_remembers_across_the_cut_how_far_it_was_pushed_in(solver, part):
     one, first, second = cut(load_case(CASES / "deck-on-backfill"), solver, part)
     kept, found = one.recording, second.recording
     assert np.abs(kept.u - found.u).max() <= 1e-6 * np.abs(kept.history.u).max()
@@ -96,21 +91,19 @@ def test_soil_remembers_across_the_cut_how_far_it_was_pushed_in(solver: str, par
 
 @pytest.mark.parametrize("name", ["bridge-el-centro", "isolated-building"])
 @pytest.mark.parametrize("solver", ["moreau", "penalty"])
-def test_cut_after_a_whole_step_a_method_with_fixed_ones_differs_by_rounding(
-    name: str, solver: str
-) -> None:
+def test_cut_after_a_whole_step_a_method_with_fixed_ones_differs_by_rounding(name, solver):
     one, _, second = cut(load_case(CASES / name), solver, 0.5)
     # Some thousand units of the last place of what is iterated, which each impact may make larger.
     assert np.abs(one.recording.u - second.recording.u).max() <= 1e-10
     assert np.abs(one.recording.z - second.recording.z).max() <= 1e-9
 
 
-def test_a_state_in_which_a_method_with_fixed_steps_left_an_overlap_is_refused() -> None:
+def test_a_state_in_which_a_method_with_fixed_steps_left_an_overlap_is_refused():
     with pytest.raises(InputError, match="accepted: a gap that is not penetrated at the start"):
         cut(load_case(CASES / "hard/plastic-chain"), "moreau", 0.25)
 
 
-def test_contacts_that_rest_at_the_cut_of_a_run_rest_on() -> None:
+def test_contacts_that_rest_at_the_cut_of_a_run_rest_on():
     one, first, second = cut(load_case(CASES / "hard/chain-of-10-pressed"), "cvode", 0.25)
     at = second.task.start
     assert len(resting(first, at)) == 6
@@ -129,7 +122,7 @@ def scene(z: float = 0.0, law: ContactLaw | None = None, gap: float = 0.1) -> Sc
     )
 
 
-def test_a_z_beyond_its_bound_by_the_tolerance_is_at_its_bound() -> None:
+def test_a_z_beyond_its_bound_by_the_tolerance_is_at_its_bound():
     final = {"a": {"u": 0.02, "v": 0.0}, "s": {"z": 1.0 + 1e-9}}
     response = simulate(scene(), duration=0.1, start=final)
     assert response.scene.springs[0].law == replace(scene(1.0).springs[0].law)
@@ -154,9 +147,7 @@ CLOSED = {"a": {"u": 0.2, "v": 0.0}, "s": {"z": 0.0}}
         (scene(law=ContactLaw("linear", 1e4)), CLOSED, "start: found c closed, whose law"),
     ],
 )
-def test_states_that_nothing_can_go_on_from_are_refused(
-    made: Scene, final: dict[str, dict[str, float]], said: str
-) -> None:
+def test_states_that_nothing_can_go_on_from_are_refused(made, final, said):
     with pytest.raises(InputError, match=said):
         simulate(made, duration=1.0, start=final)
 
@@ -185,7 +176,7 @@ duration = 1.0
 """
 
 
-def test_a_case_goes_on_from_the_results_of_another(tmp_path: Path) -> None:
+def test_a_case_goes_on_from_the_results_of_another(tmp_path):
     for name in ("mainshock", "aftershock"):
         (tmp_path / name).mkdir()
         more = 'start = { results = "../mainshock" }\n' if name == "aftershock" else ""
@@ -212,9 +203,7 @@ def test_a_case_goes_on_from_the_results_of_another(tmp_path: Path) -> None:
     shutil.rmtree(results)
 
 
-def test_a_case_goes_on_where_a_wall_stands_that_has_passed_the_place_of_the_body(
-    tmp_path: Path,
-) -> None:
+def test_a_case_goes_on_where_a_wall_stands_that_has_passed_the_place_of_the_body(tmp_path):
     case = """excitation = {{ kind = "none" }}
 [[body]]
 name = "a"
@@ -247,13 +236,13 @@ duration = {0}
     assert ends[1] == pytest.approx(ends[0], rel=1e-8)
 
 
-def test_a_state_may_have_numbers_of_numpy_and_units() -> None:
+def test_a_state_may_have_numbers_of_numpy_and_units():
     final: Any = {"a": {"u": np.float32(0.5), "v": "10 cm/s"}, "s": {"z": np.int64(0)}}
     first = simulate(scene(gap=1.0), duration=0.1, start=final).history.iloc[0]
     assert [first["u.a"], first["v.a"], first["z.s"]] == [0.5, 0.1, 0.0]
 
 
-def test_without_a_memory_there_is_nothing_but_the_motion() -> None:
+def test_without_a_memory_there_is_nothing_but_the_motion():
     linear = replace(scene(), springs=(Spring("s", ("ground", "a"), Linear(50.0)),))
     first = simulate(linear, duration=0.05)
     assert set(first.final) == {"a"}

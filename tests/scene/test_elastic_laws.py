@@ -1,7 +1,5 @@
 """Laws in series against the force balance of their massless nodes, solved numerically."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -34,7 +32,7 @@ def _random_part(rng: np.random.Generator, slack: bool) -> Linear | BilinearElas
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
-def test_stiff_parts(count: int) -> None:
+def test_stiff_parts(count):
     rng = np.random.default_rng(count)
     for _ in range(40):
         parts = tuple(_random_part(rng, slack=False) for _ in range(count))
@@ -45,7 +43,7 @@ def test_stiff_parts(count: int) -> None:
         )
 
 
-def test_slack_parts() -> None:
+def test_slack_parts():
     # Where one part carries nothing the whole carries nothing.
     rng = np.random.default_rng(51)
     for _ in range(100):
@@ -56,7 +54,7 @@ def test_slack_parts() -> None:
         )
 
 
-def test_published_abutment() -> None:
+def test_published_abutment():
     # A 150 000 kN/m bearing in series with 455 328 kN/m into and 1 751 kN/m away.
     law = reduced(Series((Linear(150e6), BilinearElastic(455.328e6, 1.751e6))))
     assert law.compression == pytest.approx(150e6 * 455.328e6 / 605.328e6, rel=1e-15)
@@ -64,7 +62,7 @@ def test_published_abutment() -> None:
     assert law.offset == 0.0
 
 
-def test_simple_laws_stay_as_they_are() -> None:
+def test_simple_laws_stay_as_they_are():
     law = BilinearElastic(1.0, 2.0, 0.3)
     assert reduced(law) == law
     assert reduced(Linear(4.0)) == BilinearElastic(4.0, 4.0, 0.0)

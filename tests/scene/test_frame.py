@@ -1,12 +1,9 @@
 """Frames by their matrices: against the matrices, SciPy's integration with contacts, refusals."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import pytest
@@ -57,14 +54,14 @@ K = condensed()
 C = 0.3 * MASS * np.eye(N) + 0.004 * K
 
 
-def test_the_frame_has_couplings_of_either_sign() -> None:
+def test_the_frame_has_couplings_of_either_sign():
     parts = frame("T", K, [MASS] * N)
     signs = {np.sign(spring.law.stiffness) for spring in parts.springs}  # type: ignore[union-attr]
     assert signs == {-1.0, 1.0}
     assert [body.name for body in parts.bodies] == ["T1", "T2", "T3", "T4", "T5"]
 
 
-def test_its_springs_and_dashpots_are_the_matrices() -> None:
+def test_its_springs_and_dashpots_are_the_matrices():
     parts = frame("T", K, np.diag([MASS] * N), C)
     names = [body.name for body in parts.bodies]
     of_springs = joined(names, [(s.direction, s.law.stiffness) for s in parts.springs])  # type: ignore[union-attr]
@@ -76,7 +73,7 @@ def test_its_springs_and_dashpots_are_the_matrices() -> None:
     assert period == pytest.approx(2.0 * np.pi / np.sqrt(squares), rel=1e-11)
 
 
-def test_what_nothing_holds_stays_so() -> None:
+def test_what_nothing_holds_stays_so():
     parts = frame("T", condensed(held=False), [MASS] * (N + 1))
     assert all("ground" not in spring.between for spring in parts.springs)
 
@@ -119,7 +116,7 @@ BESIDE = Body("B", 3e5), Spring("storey-B", ("ground", "B"), Linear(6e7))
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_a_frame_that_strikes_a_building_moves_as_by_scipy(solver: str) -> None:
+def test_a_frame_that_strikes_a_building_moves_as_by_scipy(solver):
     parts, (body, spring) = frame("T", K, [MASS] * N, C), BESIDE
     scene = Scene(
         (*parts.bodies, body),
@@ -143,7 +140,7 @@ def test_a_frame_that_strikes_a_building_moves_as_by_scipy(solver: str) -> None:
     assert response.recording.u == pytest.approx(u, abs=1e-9 * np.abs(u).max())
 
 
-def test_a_column_of_a_frame_is_struck_between_its_floors() -> None:
+def test_a_column_of_a_frame_is_struck_between_its_floors():
     parts, (body, spring) = frame("T", K, [MASS] * N, C), BESIDE
     scene = Scene(
         (*parts.bodies, body),
@@ -167,7 +164,7 @@ def test_a_column_of_a_frame_is_struck_between_its_floors() -> None:
     assert response.recording.u == pytest.approx(u, abs=1e-9 * np.abs(u).max())
 
 
-def test_storeys_of_a_frame_drift_as_by_scipy() -> None:
+def test_storeys_of_a_frame_drift_as_by_scipy():
     # The second and the third floor are not coupled: their storey is measured all the same.
     bent = K + 2.0 * abs(K[1, 2]) * np.eye(N)
     bent[1, 2] = bent[2, 1] = 0.0
@@ -203,7 +200,7 @@ def test_storeys_of_a_frame_drift_as_by_scipy() -> None:
 
 
 @pytest.mark.parametrize(("solver", "order"), [("moreau", 1.0), ("penalty", 2.0)])
-def test_steppers_come_to_it(solver: str, order: float) -> None:
+def test_steppers_come_to_it(solver, order):
     # Without contact: errors of two steps, of which the second is half as long.
     parts = frame("T", K, [MASS] * N, C)
     scene = Scene(parts.bodies, parts.springs, parts.dashpots, motion=PULSE)
@@ -218,7 +215,7 @@ def test_steppers_come_to_it(solver: str, order: float) -> None:
     assert errors[1] < 0.01 * np.abs(exact).max()
 
 
-def test_a_frame_stands_on_bearings_under_a_slab() -> None:
+def test_a_frame_stands_on_bearings_under_a_slab():
     parts = frame("T", K, [MASS] * N, C, on="slab")
     weight = 9.81 * (N * MASS + 3e5)
     slider = Spring("bearing", ("ground", "slab"), Slider.pendulum(0.05, weight, 2.0))
@@ -243,7 +240,7 @@ def test_a_frame_stands_on_bearings_under_a_slab() -> None:
     assert fast.recording.u == pytest.approx(cvode.recording.u, abs=1e-8 * size)
 
 
-def test_tables_and_histories_leave_couplings_out() -> None:
+def test_tables_and_histories_leave_couplings_out():
     parts, (body, spring) = frame("T", K, [MASS] * N), BESIDE
     # The couplings stand first, so that places of springs are not their numbers in tables.
     scene = Scene((*parts.bodies, body), (*parts.springs, spring), motion=PULSE)
@@ -290,12 +287,12 @@ def bent(part: float) -> np.ndarray:
     ],
     ids=lambda given: ",".join(given) if isinstance(given, dict) else "",
 )
-def test_what_is_no_frame_is_refused(arguments: dict[str, Any], said: str) -> None:
+def test_what_is_no_frame_is_refused(arguments, said):
     with pytest.raises(InputError, match=said):
         frame("T", **({"stiffness": K, "mass": [MASS] * N} | arguments))
 
 
-def test_the_motion_that_gives_way_is_told() -> None:
+def test_the_motion_that_gives_way_is_told():
     shape = np.linalg.eigh(bent(1.01))[1][:, 0]
     with pytest.raises(InputError) as caught:
         frame("T", bent(1.01), [MASS] * N)
@@ -307,6 +304,6 @@ def test_the_motion_that_gives_way_is_told() -> None:
     frame("T", bent(0.99), [MASS] * N)
 
 
-def test_rounded_numbers_are_symmetric_and_taken() -> None:
+def test_rounded_numbers_are_symmetric_and_taken():
     rounded = np.array([[float(f"{k:.10g}") for k in row] for row in K])
     assert replace(frame("T", rounded, [MASS] * N).bodies[0], mass=1.0).mass == 1.0

@@ -1,7 +1,5 @@
 """Springs that are loaded one way."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,7 @@ from eventpound.scene.loaded_straight import Loops
 
 @pytest.mark.parametrize("travel", [-0.5, -0.1, 0.02, 0.3, 3.0])
 @pytest.mark.parametrize("z", [0.0, -0.4, 0.9])
-def test_springs_loaded_straight(travel: float, z: float) -> None:
+def test_springs_loaded_straight(travel, z):
     """With n = 2 and beta = gamma = 1/2, z' = 1 - z^2 once z pulls the way it goes, 1 before."""
     loops = Loops.of([BoucWen(0.0, 1.0, 0.1, 2.0, initial_z=z)])
     way, x = np.sign(travel), abs(travel) / 0.1

@@ -1,7 +1,5 @@
 """Modal damping against complex eigenvalues, the root of a matrix, a closed form, and SciPy."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -66,7 +64,7 @@ def ratios_of(scene: Scene) -> np.ndarray:
 
 @pytest.mark.parametrize("count", [1, 2, 5, 20])
 @pytest.mark.parametrize("given", ["5 %", [0.05, 0.02], [0.0, 0.05, 0.01, 0.1]])
-def test_every_mode_has_the_ratio_that_was_asked(count: int, given: str | list[float]) -> None:
+def test_every_mode_has_the_ratio_that_was_asked(count, given):
     bodies, springs = frame(count)
     listed = [0.05] if isinstance(given, str) else given[:count]
     wanted = [*listed, *listed[-1:] * count][:count]
@@ -81,7 +79,7 @@ def test_every_mode_has_the_ratio_that_was_asked(count: int, given: str | list[f
 
 
 @pytest.mark.parametrize("count", [2, 3, 8])
-def test_one_ratio_is_a_root_of_the_stiffness_and_no_dashpot_is_negative(count: int) -> None:
+def test_one_ratio_is_a_root_of_the_stiffness_and_no_dashpot_is_negative(count):
     bodies, springs = frame(count)
     # Braces over several storeys, and some to the ground.
     rng = np.random.default_rng(9)
@@ -96,7 +94,7 @@ def test_one_ratio_is_a_root_of_the_stiffness_and_no_dashpot_is_negative(count: 
     assert min(dashpot.coefficient for dashpot in scene.dashpots) > 0.0
 
 
-def test_floors_on_a_slab_are_damped_relative_to_it() -> None:
+def test_floors_on_a_slab_are_damped_relative_to_it():
     bodies, springs = frame(4)
     isolators = Spring("isolators", springs[0].between, Linear(8e6))
     springs = (isolators, *springs[1:])
@@ -109,7 +107,7 @@ def test_floors_on_a_slab_are_damped_relative_to_it() -> None:
     assert ratios_of(Scene(bodies, springs, dashpots))[0] < 1e-3
 
 
-def test_springs_slack_at_rest_and_others_are_left_out() -> None:
+def test_springs_slack_at_rest_and_others_are_left_out():
     bodies, springs = frame(3)
     more = (
         Spring("stop", ("f2", GROUND), BilinearElastic(1e9, 0.0, -0.1)),
@@ -118,7 +116,7 @@ def test_springs_slack_at_rest_and_others_are_left_out() -> None:
     assert modal_damping(bodies, springs + more, 0.05) == modal_damping(bodies, springs, 0.05)
 
 
-def test_what_nothing_holds_gets_no_dashpots_to_the_ground() -> None:
+def test_what_nothing_holds_gets_no_dashpots_to_the_ground():
     bodies, springs = frame(4)
     dashpots = modal_damping(bodies, springs[1:], 0.05)
     assert all(GROUND not in dashpot.between for dashpot in dashpots)
@@ -134,7 +132,7 @@ def test_what_nothing_holds_gets_no_dashpots_to_the_ground() -> None:
         (0.05, "f0 f2", "bodies: found 2; accepted: up to 100, which springs"),
     ],
 )
-def test_what_cannot_be_damped_by_modes(ratio: float, names: str, said: str) -> None:
+def test_what_cannot_be_damped_by_modes(ratio, names, said):
     bodies, springs = frame(3)
     group = [body for body in bodies if body.name in names.split()]
     with pytest.raises(InputError) as error:
@@ -155,7 +153,7 @@ def unlike_ratios() -> Scene:
     ("solver", "error"),
     [("cvode", 1e-8), ("ida", 1e-8), ("fast", 1e-8), ("moreau", 1e-2), ("penalty", 1e-2)],
 )
-def test_free_vibration_decays_mode_by_mode(solver: str, error: float) -> None:
+def test_free_vibration_decays_mode_by_mode(solver, error):
     still = unlike_ratios()
     start = np.random.default_rng(7).uniform(-0.05, 0.05, 4)
     bodies = [replace(b, displacement=u) for b, u in zip(still.bodies, start, strict=True)]
@@ -175,7 +173,7 @@ def test_free_vibration_decays_mode_by_mode(solver: str, error: float) -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_impacts_of_a_frame_with_negative_dashpots_are_those_of_scipy(solver: str) -> None:
+def test_impacts_of_a_frame_with_negative_dashpots_are_those_of_scipy(solver):
     gap, period, end, restitution = 0.04, 0.7, 2.0, 0.9
     contact = Contact("wall", "f3", "barrier", gap=gap, restitution=restitution)
     scene = replace(unlike_ratios(), contacts=(contact,), motion=Sine(3.0, period))
@@ -209,14 +207,14 @@ def test_impacts_of_a_frame_with_negative_dashpots_are_those_of_scipy(solver: st
     assert found == pytest.approx(y[:4], abs=1e-8)
 
 
-def test_dashpots_that_drive_a_motion_are_refused() -> None:
+def test_dashpots_that_drive_a_motion_are_refused():
     scene = unlike_ratios()
     driving = replace(scene, dashpots=(*scene.dashpots, Dashpot((GROUND, "f3"), -1e6)))
     (problem,) = scene_problems(driving)
     assert "a negative one only where all dashpots together never drive a motion" in str(problem)
 
 
-def test_variants_of_negative_dashpots_are_checked_together() -> None:
+def test_variants_of_negative_dashpots_are_checked_together():
     scene = unlike_ratios()
     driving = Dashpot((GROUND, "f0"), 1e6)
     scene = replace(scene, dashpots=(driving, Dashpot((GROUND, "f0"), 1e6)))
@@ -246,7 +244,7 @@ def case_of(folder: Path, text: str):
     return load_case(folder)
 
 
-def test_a_building_of_a_case_has_modal_damping(tmp_path: Path) -> None:
+def test_a_building_of_a_case_has_modal_damping(tmp_path):
     case = case_of(tmp_path, CASE + 'ratio = ["5 %", 0.03]\ndamping = "modal"\n')
     assert ratios_of(case.scene) == pytest.approx([0.05, 0.03, 0.03], abs=1e-12)
     assert read_case(case.understood, tmp_path / "case.toml").scene == case.scene
@@ -254,7 +252,7 @@ def test_a_building_of_a_case_has_modal_damping(tmp_path: Path) -> None:
     assert case_of(tmp_path, CASE + table).scene == case.scene
 
 
-def test_a_group_stands_on_a_body_of_the_case(tmp_path: Path) -> None:
+def test_a_group_stands_on_a_body_of_the_case(tmp_path):
     table = '[[modal_damping]]\nbodies = ["A2", "A3"]\nratio = "2 %"\nbase = "A1"\n'
     scene = case_of(tmp_path, CASE + table).scene
     assert [d.between for d in scene.dashpots] == [("A1", "A2"), ("A1", "A3"), ("A2", "A3")]
@@ -287,7 +285,7 @@ def test_a_group_stands_on_a_body_of_the_case(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_said_first(text: str, said: str, tmp_path: Path) -> None:
+def test_what_is_wrong_is_said_first(text, said, tmp_path):
     with pytest.raises(InputError) as error:
         case_of(tmp_path, CASE + text)
     assert said in error.value.problems[0]

@@ -1,7 +1,5 @@
 """Modes against SciPy's eigenproblems and closed forms; what swings on a spring or isolators."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -50,7 +48,7 @@ def chain(k: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("yielded", [False, True])
-def test_modes_are_those_of_scipy(yielded: bool) -> None:
+def test_modes_are_those_of_scipy(yielded):
     scene, mass, first, later = building()
     squares, vectors = eigh(chain(later if yielded else first), np.diag(mass))
     found = modes_of(scene, [body.name for body in scene.bodies], yielded)
@@ -63,7 +61,7 @@ def test_modes_are_those_of_scipy(yielded: bool) -> None:
         assert shape == pytest.approx(vector / vector[np.argmax(np.abs(vector))], abs=1e-10)
 
 
-def test_a_deck_on_friction_pendulums_has_the_period_of_their_radius() -> None:
+def test_a_deck_on_friction_pendulums_has_the_period_of_their_radius():
     laws = [Slider.pendulum(0.05, weight, 2.0) for weight in (3e6, 7e6)]
     ends = (GROUND, "deck")
     springs = tuple(Spring(f"b{i}", ends, law) for i, law in enumerate(laws))
@@ -74,7 +72,7 @@ def test_a_deck_on_friction_pendulums_has_the_period_of_their_radius() -> None:
     assert [law.numbers["T_slip"] for law in laws] == pytest.approx([slipping] * 2, rel=1e-14)
 
 
-def test_rayleigh_damping_of_modes_is_the_ratio_there() -> None:
+def test_rayleigh_damping_of_modes_is_the_ratio_there():
     scene, *_ = building()
     names = [body.name for body in scene.bodies]
     table = Table({"bodies": names, "ratio": 0.05, "modes": [1, 3]}, "[[rayleigh]] 1", [])
@@ -85,7 +83,7 @@ def test_rayleigh_damping_of_modes_is_the_ratio_there() -> None:
 
 
 @pytest.mark.parametrize("modes", [[0, 1], [1, 6], [1], ["1", 2], [True, 2], 3])
-def test_modes_that_there_are_not(modes: object) -> None:
+def test_modes_that_there_are_not(modes):
     scene, *_ = building()
     problems: list = []
     names = [body.name for body in scene.bodies]
@@ -95,7 +93,7 @@ def test_modes_that_there_are_not(modes: object) -> None:
 
 
 @pytest.mark.parametrize("mass", [1e-300, 1.7976931348623157e308])
-def test_shares_of_masses_whose_sum_is_no_double(mass: float) -> None:
+def test_shares_of_masses_whose_sum_is_no_double(mass):
     bodies = (Body("a", 0.5 * mass), Body("b", mass))
     springs = (
         Spring("s", (GROUND, "a"), Linear(1e-2 * mass)),
@@ -104,7 +102,7 @@ def test_shares_of_masses_whose_sum_is_no_double(mass: float) -> None:
     assert modes_of(Scene(bodies, springs), ["a", "b"]).share.sum() == pytest.approx(1.0)
 
 
-def test_a_structure_that_nothing_holds() -> None:
+def test_a_structure_that_nothing_holds():
     scene = Scene((Body("a", 2.0), Body("b", 3.0)), (Spring("s", ("a", "b"), Linear(12.0)),))
     found = modes_of(scene, ["a", "b"])
     assert found.period[0] == math.inf
@@ -131,9 +129,7 @@ def isolated_building(dashpots: tuple[Dashpot, ...] = ()) -> Scene:
 
 
 @pytest.mark.parametrize("yielded", [False, True])
-def test_damping_of_isolated_modes_is_that_of_the_eigenvalues_of_the_state_matrix(
-    yielded: bool,
-) -> None:
+def test_damping_of_isolated_modes_is_that_of_the_eigenvalues_of_the_state_matrix(yielded):
     scene = isolated_building()
     dashpots = stiffness_proportional(scene.bodies, scene.springs, STOREYS, "2 %", mode=2)
     k = STIFFNESS.copy()
@@ -152,7 +148,7 @@ def test_damping_of_isolated_modes_is_that_of_the_eigenvalues_of_the_state_matri
         assert found.damping[0] < 1e-4
 
 
-def test_stiffness_proportional_damping_by_a_period() -> None:
+def test_stiffness_proportional_damping_by_a_period():
     scene = isolated_building()
     found = stiffness_proportional(scene.bodies, scene.springs, ["s2"], 0.03, period="0.2 s")
     # b = 2 xi/omega = xi T/pi
@@ -175,9 +171,7 @@ def test_stiffness_proportional_damping_by_a_period() -> None:
         (["s1", "apart"], {"mode": 2}, "2 structures; accepted: springs of one"),
     ],
 )
-def test_what_no_spring_can_be_damped_by(
-    damped: list[str], keys: dict[str, object], said: str
-) -> None:
+def test_what_no_spring_can_be_damped_by(damped, keys, said):
     scene = isolated_building()
     bodies = (*scene.bodies, Body("other", 1e5))
     springs = (
@@ -189,7 +183,7 @@ def test_what_no_spring_can_be_damped_by(
         stiffness_proportional(bodies, springs, damped, 0.02, **keys)  # type: ignore[arg-type]
 
 
-def test_a_mode_in_which_masses_balance_has_none_of_them() -> None:
+def test_a_mode_in_which_masses_balance_has_none_of_them():
     bodies = tuple(Body(name, 3.0e5) for name in "abc")
     springs = [Spring(f"k{i}", ("ground", name), Linear(1.0e7)) for i, name in enumerate("abc")]
     joined = [

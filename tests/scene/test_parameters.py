@@ -1,7 +1,5 @@
 """Keys of the numbers of a scene, other scenes with them, and which variants tell of all."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

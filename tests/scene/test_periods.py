@@ -1,7 +1,5 @@
 """The period that a record is scaled at: of a scene, or of a body with what swings with it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -29,7 +27,7 @@ def scene(bodies: Sequence[str], springs: Sequence[tuple[str, str, float]]) -> S
     )
 
 
-def test_of_segments_each_has_its_own_on_all_its_springs() -> None:
+def test_of_segments_each_has_its_own_on_all_its_springs():
     bridge = scene("ab", [(GROUND, "a", 50.0), (GROUND, "b", 20.0), ("a", "b", 5.0)])
     assert period_called(bridge, "T1 of a") == pytest.approx(period(1.0, 55.0), rel=1e-12)
     assert period_called(bridge, "T1 of b") == pytest.approx(period(2.0, 25.0), rel=1e-12)
@@ -38,7 +36,7 @@ def test_of_segments_each_has_its_own_on_all_its_springs() -> None:
     assert period_called(bridge, "T1") == pytest.approx(slowest, rel=1e-12)
 
 
-def test_every_floor_of_a_building_has_that_of_the_building() -> None:
+def test_every_floor_of_a_building_has_that_of_the_building():
     springs = [(GROUND, "a", 30.0), ("a", "b", 20.0), (GROUND, "c", 1.0)]
     building = scene("abc", springs)
     matrix = np.array([[50.0, -20.0], [-20.0, 20.0]]) / np.sqrt(np.outer([1.0, 2.0], [1.0, 2.0]))
@@ -48,7 +46,7 @@ def test_every_floor_of_a_building_has_that_of_the_building() -> None:
     assert period_called(building, "T1") == pytest.approx(period(3.0, 1.0), rel=1e-12)
 
 
-def test_what_has_no_period_is_refused() -> None:
+def test_what_has_no_period_is_refused():
     loose = scene("a", [])
     with pytest.raises(InputError, match="no spring resists"):
         period_called(loose, "T1")
@@ -87,7 +85,7 @@ def sa(record: Record, at: float) -> float:
 
 
 @pytest.mark.parametrize("at", ['"T1"', '"T1 of deck"'])
-def test_a_record_has_its_ordinate_at_the_period_of_the_scene(tmp_path: Path, at: str) -> None:
+def test_a_record_has_its_ordinate_at_the_period_of_the_scene(tmp_path, at):
     motion = load_case(written(tmp_path, 'file = "a.txt"', at)).scene.motion
     assert isinstance(motion, Record)
     assert sa(motion, period(1e3, 80e3)) == pytest.approx(0.4, rel=1e-9)
@@ -106,7 +104,7 @@ stiffness = 20e3
     [('"T1"', ""), ('"T1 of deck"\npsa_damping = 0.1', SLOWER), ("0.3", SLOWER)],
     ids=["scene", "body", "number"],
 )
-def test_a_suite_tells_the_ordinate_that_was_asked_for(tmp_path: Path, at: str, more: str) -> None:
+def test_a_suite_tells_the_ordinate_that_was_asked_for(tmp_path, at, more):
     file = written(tmp_path, 'suite = "?.txt"', at, more) / "case.toml"
     if more:
         file.write_text(file.read_text().replace("0 }]", '0 }, { name = "beside", mass = 1e3 }]'))
@@ -114,13 +112,13 @@ def test_a_suite_tells_the_ordinate_that_was_asked_for(tmp_path: Path, at: str, 
     assert table["Sa_T1"].to_numpy() / 9.80665 == pytest.approx([0.4, 0.4], rel=1e-9)
 
 
-def test_a_suite_says_at_which_period(tmp_path: Path) -> None:
+def test_a_suite_says_at_which_period(tmp_path):
     case = load_case(written(tmp_path, 'suite = "?.txt"'))
     assert case.suite is not None
     assert "a PSA of 0.4 g at T1 = 0.7025 s" in case.size.words()
 
 
-def test_each_variant_of_a_study_has_its_own(tmp_path: Path) -> None:
+def test_each_variant_of_a_study_has_its_own(tmp_path):
     stiffnesses, key = [40e3, 80e3, 160e3], "spring.piers.stiffness"
     axis = f'[[study.axis]]\nkey = "{key}"\nvalues = {stiffnesses}\n'
     quantities = 'quantities = ["peaks.deck.abs_max", "excitation.psa_period"]'
@@ -148,13 +146,13 @@ def test_each_variant_of_a_study_has_its_own(tmp_path: Path) -> None:
         ('"T2"', "psa_period: found 'T2'"),
     ],
 )
-def test_what_a_case_may_not_call_it(tmp_path: Path, at: str, said: str) -> None:
+def test_what_a_case_may_not_call_it(tmp_path, at, said):
     with pytest.raises(InputError, match=said):
         load_case(written(tmp_path, 'file = "a.txt"', at))
 
 
 @pytest.mark.parametrize("key", ["psa_period", "psa_damping"])
-def test_what_belongs_to_a_psa_is_refused_without_one(tmp_path: Path, key: str) -> None:
+def test_what_belongs_to_a_psa_is_refused_without_one(tmp_path, key):
     folder = written(tmp_path, 'file = "a.txt"')
     text = (folder / "case.toml").read_text()
     kept = [line for line in text.splitlines() if not line.startswith("psa")]
@@ -164,7 +162,7 @@ def test_what_belongs_to_a_psa_is_refused_without_one(tmp_path: Path, key: str) 
         load_case(folder)
 
 
-def test_a_support_has_no_period_of_its_own(tmp_path: Path) -> None:
+def test_a_support_has_no_period_of_its_own(tmp_path):
     own = '{ kind = "record", file = "b.txt", units = "g", psa = 1, psa_period = "T1" }'
     more = f'[[support]]\nname = "far"\nexcitation = {own}\n'
     folder = written(

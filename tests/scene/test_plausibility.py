@@ -1,7 +1,5 @@
 """What is possible but hardly meant is said, once a kind; usual scenes are silent."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -45,7 +43,7 @@ def record(time_step: float) -> Record:
     return Record(3.0 * np.sin(np.arange(200) * math.pi / 50.0), time_step)
 
 
-def test_a_usual_scene_is_silent() -> None:
+def test_a_usual_scene_is_silent():
     assert doubts(USUAL, 0.005, [("[[dashpot]] 1", 0.3)]) == []
     assert doubts(replace(USUAL, motion=record(0.01))) == []
     assert doubts(replace(USUAL, motion=Record(np.array([0.0, 1.0, -2.0, 0.0]), 0.1))) == []
@@ -73,13 +71,13 @@ def test_a_usual_scene_is_silent() -> None:
         ({"contacts": (Contact("joint", "deck", "other", 5.0, 0.6),)}, "'joint': a gap of 5 m"),
     ],
 )
-def test_what_is_unlikely(changes: dict[str, object], said: str) -> None:
+def test_what_is_unlikely(changes, said):
     scene = replace(USUAL, **changes)  # type: ignore[arg-type]
     assert any(said in text for text in doubts(scene)), doubts(scene)
 
 
 @pytest.mark.parametrize(("force", "silent"), [(3e3, False), (2e6, True), (3e9, False)])
-def test_a_deck_on_sliders_that_do_not_carry_it(force: float, silent: bool) -> None:
+def test_a_deck_on_sliders_that_do_not_carry_it(force, silent):
     # Soil holds nothing up; a pier below does, and a joint slider beside it is no bearing.
     deck, pier = Body("deck", 4e5), Body("pier", 1e5)
     springs = (
@@ -93,12 +91,12 @@ def test_a_deck_on_sliders_that_do_not_carry_it(force: float, silent: bool) -> N
     assert doubts(Scene((deck, pier), held, motion=Cosine(4.0, 0.8))) == []
 
 
-def test_a_chosen_step_that_is_too_coarse() -> None:
+def test_a_chosen_step_that_is_too_coarse():
     (text,) = doubts(USUAL, 0.5)
     assert text.startswith("run: an output_step of 0.5 s leaves fewer than 10 rows")
 
 
-def test_one_sentence_a_kind() -> None:
+def test_one_sentence_a_kind():
     many = tuple(replace(USUAL.contacts[0], name=f"c{i}", gap=3.0) for i in range(40))
     (text,) = doubts(replace(USUAL, contacts=many))
     assert text == "contact 'c0': a gap of 3 m; usual is up to 1 m (and 39 more like it)"
@@ -109,7 +107,7 @@ def test_one_sentence_a_kind() -> None:
     ]
 
 
-def test_a_weight_is_that_of_all_that_springs_join() -> None:
+def test_a_weight_is_that_of_all_that_springs_join():
     # Ten floors of 1e5 kg on isolators with a quarter of their weight: 2.5 times the first alone.
     floors = tuple(Body(f"f{i}", 1e5) for i in range(10))
     storeys = tuple(Spring(f"s{i}", (f"f{i}", f"f{i + 1}"), Linear(2e8)) for i in range(9))
@@ -117,7 +115,7 @@ def test_a_weight_is_that_of_all_that_springs_join() -> None:
     assert doubts(Scene(floors, (base, *storeys), motion=Cosine(4.0, 0.8))) == []
 
 
-def test_a_dashpot_to_the_ground_past_the_isolators() -> None:
+def test_a_dashpot_to_the_ground_past_the_isolators():
     deck, cap = Body("deck", 4e5), Body("cap", 1e5)
     bearings = Spring("bearings", ("cap", "deck"), BoucWen(3e6, 2e5, 0.01))
     bridge = replace(
@@ -132,7 +130,7 @@ def test_a_dashpot_to_the_ground_past_the_isolators() -> None:
     assert text.startswith("body 'deck': a dashpot joins it to the ground past the springs that")
 
 
-def test_a_forgotten_g_is_named_with_its_key() -> None:
+def test_a_forgotten_g_is_named_with_its_key():
     elastic = replace(USUAL, springs=USUAL.springs[1:], motion=Cosine(0.3, 0.8))
     (text,) = doubts(elastic, bare=[("excitation: amplitude", 0.3)])
     assert text.startswith("excitation: amplitude = 0.3 has no unit and is in m/s^2, 0.031 g")

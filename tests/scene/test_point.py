@@ -1,7 +1,5 @@
 """Contacts at points between bodies: what is read, shown and refused."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -39,7 +37,7 @@ def problems(left: object = "A", right: object = UPPER, **keys: object) -> str:
     return str(caught.value)
 
 
-def test_it_is_read_and_written_back() -> None:
+def test_it_is_read_and_written_back():
     case = case_with()
     assert case.scene.contacts == (Contact("A-B1+B2", "A", Point(UPPER), 0.01, 0.5),)
     assert case.scene.contacts[0] == Contact("A-B1+B2", "A", UPPER, "1 cm", 0.5)
@@ -49,7 +47,7 @@ def test_it_is_read_and_written_back() -> None:
     assert at_ground.direction == ((GROUND, -0.4), ("A", -0.6), (BARRIER, 1.0))
 
 
-def test_thirds_count_as_a_whole() -> None:
+def test_thirds_count_as_a_whole():
     """A motion of all bodies together leaves the gap as it is, but for one rounding."""
     contact = case_with("A", {"B1": 0.3333333333, "B2": 0.6666666666}).scene.contacts[0]
     assert abs(sum(weight for _, weight in contact.direction)) <= 2.3e-16
@@ -71,11 +69,11 @@ def test_thirds_count_as_a_whole() -> None:
     ],
     ids=lambda value: str(value)[:24],
 )
-def test_refused(left: object, right: object, message: str) -> None:
+def test_refused(left, right, message):
     assert message in problems(left, right)
 
 
-def test_laws_are_refused_and_supports_are_bodies() -> None:
+def test_laws_are_refused_and_supports_are_bodies():
     assert "accepted: newton alone" in problems(law="linear", stiffness=1e3, restitution=None)
     scene = case_with().scene
     between = Contact("c", "A", {"pier": 0.5, "B1": 0.5}, 0.01, 0.5)
@@ -90,14 +88,14 @@ def test_laws_are_refused_and_supports_are_bodies() -> None:
         check_scene(replace(scene, contacts=(soft,)))
 
 
-def test_penetration_is_that_of_the_point() -> None:
+def test_penetration_is_that_of_the_point():
     scene = case_with().scene
     bodies = tuple(replace(b, displacement=-0.03 if b.name == "B1" else 0.0) for b in scene.bodies)
     with pytest.raises(InputError, match=r"it is -0\.002 m open"):
         check_scene(replace(scene, bodies=bodies))
 
 
-def test_what_was_understood_shows_the_point() -> None:
+def test_what_was_understood_shows_the_point():
     case = case_with()
     (row,) = inputs_of(case)["contacts"]
     assert row["between"] == ["A", UPPER]
@@ -110,7 +108,7 @@ def test_what_was_understood_shows_the_point() -> None:
 
 
 @pytest.mark.parametrize("solver", ["moreau", "penalty"])
-def test_other_solvers_say_who_can(solver: str) -> None:
+def test_other_solvers_say_who_can(solver):
     case = case_with()
     options = replace(case.solver, name=solver, settings={})
     with pytest.raises(InputError) as caught:

@@ -1,7 +1,5 @@
 """Gaps that avoid contact, and codes' distances: against SciPy, bisection and closed forms."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import pairwise
@@ -82,7 +80,7 @@ def gap(response: Response, name: str) -> float:
     return value
 
 
-def test_a_gap_that_avoids_this_contact_is_that_of_scipy() -> None:
+def test_a_gap_that_avoids_this_contact_is_that_of_scipy():
     response = simulate(row(), rtol=1e-11, duration=END)
     # A maximum between rows 2e-5 s apart is missed by less than a h^2/8 of 50 m/s^2.
     assert gap(response, "avoiding_gap_alone") == pytest.approx(approach(WALL), abs=3e-9)
@@ -92,7 +90,7 @@ def test_a_gap_that_avoids_this_contact_is_that_of_scipy() -> None:
 
 
 @pytest.mark.parametrize("wall", [0.01, 0.03])
-def test_a_gap_that_avoids_this_contact_is_that_of_a_bisection(wall: float) -> None:
+def test_a_gap_that_avoids_this_contact_is_that_of_a_bisection(wall):
     low, high = 0.0, 1.0
     while high - low > 1e-8:
         tried = np.linspace(low, high, 34)[1:-1]
@@ -106,7 +104,7 @@ def test_a_gap_that_avoids_this_contact_is_that_of_a_bisection(wall: float) -> N
     assert low - 1e-9 <= found <= high + 1e-9
 
 
-def test_of_many_each_row_has_the_gap_of_its_own_scene() -> None:
+def test_of_many_each_row_has_the_gap_of_its_own_scene():
     walls, joints = np.array([0.01, 0.01, 0.04]), np.array([0.01, 0.02, 0.02])
     names = [f"contacts.joint.{n}" for n in ("avoiding_gap", "avoiding_gap_alone", "cqc", "srss")]
     many = simulate_many(
@@ -126,13 +124,13 @@ def test_of_many_each_row_has_the_gap_of_its_own_scene() -> None:
             assert many.table[name][i] == pytest.approx(one.quantity(name), rel=1e-12)
 
 
-def test_with_one_contact_both_meanings_are_one() -> None:
+def test_with_one_contact_both_meanings_are_one():
     scene = replace(row(), contacts=row().contacts[:1])
     response = simulate(scene, "fast", duration=END)
     assert gap(response, "avoiding_gap_alone") == gap(response, "avoiding_gap")
 
 
-def test_corners_of_one_joint_open_together() -> None:
+def test_corners_of_one_joint_open_together():
     joint, wall = row().contacts
     corners = replace(joint, name="other", gap=0.5 * joint.gap)
     found = [
@@ -142,7 +140,7 @@ def test_corners_of_one_joint_open_together() -> None:
     assert found[0] == found[1] > joint.gap
 
 
-def test_codes_combine_the_peaks_without_contact() -> None:
+def test_codes_combine_the_peaks_without_contact():
     response = simulate(row(), rtol=1e-11, duration=END)
     a, b = (response.without_contact.peaks["abs_max"][name] for name in NAMES)
     period, ratio = (
@@ -161,9 +159,7 @@ def test_codes_combine_the_peaks_without_contact() -> None:
     ("t_1", "x_1", "t_2", "x_2"),
     [(1.0, 0.05, 0.8, 0.05), (0.5, 0.02, 0.7, 0.1), (1, 0.05, 1, 0.05)],
 )
-def test_the_correlation_is_that_under_white_noise(
-    t_1: float, x_1: float, t_2: float, x_2: float
-) -> None:
+def test_the_correlation_is_that_under_white_noise(t_1, x_1, t_2, x_2):
     def transfer(w: float, t: float, x: float) -> complex:
         p = 2.0 * math.pi / t
         return 1.0 / (p * p - w * w + 2j * x * p * w)
@@ -182,12 +178,12 @@ def test_the_correlation_is_that_under_white_noise(
     assert correlation_of(*one, *two) == pytest.approx(expected, rel=1e-7)
 
 
-def test_undamped_structures_of_one_period_move_as_one() -> None:
+def test_undamped_structures_of_one_period_move_as_one():
     assert correlation_of(0.7, 0.0, 0.7, 0.0) == 1.0
     assert correlation_of(0.7, 0.0, 0.9, 0.0) == 0.0
 
 
-def test_codes_say_nothing_of_a_wall_and_of_one_structure() -> None:
+def test_codes_say_nothing_of_a_wall_and_of_one_structure():
     assert "contacts.wall.srss" not in names_of(row())
     joined = replace(row(), springs=(*row().springs, Spring("tie", ("a", "b"), Linear(5.0))))
     assert not is_between_structures(joined, 0)
@@ -195,7 +191,7 @@ def test_codes_say_nothing_of_a_wall_and_of_one_structure() -> None:
     assert "contacts.joint.cqc" not in names_of(joined)
 
 
-def test_seat_used_and_residual_are_of_the_motion() -> None:
+def test_seat_used_and_residual_are_of_the_motion():
     response = simulate(row(), rtol=1e-10, duration=END, output_step=1e-4)
     rows, found = response.history, response.summary
     opening = (rows["u.b"] - rows["u.a"]).max()

@@ -1,7 +1,5 @@
 """What of a law counts at rest."""
 
-from __future__ import annotations
-
 import pytest
 
 from eventpound.scene import (
@@ -14,7 +12,6 @@ from eventpound.scene import (
     Slider,
 )
 from eventpound.scene.at_rest import at_rest, stiffness_of
-from eventpound.scene.spring import Law
 from tests.scene.test_at_rest import K, beside, deck
 
 WORN = DegradingBoucWen(1e6, 5e5, 0.05, 2.0, initial_loss=3.0, stiffness_degradation=0.5)
@@ -40,7 +37,7 @@ WORN = DegradingBoucWen(1e6, 5e5, 0.05, 2.0, initial_loss=3.0, stiffness_degrada
         (Slider(0.05, 1e7, 5e6), 5e6),
     ],
 )
-def test_what_counts_of_a_law(law: Law, counts: float) -> None:
+def test_what_counts_of_a_law(law, counts):
     assert beside(law) == pytest.approx(counts, rel=1e-12, abs=1e-7 * K)
     (_, spring) = at_rest(deck(law)).springs
     assert stiffness_of(spring) == pytest.approx(counts, rel=1e-14)

@@ -1,12 +1,9 @@
 """P-Delta and negative stiffnesses: closed form of a shear building, SciPy, statics, refusals."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -60,7 +57,7 @@ def names(scene: Scene) -> list[str]:
 
 
 @pytest.mark.parametrize("theta", [0.0, 0.1, 0.6])
-def test_frequencies_are_those_of_the_closed_form(theta: float) -> None:
+def test_frequencies_are_those_of_the_closed_form(theta):
     # Equal storeys: omega_j = 2 sqrt((k - P/h)/m) sin((2 j - 1) pi / (4 n + 2)).
     k = 2e8
     scene = storeys([k] * N, [theta * k * HEIGHT or None] * N)
@@ -69,7 +66,7 @@ def test_frequencies_are_those_of_the_closed_form(theta: float) -> None:
     assert modes_of(scene, names(scene)).period == pytest.approx(2.0 * np.pi / omega, rel=1e-12)
 
 
-def test_frequencies_of_unequal_storeys_are_those_of_scipy() -> None:
+def test_frequencies_of_unequal_storeys_are_those_of_scipy():
     scene = storeys(STIFFNESS, WEIGHT)
     squares = eigh(matrix(STIFFNESS, WEIGHT), MASS * np.eye(N), eigvals_only=True)
     period = modes_of(scene, names(scene)).period
@@ -77,7 +74,7 @@ def test_frequencies_of_unequal_storeys_are_those_of_scipy() -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_the_motion_is_that_of_another_integrator(solver: str) -> None:
+def test_the_motion_is_that_of_another_integrator(solver):
     scene, K = storeys(STIFFNESS, WEIGHT), matrix(STIFFNESS, WEIGHT) / MASS
 
     def rate(t: float, y: np.ndarray) -> np.ndarray:
@@ -91,7 +88,7 @@ def test_the_motion_is_that_of_another_integrator(solver: str) -> None:
     assert response.recording.u == pytest.approx(y[:N], abs=1e-9 * np.abs(y[:N]).max())
 
 
-def test_forces_of_storeys_balance_the_floors() -> None:
+def test_forces_of_storeys_balance_the_floors():
     # What a storey puts on its ends is its shear: the force of inertia of all above it.
     for law in (Linear, BoucWen):
         scene = storeys(STIFFNESS, [0.2 * w for w in WEIGHT], law)
@@ -105,7 +102,7 @@ def test_forces_of_storeys_balance_the_floors() -> None:
             )
 
 
-def test_a_weight_too_large_is_refused_with_its_storey() -> None:
+def test_a_weight_too_large_is_refused_with_its_storey():
     for i in range(N):
         weight = list(WEIGHT)
         weight[i] = 0.999 * STIFFNESS[i] * HEIGHT
@@ -117,7 +114,7 @@ def test_a_weight_too_large_is_refused_with_its_storey() -> None:
 
 
 @pytest.mark.parametrize("part", [0.99, 1.01])
-def test_a_negative_spring_is_taken_where_the_others_hold_it(part: float) -> None:
+def test_a_negative_spring_is_taken_where_the_others_hold_it(part):
     # From the ground to the roof, all storeys in series resist it.
     whole = 1.0 / sum(1.0 / k for k in STIFFNESS)
     scene = storeys(STIFFNESS, [None] * N)
@@ -134,7 +131,7 @@ def test_a_negative_spring_is_taken_where_the_others_hold_it(part: float) -> Non
         assert period == pytest.approx(2.0 * np.pi / np.sqrt(squares), rel=1e-10)
 
 
-def test_extremes_of_a_negative_force_are_the_right_way_round() -> None:
+def test_extremes_of_a_negative_force_are_the_right_way_round():
     scene = storeys(STIFFNESS, [None] * N)
     scene = replace(scene, springs=(*scene.springs, Spring("x", ("ground", "A4"), Linear(-1e7))))
     response = simulate(scene, "fast", duration=2.0)
@@ -144,7 +141,7 @@ def test_extremes_of_a_negative_force_are_the_right_way_round() -> None:
     assert response.summary["springs.x.t_max_force"] == u["t_min"]
 
 
-def test_the_stability_coefficient_is_that_of_the_codes() -> None:
+def test_the_stability_coefficient_is_that_of_the_codes():
     # theta = P D/(V h), of linear storeys P/(k h); else V on the bilinear backbone, whose knee
     # an exponent of 20 rounds off by less than 2^(-1/20) - 1 of F_y; the formula has the corner.
     linear = simulate(storeys(STIFFNESS, WEIGHT), "fast", duration=2.0)
@@ -160,7 +157,7 @@ def test_the_stability_coefficient_is_that_of_the_codes() -> None:
 
 
 @pytest.mark.parametrize("law", [Linear, BoucWen])
-def test_many_weights_are_runs_one_by_one(law: type) -> None:
+def test_many_weights_are_runs_one_by_one(law):
     scene = storeys(STIFFNESS, [0.2 * w for w in WEIGHT], law)
     columns = {
         "spring.storey 2.weight": np.array([1e5, 2e7, 6e7]),
@@ -181,7 +178,7 @@ def test_many_weights_are_runs_one_by_one(law: type) -> None:
 
 
 @pytest.mark.parametrize("hardening", [0.05, 0.0])
-def test_one_body_that_leans_on_after_yield(hardening: float) -> None:
+def test_one_body_that_leans_on_after_yield(hardening):
     # Under 8 % of its stiffness in P-Delta it has a negative one after yield, and comes to rest
     # aside. With `fast` in closed form where that is not so, so against another solver.
     law = BoucWen.from_yield(2e8, 1e6, hardening)
@@ -196,7 +193,7 @@ def test_one_body_that_leans_on_after_yield(hardening: float) -> None:
     assert any("leans on" in doubt for doubt in doubts(scene))
 
 
-def test_a_start_in_equilibrium_is_that_of_the_softened_matrix() -> None:
+def test_a_start_in_equilibrium_is_that_of_the_softened_matrix():
     scene = storeys(STIFFNESS, WEIGHT)
     scene = replace(scene, forces=(Force("A4", 2e6),))
     u = np.linalg.solve(matrix(STIFFNESS, WEIGHT), [0.0, 0.0, 0.0, 2e6])
@@ -223,7 +220,7 @@ ratio = "5 %"
 """
 
 
-def test_a_case_says_weights(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_case_says_weights(tmp_path, capsys):
     (tmp_path / "case.toml").write_text(CASE)
     case = load_case(tmp_path)
     weights = [spring.weight for spring in case.scene.springs]
@@ -250,15 +247,13 @@ def test_a_case_says_weights(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     ],
     ids=["no-height", "unstable", "mass", "negative"],
 )
-def test_wrong_weights_are_refused(
-    tmp_path: Path, change: tuple[str, str], said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_wrong_weights_are_refused(tmp_path, change, said, capsys):
     (tmp_path / "case.toml").write_text(CASE.replace(*change))
     assert main(["check", str(tmp_path)]) == 2
     assert said in capsys.readouterr().err
 
 
-def test_a_weight_goes_with_laws_of_storeys_only() -> None:
+def test_a_weight_goes_with_laws_of_storeys_only():
     scene = storeys([3e8], [None])
     stop = Spring("stop", ("ground", "A1"), BilinearElastic(1e8, 0.0, -0.1), HEIGHT, 1e5)
     scene = replace(scene, springs=(*scene.springs, stop))

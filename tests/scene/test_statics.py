@@ -1,7 +1,5 @@
 """Where forces hold a scene, against formulas."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -49,7 +47,7 @@ def weights(*names: str) -> tuple[Force, ...]:
     return tuple(Force(name, f"-{G} m/s^2") for name in names)
 
 
-def test_masses_on_springs() -> None:
+def test_masses_on_springs():
     scene = Scene(
         (Body("a", 2.0), Body("b", 3.0)),
         (Spring("1", (GROUND, "a"), Linear(100.0)), Spring("2", ("b", "a"), Linear(40.0))),
@@ -59,7 +57,7 @@ def test_masses_on_springs() -> None:
     assert displacements(scene) == pytest.approx([a, a - 3.0 * G / 40.0], rel=1e-13)
 
 
-def test_on_a_support_that_has_moved() -> None:
+def test_on_a_support_that_has_moved():
     support = Support("pier", motion=Cosine(2.0, 1.0, start=-0.5))
     scene = Scene(
         (Body("a", 2.0),),
@@ -72,7 +70,7 @@ def test_on_a_support_that_has_moved() -> None:
 
 
 @pytest.mark.parametrize("push", [-50.0, 50.0])
-def test_springs_with_a_kink(push: float) -> None:
+def test_springs_with_a_kink(push):
     law = BilinearElastic(200.0, 50.0, 0.03)
     scene = Scene((Body("a", 1.0),), (Spring("1", (GROUND, "a"), law),), forces=(Force("a", push),))
     k = 50.0 if push > 0.0 else 200.0
@@ -82,7 +80,7 @@ def test_springs_with_a_kink(push: float) -> None:
     assert displacements(scene) == pytest.approx([0.03 + push / k + push / 100.0], rel=1e-13)
 
 
-def test_a_yielding_spring() -> None:
+def test_a_yielding_spring():
     """With n = 1 and beta = gamma = 1/2, z = 1 - exp(-x/u_y)."""
     law = BoucWen(10.0, 5.0, 0.1, 1.0)
     scene = Scene((Body("a", 1.0),), (Spring("1", (GROUND, "a"), law),), forces=(Force("a", 7.0),))
@@ -94,7 +92,7 @@ def test_a_yielding_spring() -> None:
     assert spring.law.initial_z == pytest.approx(1.0 - np.exp(-x / 0.1), rel=1e-11)
 
 
-def test_a_stack_on_the_floor() -> None:
+def test_a_stack_on_the_floor():
     scene = Scene(
         tuple(Body(f"b{i}", 1.0 + i) for i in range(4)),
         contacts=tuple(
@@ -106,7 +104,7 @@ def test_a_stack_on_the_floor() -> None:
     assert displacements(scene) == pytest.approx([-0.1, -0.3, -0.6, -1.0], rel=1e-14)
 
 
-def test_some_contacts_hold_and_others_not() -> None:
+def test_some_contacts_hold_and_others_not():
     scene = Scene(
         (Body("a", 1.0), Body("b", 1.0)),
         (Spring("1", (GROUND, "a"), Linear(100.0)), Spring("2", (GROUND, "b"), Linear(50.0))),
@@ -118,20 +116,20 @@ def test_some_contacts_hold_and_others_not() -> None:
     assert displacements(scene) == pytest.approx([u, u - 0.02], rel=1e-13)
 
 
-def test_what_nothing_holds() -> None:
+def test_what_nothing_holds():
     scene = Scene((Body("loose", 1.0),), forces=weights("loose"))
     with pytest.raises(InputError, match="nothing holds the body 'loose'"):
         in_equilibrium(scene)
 
 
-def test_contacts_with_a_law_are_refused() -> None:
+def test_contacts_with_a_law_are_refused():
     soft = Contact("wall", "a", BARRIER, 0.1, None, ContactLaw("linear", 1e5))
     scene = Scene((Body("a", 1.0),), contacts=(soft,), forces=(Force("a", 1.0),))
     with pytest.raises(InputError, match=r"'wall'.*rigid"):
         in_equilibrium(scene)
 
 
-def test_bodies_of_ordinary_stiffness() -> None:
+def test_bodies_of_ordinary_stiffness():
     """Two bodies on 100 and 50 MN/m, 5 MN pressing one against the other."""
     scene = Scene(
         (Body("a", 5e5), Body("b", 3e5)),
@@ -144,7 +142,7 @@ def test_bodies_of_ordinary_stiffness() -> None:
 
 
 @pytest.mark.parametrize("contrast", [1e-9, 1e-4, 1e4, 1e9])
-def test_a_soft_body_beside_a_stiff_one(contrast: float) -> None:
+def test_a_soft_body_beside_a_stiff_one(contrast):
     k = (100.0, 100.0 * contrast)
     scene = Scene(
         (Body("a", 1.0), Body("b", 1.0)),
@@ -156,7 +154,7 @@ def test_a_soft_body_beside_a_stiff_one(contrast: float) -> None:
     assert displacements(scene) == pytest.approx([u, u - 0.02], rel=1e-12)
 
 
-def test_two_contacts_that_hold_two_bodies_are_shut_to_rounding() -> None:
+def test_two_contacts_that_hold_two_bodies_are_shut_to_rounding():
     """Gaps whose zero is the solution of two equations, in the terms that a run measures them."""
     at = Point({GROUND: 0.279, "a": 0.721}), Point({GROUND: 0.427, "b": 0.573})
     scene = Scene(
@@ -177,7 +175,7 @@ def test_two_contacts_that_hold_two_bodies_are_shut_to_rounding() -> None:
     check_scene(standing)
 
 
-def test_of_many_equilibria_it_is_the_nearest() -> None:
+def test_of_many_equilibria_it_is_the_nearest():
     """What floats stays, bodies that overlap part alike, a cable is let slack and no more."""
     floating = Scene((Body("a", 1.0, 0.03),), contacts=(Contact("wall", "a", BARRIER, 0.1, 0.5),))
     assert displacements(floating) == [0.03]
@@ -189,7 +187,7 @@ def test_of_many_equilibria_it_is_the_nearest() -> None:
     assert displacements(replace(floating, springs=(cable,))) == pytest.approx([0.02], rel=1e-14)
 
 
-def test_contacts_that_leave_no_room() -> None:
+def test_contacts_that_leave_no_room():
     walls = Contact("left", BARRIER, "a", 0.01, 0.5), Contact("right", "a", BARRIER, -0.02, 0.5)
     scene = Scene((Body("a", 1.0),), contacts=walls)
     with pytest.raises(InputError, match=r"leave bodies no room \(left, right\)"):
@@ -200,7 +198,7 @@ def test_contacts_that_leave_no_room() -> None:
     assert displacements(exact) == pytest.approx([-0.01], rel=1e-15)
 
 
-def test_a_law_that_unloads_downwards_is_refused() -> None:
+def test_a_law_that_unloads_downwards_is_refused():
     law = BoucWen(1.0, 2.0, 0.1, 2.0, 1.0, -0.2)
     scene = Scene((Body("a", 1.0),), (Spring("s", (GROUND, "a"), law),), forces=(Force("a", 1.0),))
     with pytest.raises(InputError, match=r"'s'.*gamma = -0.2.*accepted: gamma >= 0"):
@@ -214,7 +212,7 @@ def held_by(law: Law, force: float, u: float = 0.0) -> Scene:
 
 
 @pytest.mark.parametrize("u", [0.0, 0.01])
-def test_a_slider_sticks_until_its_friction_is_reached(u: float) -> None:
+def test_a_slider_sticks_until_its_friction_is_reached(u):
     law = Slider(0.1, 50.0, 200.0)
     for force in (200.0 * u, 200.0 * u + 4.99, 200.0 * u - 4.99):
         assert displacements(held_by(law, force, u)) == [u]
@@ -225,7 +223,7 @@ def test_a_slider_sticks_until_its_friction_is_reached(u: float) -> None:
         in_equilibrium(held_by(Slider(0.1, 50.0), 5.1))
 
 
-def test_backfill_is_pushed_in_and_let_go() -> None:
+def test_backfill_is_pushed_in_and_let_go():
     """On its hyperbola y/(1/K0 + R_f y/F_ult); from there on the line of K0, to a wider gap."""
     soil = Backfill(1e3, 20.0, 0.8, gap=0.01)
     pushed = in_equilibrium(held_by(soil, -8.0))
@@ -246,7 +244,7 @@ def test_backfill_is_pushed_in_and_let_go() -> None:
     assert in_equilibrium(untouched) == untouched
 
 
-def test_a_degrading_spring_is_loaded_straight_as_far_as_it_grows_stronger() -> None:
+def test_a_degrading_spring_is_loaded_straight_as_far_as_it_grows_stronger():
     """Without degradation as Bouc-Wen; with eta alone z' eta = 1 while it is elastic."""
     plain = BoucWen(10.0, 5.0, 0.1, 2.0)
     same = DegradingBoucWen(10.0, 5.0, 0.1, 2.0)
@@ -267,7 +265,7 @@ def test_a_degrading_spring_is_loaded_straight_as_far_as_it_grows_stronger() -> 
             in_equilibrium(held_by(weak, force))
 
 
-def test_a_scene_from_python_starts_in_equilibrium_by_the_word_of_the_case() -> None:
+def test_a_scene_from_python_starts_in_equilibrium_by_the_word_of_the_case():
     scene = Scene(
         (Body("joint", 1e3),),
         (Spring("frame", (GROUND, "joint"), Linear(3.3e8)),),
@@ -288,7 +286,7 @@ def test_a_scene_from_python_starts_in_equilibrium_by_the_word_of_the_case() -> 
 
 
 @pytest.mark.parametrize("solver", ["cvode", "fast"])
-def test_what_soil_sliders_and_degrading_springs_hold_stays(solver: str) -> None:
+def test_what_soil_sliders_and_degrading_springs_hold_stays(solver):
     laws = (
         (Backfill(1e3, 20.0, 0.8, gap=0.01), -8.0),
         (Slider(0.1, 50.0, 200.0), 4.0),
@@ -302,7 +300,7 @@ def test_what_soil_sliders_and_degrading_springs_hold_stays(solver: str) -> None
         assert extremes == pytest.approx([u, u], abs=1e-9)
 
 
-def test_in_a_case() -> None:
+def test_in_a_case():
     document: dict[str, object] = {
         "excitation": {"kind": "none"},
         "body": [{"name": "a", "mass": 2.0}],

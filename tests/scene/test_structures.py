@@ -1,7 +1,5 @@
 """What swings together: structures, springs with what hangs on them, isolators."""
 
-from __future__ import annotations
-
 import pytest
 
 from eventpound.scene import (
@@ -18,7 +16,7 @@ from eventpound.scene.structures import isolated, mass_on, structure_names, stru
 from tests.scene.test_modes import FLOORS, ISOLATORS, building, isolated_building
 
 
-def test_structures_are_what_springs_and_dashpots_join() -> None:
+def test_structures_are_what_springs_and_dashpots_join():
     scene = Scene(
         tuple(Body(name, 1.0) for name in "abcd"),
         (Spring("s", ("a", "c"), Linear(1.0)),),
@@ -28,7 +26,7 @@ def test_structures_are_what_springs_and_dashpots_join() -> None:
     assert structures_of(scene) == [["a", "c"], ["b", "d"]]
 
 
-def test_structures_are_called_as_a_body_says_or_as_the_first() -> None:
+def test_structures_are_called_as_a_body_says_or_as_the_first():
     def names(*said: str, springs: str = "") -> list[str]:
         bodies = tuple(Body(n, 1.0, structure=s) for n, s in zip("abcd", said, strict=True))
         pairs = zip(springs[::2], springs[1::2], strict=True)
@@ -43,7 +41,7 @@ def test_structures_are_called_as_a_body_says_or_as_the_first() -> None:
     assert names("", "d", "", "", springs="abc" + "c") == ["a", "c", "d"]
 
 
-def test_what_swings_on_a_spring() -> None:
+def test_what_swings_on_a_spring():
     scene, mass, *_ = building()
     for i, spring in enumerate(scene.springs):
         assert mass_on(scene, spring) == pytest.approx(mass[i:].sum(), rel=1e-14)
@@ -59,7 +57,7 @@ def test_what_swings_on_a_spring() -> None:
     assert [mass_on(bridge, spring) for spring in bridge.springs] == [3.0, 5.0, None]
 
 
-def test_what_stands_on_isolators() -> None:
+def test_what_stands_on_isolators():
     scene = isolated_building()
     assert isolated(scene) == set(FLOORS)
     # Storeys that yield, but later; in two bearings beside each other on a footing.

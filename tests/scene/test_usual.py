@@ -1,7 +1,5 @@
 """A size that is a million times too large or too small is refused or doubted, whatever its key."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Iterator
 from pathlib import Path
@@ -128,13 +126,13 @@ def warned(path: tuple[Any, ...], times: float) -> list[str]:
         return [*error.problems]
 
 
-def test_the_case_itself_is_usual() -> None:
+def test_the_case_itself_is_usual():
     assert warned(("run", "duration"), 1.0) == []
 
 
 @pytest.mark.parametrize("times", [1e6, 1e-6])
 @pytest.mark.parametrize("path", [*places(CASE)], ids=lambda p: ".".join(map(str, p)))
-def test_no_number_is_accepted_without_a_word(path: tuple[Any, ...], times: float) -> None:
+def test_no_number_is_accepted_without_a_word(path, times):
     assert (warned(path, times) != []) == (times > 1.0 or path not in NOTHING)
 
 
@@ -151,9 +149,7 @@ def test_no_number_is_accepted_without_a_word(path: tuple[Any, ...], times: floa
         (("dashpot", 0, "ratio"), 5e-4, "[[dashpot]] 1: ratio = 0.0005; usual is from 0.001"),
     ],
 )
-def test_the_sentence_names_number_range_and_reason(
-    path: tuple[Any, ...], value: float, said: str
-) -> None:
+def test_the_sentence_names_number_range_and_reason(path, value, said):
     at = CASE
     for key in path:
         at = at[key]
@@ -161,7 +157,7 @@ def test_the_sentence_names_number_range_and_reason(
     assert any(said in text for text in found)
 
 
-def test_a_support_on_which_nothing_stands() -> None:
+def test_a_support_on_which_nothing_stands():
     case = copy.deepcopy(CASE)
     case["support"].append({"name": "pier3", "delay": 0.2})
     (found,) = read_case(case, Path("case.toml")).warnings
@@ -169,7 +165,7 @@ def test_a_support_on_which_nothing_stands() -> None:
 
 
 @pytest.mark.parametrize("of_mass", [None, ["deck", "other"], "500 t"])
-def test_a_normal_force_by_a_weight(of_mass: Any) -> None:
+def test_a_normal_force_by_a_weight(of_mass):
     """W is the weight of the body, or of the mass that is named: as of a yield force."""
     case = copy.deepcopy(CASE)
     slider = case["spring"][5] | {"normal_force": "1.5 W"}
@@ -190,7 +186,7 @@ def test_a_normal_force_by_a_weight(of_mass: Any) -> None:
         (("title",), "a\x1b[31mbridge", "title: found 'a\\x1b[31mbridge'; accepted: some text, no"),
     ],
 )
-def test_what_is_refused_is_answered(path: tuple[Any, ...], value: Any, said: str) -> None:
+def test_what_is_refused_is_answered(path, value, said):
     case = copy.deepcopy(CASE)
     at = case
     for key in path[:-1]:

@@ -1,7 +1,5 @@
 """How far an answer of a solver may be from the truth."""
 
-from __future__ import annotations
-
 RTOL = 1e-10
 STEPS = 300.0
 """Each step errs by a fraction of the tolerance. Over tens of oscillations these add up,

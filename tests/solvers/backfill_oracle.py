@@ -4,8 +4,6 @@ A soil is apart, inside what it has been pushed to, or pushed further: on its ba
 here is taken from the package but the numbers of a scene and the acceleration of the ground.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -1,11 +1,9 @@
 """Every solver, for every test that runs a whole scene."""
 
-from __future__ import annotations
-
 import pytest
 
 
 @pytest.fixture(params=["cvode", "fast", "ida"])
-def solver(request: pytest.FixtureRequest) -> str:
+def solver(request):
     """Name of a solver."""
     return str(request.param)

@@ -6,8 +6,6 @@ Between impacts u is a sum of sines; an impact is a root of ``δ - u`` found by
 bisection between samples too dense for two crossings.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

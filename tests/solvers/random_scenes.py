@@ -1,7 +1,5 @@
 """Scenes drawn at random: whatever a scene may hold, in every combination."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 from itertools import pairwise
 from typing import Any

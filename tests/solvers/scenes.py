@@ -1,7 +1,5 @@
 """Scenes that pound, yield and rest, and copies of them seen otherwise."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from eventpound.motion.ricker import Ricker

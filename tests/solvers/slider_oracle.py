@@ -6,8 +6,6 @@ rest, unique or not. Nothing here is taken from the package but the numbers of a
 motions of ground and supports. Rows have a column for each body, then one for each support.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from itertools import product
 

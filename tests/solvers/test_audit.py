@@ -1,7 +1,5 @@
 """What breaks an invariant is an error that names it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

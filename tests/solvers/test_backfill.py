@@ -1,7 +1,5 @@
 """Soil behind abutments beside a program in SciPy that keeps its deepest point, and by hand."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -85,8 +83,8 @@ def lost_and_stored(soil: Soil, u: np.ndarray) -> tuple[float, float]:
     ids=["two abutments", "pounding", "thrown back", "pressed in"],
 )
 def test_motion_is_that_of_soil_which_remembers_its_deepest_point(
-    scene: Scene, end: float, least: int, solver: str, settings: dict
-) -> None:
+    scene, end, least, solver, settings
+):
     response, answer = answered(scene, solver, settings, end)
     found, size = response.recording, np.abs(response.recording.history.u).max()
     assert len(answer.turns) >= least
@@ -116,7 +114,7 @@ def test_motion_is_that_of_soil_which_remembers_its_deepest_point(
     assert found.energy.hysteretic == pytest.approx(stored - begun, rel=1e-7)
 
 
-def test_each_of_many_runs_has_the_push_on_its_own_soil() -> None:
+def test_each_of_many_runs_has_the_push_on_its_own_soil():
     gaps, forces = np.array([0.01, 0.03]), np.array([4e6, 6e6])
     names = ["springs.left.passive_force", "springs.left.passive_depth"]
     varied = {"spring.left.gap": gaps, "spring.left.ultimate_force": forces}
@@ -131,7 +129,7 @@ def test_each_of_many_runs_has_the_push_on_its_own_soil() -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "fast"])
-def test_soil_does_not_pull_by_rounding(solver: str) -> None:
+def test_soil_does_not_pull_by_rounding(solver):
     response = simulate(BETWEEN_TWO, solver, 1e-7, duration=3.0)
     for name in ("left", "right"):
         # As of a body at rest: what is never exceeded is attained at the start.
@@ -141,7 +139,7 @@ def test_soil_does_not_pull_by_rounding(solver: str) -> None:
         assert response.quantity(f"springs.{name}.min_force") == pytest.approx(-peak, rel=1e-5)
 
 
-def test_soil_that_a_wider_gap_keeps_from_the_deck_is_not_pushed() -> None:
+def test_soil_that_a_wider_gap_keeps_from_the_deck_is_not_pushed():
     scene = Scene(
         [Body("deck", 1e5, velocity=-0.1)],
         [
@@ -157,7 +155,7 @@ def test_soil_that_a_wider_gap_keeps_from_the_deck_is_not_pushed() -> None:
     assert [response.quantity(f"springs.soil.{name}") for name in names] == [0.0, 0.0]
 
 
-def test_soil_of_a_run_that_was_stopped_is_where_its_support_is() -> None:
+def test_soil_of_a_run_that_was_stopped_is_where_its_support_is():
     springs = [
         Spring("pier", ("bank", "deck"), Linear(1e7)),
         Spring("soil", ("bank", "deck"), Backfill(2e7, 4e5, 0.7, 0.5)),
@@ -173,7 +171,7 @@ def test_soil_of_a_run_that_was_stopped_is_where_its_support_is() -> None:
     assert stopped.quantity("springs.soil.residual_gap") == pytest.approx(0.5, rel=1e-7)
 
 
-def test_soil_under_a_slow_push_goes_along_its_loop_by_hand() -> None:
+def test_soil_under_a_slow_push_goes_along_its_loop_by_hand():
     # K0 = F_ult = R_f = 1: F = y/(1 + y), 1/2 at y = 1, with a residual gap of 1/2.
     law = Backfill(1.0, 1.0, 1.0)
     z = law.z_at(-1.0)
@@ -184,7 +182,7 @@ def test_soil_under_a_slow_push_goes_along_its_loop_by_hand() -> None:
 
 
 @pytest.mark.parametrize("solver", ["moreau", "penalty"])
-def test_a_solver_that_does_not_know_soil_says_so_in_one_message(solver: str) -> None:
+def test_a_solver_that_does_not_know_soil_says_so_in_one_message(solver):
     with pytest.raises(InputError) as caught:
         simulate(BETWEEN_TWO, solver=solver, duration=1.0)
     said = f"[solver]: {solver} does not know the laws of springs 'left' (backfill), 'right'"
@@ -192,7 +190,7 @@ def test_a_solver_that_does_not_know_soil_says_so_in_one_message(solver: str) ->
     assert str(caught.value).endswith("; accepted: cvode, ida, fast")
 
 
-def test_soil_beside_a_bearing_that_yields_keeps_energy() -> None:
+def test_soil_beside_a_bearing_that_yields_keeps_energy():
     bearing = replace(HELD, law=BoucWen("10 MN/m", "500 kN", "1 cm"))
     scene = replace(BETWEEN_TWO, springs=(bearing, LEFT, RIGHT))
     energy = simulate(scene, duration=8.0, rtol=1e-9, energy=True).energy

@@ -1,7 +1,5 @@
 """When a cascade is over: without play, without loss, without an interval, without a speed."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np
@@ -42,7 +40,7 @@ def _squeezed(eps: tuple[float, float], motion: Sine | None = None) -> Scene:
     )
 
 
-def test_no_play_and_no_loss_is_refused_at_once(solver: str) -> None:
+def test_no_play_and_no_loss_is_refused_at_once(solver):
     with pytest.raises(ComputationError, match="'left wall', 'right wall' leave no play") as error:
         run(_squeezed((1.0, 1.0)), RTOL, 1.0, solver=solver)
     recording = error.value.recording
@@ -54,7 +52,7 @@ def test_no_play_and_no_loss_is_refused_at_once(solver: str) -> None:
 
 
 @pytest.mark.parametrize("eps", [(1.0, 1.0 - 1e-6), (0.999, 0.999), (1.0, 0.0)])
-def test_no_play_and_some_loss_comes_to_rest(solver: str, eps: tuple[float, float]) -> None:
+def test_no_play_and_some_loss_comes_to_rest(solver, eps):
     # However little an impact loses, the limit of them all is the same: rest.
     recording = run(_squeezed(eps), RTOL, 1.0, solver=solver)
     np.testing.assert_array_equal(recording.v, 0.0)
@@ -68,7 +66,7 @@ def test_no_play_and_some_loss_comes_to_rest(solver: str, eps: tuple[float, floa
 
 
 @pytest.mark.parametrize("eps", [(0.8, 0.0), (0.0, 0.8), (0.3, 0.5)])
-def test_no_play_rests_on_both_sides(solver: str, eps: tuple[float, float]) -> None:
+def test_no_play_rests_on_both_sides(solver, eps):
     # A speed left by rounding would let it "fly" over gaps of 1e-18 m for ever.
     recording = run(_squeezed(eps, Sine(3.0, 0.5)), 1e-9, 2.0, solver=solver)
     rests = [e.contact for e in recording.events if e.kind is EventKind.REST]
@@ -77,7 +75,7 @@ def test_no_play_rests_on_both_sides(solver: str, eps: tuple[float, float]) -> N
     assert EventKind.DETACHMENT not in {e.kind for e in recording.events}
 
 
-def test_a_push_that_ends_at_a_kink_parts_nobody(solver: str) -> None:
+def test_a_push_that_ends_at_a_kink_parts_nobody(solver):
     # The spring pushes a into b as far as u = 0 and has no force beyond. λ vanishes with it
     # and stays zero: no order tells that they part, so they go on as one at u_0 ω.
     mass, k, u0 = 3.0, 12.0, -0.1
@@ -95,7 +93,7 @@ def test_a_push_that_ends_at_a_kink_parts_nobody(solver: str) -> None:
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_the_longer_an_elastic_contact_bounces_the_less_it_may_keep() -> None:
+def test_the_longer_an_elastic_contact_bounces_the_less_it_may_keep():
     # Plastic below 1e-15 L/T; after n times 10 000 in a row below n 1e-9 of the fastest, so
     # that bounces of any speed end.
     speeds = (0.9e-15, 1.1e-15, 0.9e-9, 1.9e-9)
@@ -115,7 +113,7 @@ def test_the_longer_an_elastic_contact_bounces_the_less_it_may_keep() -> None:
 
 
 @pytest.mark.parametrize("turned", [False, True])
-def test_who_rests_first_at_the_limit_of_a_cascade_shows_nowhere(solver: str, turned: bool) -> None:
+def test_who_rests_first_at_the_limit_of_a_cascade_shows_nowhere(solver, turned):
     # Four bodies collapse at 0.9387 s: three contacts rest within 1e-16 s of each other, in an
     # order that rounding decides. The first pair to rest would for 1e-40 s be pushed with
     # 3.7 m/s², more than thrice what either sees before or after.
@@ -141,7 +139,7 @@ def test_who_rests_first_at_the_limit_of_a_cascade_shows_nowhere(solver: str, tu
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
-def test_a_cascade_can_be_stopped(solver: str) -> None:
+def test_a_cascade_can_be_stopped(solver):
     # An elastic contact that a constant push keeps shut: impact upon impact, all on series.
     scene = Scene(
         (Body("a", 1.0, 1e-9),),
@@ -163,7 +161,7 @@ def test_a_cascade_can_be_stopped(solver: str) -> None:
     assert len(recording.events) == pytest.approx(recording.t / bounce, abs=2)
 
 
-def test_the_last_impact_of_a_collapse_stands_for_those_that_would_follow(solver: str) -> None:
+def test_the_last_impact_of_a_collapse_stands_for_those_that_would_follow(solver):
     # b1, drawn towards b0, leaves the plastic b2 by a τ²/2 only before b0 throws it back: the
     # intervals square each time, and infinitely many impacts of some speed take no time.
     scene = Scene(
@@ -198,7 +196,7 @@ def two_bodies() -> SimpleNamespace:
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_rounding_does_not_close_what_has_just_opened() -> None:
+def test_rounding_does_not_close_what_has_just_opened():
     # A gap opens by 4 τ³. After 4e-17 s, where a link turned, an acceleration of one rounding,
     # -4.5e-15 m/s², would close it in 5e-18 s, and so for ever. One that is known does close it.
     bodies = two_bodies()
@@ -222,7 +220,7 @@ def test_rounding_does_not_close_what_has_just_opened() -> None:
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_a_gap_that_rounding_has_put_below_zero_closes_though_it_seems_to_open() -> None:
+def test_a_gap_that_rounding_has_put_below_zero_closes_though_it_seems_to_open():
     bodies = two_bodies()
     state = SimpleNamespace(gap=np.array([-5.2e-18]), gap_rate=np.array([1.4e-17]))
     Y = np.zeros((5, 2))
@@ -231,7 +229,7 @@ def test_a_gap_that_rounding_has_put_below_zero_closes_though_it_seems_to_open()
     assert first_closings(C, np.ones(1, bool), 1.0)[0] == pytest.approx(1.4e-17 / 0.7)
 
 
-def test_a_cascade_given_up_names_its_contacts() -> None:
+def test_a_cascade_given_up_names_its_contacts():
     contacts = [Contact(name, "a", "b", 0.0, 0.5) for name in ("early", "late", "slow")]
     early = [Event(0.1, EventKind.IMPACT, 0, 0, -1.0)] * WINDOW
     late = [Event(0.2, EventKind.IMPACT, 1, 1 + i % 2, -1e-4 / (1 + i)) for i in range(WINDOW)]

@@ -1,7 +1,5 @@
 """Runs whose answer is known in closed form."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -17,7 +15,7 @@ from tests.solvers.exact import Oscillator
 
 
 @pytest.mark.parametrize("last", [0.07, 0.4, 3.0])
-def test_a_body_that_first_goes_the_other_way(solver: str, last: float) -> None:
+def test_a_body_that_first_goes_the_other_way(solver, last):
     """A free body at rest under a_g = a + s t goes to -2/3 a³/s² at t = -2a/s, and back.
 
     The whole of it is one step, in which that is a dip of a few thousandths.
@@ -52,9 +50,7 @@ def _oscillator_scene(exact: Oscillator, u: float, v: float) -> Scene:
     ids=["free", "pressed", "sine", "elastic-impacts"],
 )
 @pytest.mark.parametrize("rtol", [1e-6, RTOL])
-def test_elastic_oscillator_with_a_barrier(
-    solver: str, exact: Oscillator, u: float, v: float, end: float, rtol: float
-) -> None:
+def test_elastic_oscillator_with_a_barrier(solver, exact, u, v, end, rtol):
     times, speeds, u_end, v_end = exact.solve(u, v, end)
     run = response_of(_oscillator_scene(exact, u, v), solver, rtol=rtol, duration=end).recording
     impacts = [e for e in run.events if e.kind is EventKind.IMPACT]
@@ -80,7 +76,7 @@ def test_elastic_oscillator_with_a_barrier(
     )
 
 
-def test_peaks_are_located_not_sampled(solver: str) -> None:
+def test_peaks_are_located_not_sampled(solver):
     # u = cos(t - 1) over two periods, no contact: 1 at t = 1, -1 at 1 + π, first attainments.
     spring = Spring("k", (GROUND, "m"), Linear(1.0))
     body = Body("m", 1.0, math.cos(1.0), math.sin(1.0))
@@ -108,7 +104,7 @@ def _pushed_ball(restitution: float, side: str) -> Scene:
 @pytest.mark.parametrize("side", ["left", "right"])
 @pytest.mark.parametrize("eps", [0.0, 0.1, 0.5, 0.9])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-12])
-def test_bouncing_ball_reaches_its_limit(solver: str, eps: float, side: str, rtol: float) -> None:
+def test_bouncing_ball_reaches_its_limit(solver, eps, side, rtol):
     # Push a = 2: first impact at t_1 = sqrt(2 δ/a) = 1/2 with v = a t_1 = 1, then
     # intervals 2 v ε^i/a: t_∞ = t_1 + 2 v ε/(a (1 - ε)).
     limit = 0.5 + eps / (1.0 - eps)
@@ -140,7 +136,7 @@ def test_bouncing_ball_reaches_its_limit(solver: str, eps: float, side: str, rto
     assert run.max_force[0] == pytest.approx(3.0 * 2.0, rel=1e-12)
 
 
-def test_rest_ends_where_the_push_turns(solver: str) -> None:
+def test_rest_ends_where_the_push_turns(solver):
     # a_g falls linearly from -2 at t = 10 to 2 at t = 20: λ = -m a_g vanishes at t = 15.
     samples = np.array([-2.0, -2.0, 2.0, 2.0])
     scene = Scene(
@@ -169,7 +165,7 @@ def _squeezed_light_body(light: float, eps: float) -> Scene:
 
 
 @pytest.mark.parametrize(("light", "eps"), [(1e-3, 0.5), (1e-2, 0.5), (0.02, 0.3)])
-def test_light_body_between_heavy_ones_collapses(solver: str, light: float, eps: float) -> None:
+def test_light_body_between_heavy_ones_collapses(solver, light, eps):
     # In the limit all three move at their common mean velocity, and the centre of mass
     # and the closed gaps say where they are.
     scene = _squeezed_light_body(light, eps)
@@ -189,7 +185,7 @@ def test_light_body_between_heavy_ones_collapses(solver: str, light: float, eps:
     assert sum(e.energy_lost for e in run.events) == pytest.approx(lost, rel=1e-11)
 
 
-def test_elastic_oscillator_over_a_hundred_periods(solver: str) -> None:
+def test_elastic_oscillator_over_a_hundred_periods(solver):
     spring = Spring("k", (GROUND, "m"), Linear(4.0))
     scene = Scene((Body("m", 1.0, 0.3, -0.5),), (spring,))
     end = 100.0 * math.pi + 1.0
@@ -204,7 +200,7 @@ def test_elastic_oscillator_over_a_hundred_periods(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["fast", "cvode"])
-def test_a_record_without_a_mean_period(solver: str) -> None:
+def test_a_record_without_a_mean_period(solver):
     """Of constant acceleration a: u = (a/ω²)(cos ωt - 1), free once it ends; gap of a body far."""
     omega, a, end = 2.0 * math.pi, 0.5, 10.25
     scene = Scene(

@@ -1,7 +1,5 @@
 """Bouc-Wen springs that degrade: beside SciPy, in closed form, in random scenes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import asdict, replace
@@ -122,7 +120,7 @@ class Program:
 
 
 @pytest.mark.parametrize(("solver", "settings"), SOLVERS)
-def test_motion_is_that_of_the_printed_equations(solver: str, settings: dict) -> None:
+def test_motion_is_that_of_the_printed_equations(solver, settings):
     program = Program(POUNDING)
     y = program.solved(6.0)
     response = run(POUNDING, 6.0, solver, settings=settings)
@@ -135,7 +133,7 @@ def test_motion_is_that_of_the_printed_equations(solver: str, settings: dict) ->
     assert [e.t for e in found.events] == pytest.approx(program.impacts, abs=1e-9)
 
 
-def test_a_law_that_does_not_degrade_moves_as_bouc_wen_does() -> None:
+def test_a_law_that_does_not_degrade_moves_as_bouc_wen_does():
     new = replace(WORN, strength_degradation=0.0, stiffness_degradation=0.0)
     pair = [
         replace(POUNDING, springs=(replace(POUNDING.springs[0], law=law), *POUNDING.springs[2:]))
@@ -175,7 +173,7 @@ def thrown(solver: str, **degradation: float) -> tuple[Response, float, float]:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "fast"])
-def test_strength_falls_along_a_loop_in_closed_form(solver: str) -> None:
+def test_strength_falls_along_a_loop_in_closed_form(solver):
     delta = 0.6
     response, top, x = thrown(solver, strength_degradation=delta)
     z, energy = yielded(top, delta, 0.0)
@@ -188,7 +186,7 @@ def test_strength_falls_along_a_loop_in_closed_form(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "fast"])
-def test_stiffness_falls_along_a_loop_in_closed_form(solver: str) -> None:
+def test_stiffness_falls_along_a_loop_in_closed_form(solver):
     # Yielding, d eta/dz = delta eta z/(1 - z); unloading, delta eta z.
     delta, start = 0.4, 0.5
     response, *_ = thrown(solver, stiffness_degradation=delta, initial_loss=start)
@@ -207,7 +205,7 @@ def test_stiffness_falls_along_a_loop_in_closed_form(solver: str) -> None:
     assert found == pytest.approx(lost_now - start, rel=1e-7)
 
 
-def test_an_elastic_way_out_and_back_loses_nothing() -> None:
+def test_an_elastic_way_out_and_back_loses_nothing():
     law = replace(WORN, stiffness_degradation=0.7, initial_loss=3.0)
     for z in (0.0, 0.4, -1.0):
         begun = replace(law, initial_z=z)
@@ -220,7 +218,7 @@ def test_an_elastic_way_out_and_back_loses_nothing() -> None:
     assert law.second_at == pytest.approx(3.0 * math.exp(a) + math.expm1(a) / 0.7, rel=1e-14)
 
 
-def test_epsilon_of_a_case_starts_at_its_loss_and_what_its_z_holds() -> None:
+def test_epsilon_of_a_case_starts_at_its_loss_and_what_its_z_holds():
     spring = {"between": ["ground", "b"], "name": "s", "law": "degrading-bouc-wen"}
     spring |= {"stiffness": 0.0, "strength": 1e3, "yield_displacement": 0.01, "exponent": 2}
     for loss in (0.0, 2.0):
@@ -253,7 +251,7 @@ def worn(scene: Scene, seed: int) -> Scene:
 
 
 @pytest.mark.parametrize("seed", range(1, 25))
-def test_random_scenes_move_alike_and_keep_energy(seed: int) -> None:
+def test_random_scenes_move_alike_and_keep_energy(seed):
     scene, end = random_scene(seed)
     scene = worn(scene, seed)
     first, *others = (run(scene, end, solver, 1e-9) for solver in ("cvode", "ida", "fast"))
@@ -267,7 +265,7 @@ def test_random_scenes_move_alike_and_keep_energy(seed: int) -> None:
         assert np.all(z <= np.array(bounds) * (1.0 + 1e-6))
 
 
-def test_its_energy_is_the_hysteretic_work() -> None:
+def test_its_energy_is_the_hysteretic_work():
     response = run(POUNDING, 4.0)
     parts = [
         spring.law.strength * spring.law.yield_displacement * response.final[spring.name]["epsilon"]
@@ -279,7 +277,7 @@ def test_its_energy_is_the_hysteretic_work() -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "fast"])
-def test_damage_goes_on_in_an_aftershock(solver: str) -> None:
+def test_damage_goes_on_in_an_aftershock(solver):
     thrown = Body("deck", 1.0e6, velocity=3.0)
     scene = replace(POUNDING, motion=NoMotion(), bodies=(thrown, POUNDING.bodies[1]))
     whole, first = run(scene, 4.0, solver), run(scene, 2.5, solver)
@@ -290,7 +288,7 @@ def test_damage_goes_on_in_an_aftershock(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["moreau", "penalty"])
-def test_a_solver_that_does_not_know_it_says_so_in_one_message(solver: str) -> None:
+def test_a_solver_that_does_not_know_it_says_so_in_one_message(solver):
     with pytest.raises(InputError) as caught:
         simulate(POUNDING, solver=solver, duration=1.0)
     said = f"[solver]: {solver} does not know the laws of springs 'pier' (degrading-bouc-wen)"
@@ -298,7 +296,7 @@ def test_a_solver_that_does_not_know_it_says_so_in_one_message(solver: str) -> N
     assert str(caught.value).endswith("; accepted: cvode, ida, fast")
 
 
-def test_numbers_that_would_heal_it_are_refused() -> None:
+def test_numbers_that_would_heal_it_are_refused():
     for key, value in (("beta", 0.6), ("strength_degradation", -0.1), ("initial_loss", -1.0)):
         law = replace(WORN, **{key: value})
         with pytest.raises(InputError, match=key):

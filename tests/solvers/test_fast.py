@@ -1,7 +1,5 @@
 """The fast solver's order, growing record and failures; and the same account as CVODE's."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -88,7 +86,7 @@ def _by_equal_steps(order: int, count: int) -> np.ndarray:
 @pytest.mark.parametrize(
     ("order", "counts"), [(6, (16, 24, 32, 48)), (8, (12, 16, 24, 32)), (10, (8, 12, 16, 24))]
 )
-def test_order_on_a_smooth_stretch(order: int, counts: tuple[int, ...]) -> None:
+def test_order_on_a_smooth_stretch(order, counts):
     # Displacements end at τ^p: the local error of v is of order h^p, the global one h^(p-1).
     scene, end = _loading()
     exact = run(scene, 1e-14, end, solver="fast")
@@ -99,7 +97,7 @@ def test_order_on_a_smooth_stretch(order: int, counts: tuple[int, ...]) -> None:
 
 
 @pytest.mark.parametrize("scene", [_loading()[0], PAIR], ids=["smooth", "impacts"])
-def test_errors_fall_with_the_tolerance(scene: Scene) -> None:
+def test_errors_fall_with_the_tolerance(scene):
     tolerances = 10.0 ** -np.arange(4.0, 11.5, 0.5)
     exact = run(scene, 1e-14, END, solver="fast")
     errors = []
@@ -112,7 +110,7 @@ def test_errors_fall_with_the_tolerance(scene: Scene) -> None:
     assert 0.8 < slope < 1.3
 
 
-def test_order_of_the_series() -> None:
+def test_order_of_the_series():
     # A step of 1/e² of the radius of convergence leaves e^(-2 p): p = -ln(rtol)/2 and some.
     for rtol in (1e-3, 1e-6, 1e-9, 1e-12, 1e-14):
         assert 8 <= order_for(rtol) <= 24
@@ -129,9 +127,7 @@ def with_numbers_of(scene: Scene, numbers: dict[str, float]) -> Scene:
     return with_values(scene, {places[key]: value for key, value in numbers.items()})
 
 
-def test_no_run_depends_on_those_before_it_in_the_same_arrays(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_no_run_depends_on_those_before_it_in_the_same_arrays(monkeypatch):
     # Other numbers, laws, motions, tolerances and lengths; one fails, and one begins another.
     ride = Record(np.sin(np.arange(200.0)), 0.05)
     scenes = [
@@ -167,9 +163,7 @@ def test_no_run_depends_on_those_before_it_in_the_same_arrays(
 
 @pytest.mark.parametrize("room", [0, 1, 3])
 @pytest.mark.parametrize("energy", [False, True])
-def test_a_record_that_grows_changes_nothing(
-    monkeypatch: pytest.MonkeyPatch, room: int, energy: bool
-) -> None:
+def test_a_record_that_grows_changes_nothing(monkeypatch, room, energy):
     times = np.linspace(0.0, END, 501)
     task = Task(PAIR, 0.0, END, 1e-8, output_times=times, energy=energy)
     large = solver_named("fast").solve(task)
@@ -179,9 +173,7 @@ def test_a_record_that_grows_changes_nothing(
 
 
 @pytest.mark.parametrize("room", [0, 1, 2, 5, 9])
-def test_a_record_that_grows_within_an_instant_changes_nothing(
-    monkeypatch: pytest.MonkeyPatch, room: int
-) -> None:
+def test_a_record_that_grows_within_an_instant_changes_nothing(monkeypatch, room):
     # Between two barriers without play impact follows impact until all energy is gone, in
     # one instant, and there is room for some of them only.
     scene = Scene(
@@ -200,7 +192,7 @@ def test_a_record_that_grows_within_an_instant_changes_nothing(
     _equal(solver_named("fast").solve(task), large)
 
 
-def test_a_run_ends_before_its_events_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_ends_before_its_events_fill_the_memory(monkeypatch):
     # A body that falls through 1 mm and loses nothing strikes every 28 ms.
     fall = Scene(
         (Body("ball", 1.0),),
@@ -219,7 +211,7 @@ def test_a_run_ends_before_its_events_fill_the_memory(monkeypatch: pytest.Monkey
     assert 500 < len(kept.events) < 1500
 
 
-def test_pauses_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pauses_change_nothing(monkeypatch):
     seen: list[float] = []
     task = Task(PAIR, 0.0, END, 1e-8, progress=seen.append)
     whole = solver_named("fast").solve(replace(task, progress=None))
@@ -230,7 +222,7 @@ def test_pauses_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert 0.0 < seen[0] < seen[-1] < END
 
 
-def test_room_of_a_shorter_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_room_of_a_shorter_run(monkeypatch):
     """A run in the arrays of one with few output times makes room for all of its own at once."""
     forget_arrays(monkeypatch)
     seen: list[float] = []
@@ -240,7 +232,7 @@ def test_room_of_a_shorter_run(monkeypatch: pytest.MonkeyPatch) -> None:
     assert seen.count(0.0) == 1
 
 
-def test_a_failure_keeps_what_was_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failure_keeps_what_was_computed(monkeypatch):
     # The kernel is called four times for forty steps each, then says that it failed.
     calls: list[int] = []
     advance = fast.advance
@@ -269,7 +261,7 @@ def test_a_failure_keeps_what_was_computed(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 @pytest.mark.parametrize("eps", [0.0, 0.5, 0.9])
-def test_the_same_account_as_cvode(eps: float) -> None:
+def test_the_same_account_as_cvode(eps):
     times = np.linspace(0.0, END, 121)
     contacts = tuple(replace(c, restitution=eps) for c in PAIR.contacts)
     task = Task(replace(PAIR, contacts=contacts), 0.0, END, RTOL, output_times=times, energy=True)
@@ -305,13 +297,13 @@ TRIED = (0, 5, 8, 13, 14, 22, 24, 39, 45, 57, 72, 78, 362, 368, 423)
 
 
 @pytest.mark.parametrize("seed", [*TRIED, *range(2000, 2003)])
-def test_random_scenes(seed: int) -> None:
+def test_random_scenes(seed):
     verdict = judge(seed, "cvode")
     assert verdict.word in ("agree", "agree when tight", "ill-conditioned"), verdict
 
 
 @pytest.mark.parametrize("seed", TRIED[:4])
-def test_no_penetration_no_pull(seed: int) -> None:
+def test_no_penetration_no_pull(seed):
     scene, end = random_scene(seed)
     recording = run(scene, FINE, end, solver="fast")
     scales = scene_scales(scene, assemble(scene), end)

@@ -1,9 +1,6 @@
 """Laws whose time cannot be eliminated, on the fast solver: beside CVODE, in batches, at events."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -49,7 +46,7 @@ def soiled(scene: Scene, seed: int) -> Scene:
 
 @pytest.mark.parametrize("make", [random_scene, driven_scene, resting_scene])
 @pytest.mark.parametrize("seed", range(1, 8))
-def test_random_scenes_move_as_with_cvode(make: Any, seed: int) -> None:
+def test_random_scenes_move_as_with_cvode(make, seed):
     scene, end = make(seed)
     scene = worn(soiled(scene, seed), seed)
     fast, cvode = (run(scene, end, solver, energy=True) for solver in ("fast", "cvode"))
@@ -64,7 +61,7 @@ def test_random_scenes_move_as_with_cvode(make: Any, seed: int) -> None:
 
 
 @pytest.mark.parametrize("scene", [SOIL, WORN, BOTH], ids=["soil", "worn", "both"])
-def test_extremes_rows_and_events_are_those_of_cvode(scene: Scene) -> None:
+def test_extremes_rows_and_events_are_those_of_cvode(scene):
     fast, cvode = (run(scene, 5.0, solver, 1e-11, output_step=0.5) for solver in ("fast", "cvode"))
     np.testing.assert_allclose(fast.peaks, cvode.peaks, rtol=1e-7, atol=1e-8)
     # Rounding decides whether soil touched for the first time has something to be inside of.
@@ -79,7 +76,7 @@ def test_extremes_rows_and_events_are_those_of_cvode(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("scene", [SOIL, WORN, BOTH], ids=["soil", "worn", "both"])
-def test_errors_follow_the_tolerance(scene: Scene) -> None:
+def test_errors_follow_the_tolerance(scene):
     exact = run(scene, 3.0, rtol=1e-14).recording
     for rtol in (1e-5, 1e-7, 1e-9, 1e-11):
         found = run(scene, 3.0, rtol=rtol).recording
@@ -106,7 +103,7 @@ NUMBERS = {
 
 
 @pytest.mark.parametrize("which", NUMBERS)
-def test_variants_are_single_runs_to_the_last_bit(which: str) -> None:
+def test_variants_are_single_runs_to_the_last_bit(which):
     scene, numbers = NUMBERS[which]
     many = simulate_many(scene, numbers, duration=3.0, rtol=1e-8)
     task = Task(scene, 0.0, 3.0, 1e-8)
@@ -120,7 +117,7 @@ def test_variants_are_single_runs_to_the_last_bit(which: str) -> None:
             np.testing.assert_array_equal(z, one.z)
 
 
-def test_laws_of_scenes_that_differ_in_them_alone_are_not_confused() -> None:
+def test_laws_of_scenes_that_differ_in_them_alone_are_not_confused():
     spring = Spring("s", (GROUND, "deck"), Backfill("100 MN/m", "5 MN", 0.7))
     soil = Scene((Body("deck", 1e6, velocity=-1.0),), (spring,), motion=NoMotion())
     plain = replace(soil, springs=(replace(spring, law=test_degrading.PLAIN),))
@@ -129,7 +126,7 @@ def test_laws_of_scenes_that_differ_in_them_alone_are_not_confused() -> None:
     np.testing.assert_allclose(before[1], run(plain, 1.0, "cvode").recording.u, rtol=1e-8)
 
 
-def test_soil_touched_as_bodies_meet_and_left_at_once_is_none() -> None:
+def test_soil_touched_as_bodies_meet_and_left_at_once_is_none():
     soil = Spring("soil", ("a", "b"), Backfill(1e3, 10.0, 0.7))
     scene = Scene(
         (Body("a", 1.0, velocity=1.0), Body("b", 1.0)),

@@ -1,7 +1,5 @@
 """A single body that swings freely: closed forms of its turns, rows and borders."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
@@ -32,7 +30,7 @@ def solved(*contacts: Contact, law=None, rows: int = 2, body: Body | None = None
     return solver_named("fast").solve(Task(scene, 0.0, END, 1e-6, output_times=times))
 
 
-def test_from_turn_to_turn_to_rounding() -> None:
+def test_from_turn_to_turn_to_rounding():
     found = solved(Contact("r", "a", BARRIER, 1.1 * REACH, 0.5), rows=997)
     # One step from turn to turn, whatever the tolerance: rounding is all that adds up.
     assert found.work.steps == np.ceil(OMEGA * END / np.pi)
@@ -46,7 +44,7 @@ def test_from_turn_to_turn_to_rounding() -> None:
     assert found.v[0] == pytest.approx(REACH * OMEGA * np.sin(OMEGA * END), rel=1e-11)
 
 
-def test_a_barrier_within_reach_is_met() -> None:
+def test_a_barrier_within_reach_is_met():
     gap, eps = 0.9 * REACH, 0.6
     found = solved(Contact("r", "a", BARRIER, gap, eps))
     # u = -R cos ω t comes up to the gap.
@@ -60,9 +58,7 @@ def test_a_barrier_within_reach_is_met() -> None:
 
 
 @pytest.mark.parametrize(("size", "yields"), [(0.3, False), (3.0, True)])
-def test_a_yielding_spring_swings_freely_only_where_it_is_straight(
-    size: float, yields: bool
-) -> None:
+def test_a_yielding_spring_swings_freely_only_where_it_is_straight(size, yields):
     u_y = 0.1
     law = BoucWen(4.0, 1.5, u_y, 20.0, initial_z=min(size, 0.9))
     found = solved(law=law, body=Body("a", 1.0, size * u_y))
@@ -73,7 +69,7 @@ def test_a_yielding_spring_swings_freely_only_where_it_is_straight(
         assert found.work.steps == pytest.approx(omega * END / np.pi, abs=1.0)
 
 
-def test_small_bounces_keep_their_relative_accuracy() -> None:
+def test_small_bounces_keep_their_relative_accuracy():
     # A spring that is short by d presses the body onto the barrier; it bounces ever lower,
     # and a flight at the speed v takes 2 atan(v / (ω d)) / ω.
     eps, d, gap = 0.5, 0.3, 0.2

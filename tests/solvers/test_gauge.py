@@ -1,8 +1,5 @@
 """Distances, of a gauge without stiffness too: their extremes are located by every solver."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +19,7 @@ GAUGED = replace(FREE, springs=(*FREE.springs, Spring("gauge", ("a", "b"), Linea
 
 
 @pytest.mark.parametrize("solver", ["fast", "cvode", "ida"])
-def test_it_measures_and_pulls_nothing(solver: str) -> None:
+def test_it_measures_and_pulls_nothing(solver):
     """Two oscillators of 2 and 2.9 rad/s by themselves: their distance is known."""
     t = np.linspace(0.0, END, 400_001)
     apart = -0.05 * np.cos(2.9 * t) - 0.1 * np.cos(2.0 * t)
@@ -51,9 +48,7 @@ def _cubic_extremes(t: np.ndarray, x: np.ndarray, v: np.ndarray) -> tuple[float,
 @pytest.mark.parametrize("solver", ["fast", "cvode", "ida"])
 @pytest.mark.parametrize("make", [random_scene, driven_scene, resting_scene])
 @pytest.mark.parametrize("seed", [91000, 91003])
-def test_extremes_are_those_of_close_rows(
-    solver: str, make: Callable[[int], tuple[Scene, float]], seed: int
-) -> None:
+def test_extremes_are_those_of_close_rows(solver, make, seed):
     """Openings and elongations; rows h apart and their rates err by h⁴/384 of the fourth rate."""
     scene, end = make(seed)
     times = np.linspace(0.0, end, 40_001)

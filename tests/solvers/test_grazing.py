@@ -5,8 +5,6 @@ or larger by a part of itself: so tuned, the outcome does not hang on the
 global error of the run, and must be right at every tolerance.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -72,7 +70,7 @@ def _impacts_on_the_wall(
 @pytest.mark.parametrize("part", PARTS)
 @pytest.mark.parametrize("rtol", TOLERANCES)
 @pytest.mark.parametrize("name", SCENES)
-def test_found_and_missed(solver: str, name: str, rtol: float, part: float) -> None:
+def test_found_and_missed(solver, name, rtol, part):
     scene, end = SCENES[name]
     free = run(scene, rtol, end, solver=solver).displacement
     peak, time = float(free.maximum[0]), float(free.time_of_maximum[0])
@@ -86,7 +84,7 @@ def test_found_and_missed(solver: str, name: str, rtol: float, part: float) -> N
 
 @pytest.mark.parametrize("part", PARTS)
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])
-def test_speed_of_a_graze(solver: str, rtol: float, part: float) -> None:
+def test_speed_of_a_graze(solver, rtol, part):
     # Free oscillation: γ⁻ = -ω sqrt(A² - δ²). An error e of the amplitude makes it
     # sqrt(2 part ± 2 e), where the tuning takes away all of e but the interpolant's.
     scene, end = SCENES["free"]
@@ -97,7 +95,7 @@ def test_speed_of_a_graze(solver: str, rtol: float, part: float) -> None:
     assert found[0].gap_velocity_before == pytest.approx(expected, rel=max(0.05, 3e3 * rtol))
 
 
-def test_a_graze_within_two_bodies(solver: str) -> None:
+def test_a_graze_within_two_bodies(solver):
     # Two oscillators that only just do not, or do, meet: gap 1 - (sin t + sin 1.5 t)/2 ....
     bodies = (Body("a", 1.0, 0.0, 0.5), Body("b", 2.0, 0.0, -0.75))
     springs = (

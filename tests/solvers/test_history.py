@@ -1,7 +1,5 @@
 """Lines of the history at instants at which something happens."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -40,7 +38,7 @@ def _meeting(gap: float = 0.0) -> Scene:
     )
 
 
-def test_an_impact_at_the_start_has_the_state_before_it(solver: str) -> None:
+def test_an_impact_at_the_start_has_the_state_before_it(solver):
     response = response_of(_meeting(), solver, 1e-8, duration=1.0, output_step=0.02)
     history = response.recording.history
     assert history.t[:3].tolist() == [0.0, 0.0, 0.02]
@@ -58,14 +56,14 @@ def test_an_impact_at_the_start_has_the_state_before_it(solver: str) -> None:
     assert np.all(np.diff(history.t[1:]) > 0.0)
 
 
-def test_the_start_has_one_line_where_nothing_happens(solver: str) -> None:
+def test_the_start_has_one_line_where_nothing_happens(solver):
     response = response_of(_meeting(10.0), solver, 1e-8, duration=1.0, output_step=0.02)
     history = response.recording.history
     assert not response.recording.events
     assert history.t[:3].tolist() == [0.0, 0.02, 0.04]
 
 
-def test_an_output_time_at_an_event_has_no_line_of_its_own(solver: str) -> None:
+def test_an_output_time_at_an_event_has_no_line_of_its_own(solver):
     # A free body that meets the wall at t = 1.
     scene = Scene(
         (Body("a", 1.0, 0.0, 1.0),),
@@ -97,7 +95,7 @@ def _with_each_line_once(lines: list[list[float]]) -> list[list[float]]:
 
 @pytest.mark.parametrize("bodies", [1, 40])
 @pytest.mark.parametrize("seed", range(40))
-def test_lines_that_are_said_again_are_left_out(seed: int, bodies: int) -> None:
+def test_lines_that_are_said_again_are_left_out(seed, bodies):
     model = assemble(Scene(tuple(Body(f"b{i}", 1.0) for i in range(bodies))))
     dice = np.random.default_rng(seed)
     rows = np.zeros((dice.integers(0, 25), row_width(model)))

@@ -1,7 +1,5 @@
 """IDA: contact forces as unknowns, constraints kept, equations that are none of CVODE's."""
 
-from __future__ import annotations
-
 import ast
 import gc
 import math
@@ -50,7 +48,7 @@ def _thrown(m_a: float = 2.0, m_b: float = 0.7, damping: float = 0.0) -> Scene:
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, RTOL, 1e-12])
-def test_force_and_release_of_a_thrown_body(rtol: float) -> None:
+def test_force_and_release_of_a_thrown_body(rtol):
     # Together u = -0.3 cos 2t, and λ = m_b u'' = 0.7 · 1.2 cos 2t until t = π/4; then b
     # flies at 0.6 m/s and a swings on alone, ω_a² = 4 · 2.7/2.
     response = response_of(_thrown(), "ida", rtol, duration=1.5, output_step=0.05)
@@ -74,7 +72,7 @@ def test_force_and_release_of_a_thrown_body(rtol: float) -> None:
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-13])
 @pytest.mark.parametrize("name", ["B03", "B12", "C03", "D23", "E01"])
-def test_no_drift(name: str, rtol: float) -> None:
+def test_no_drift(name, rtol):
     """The gaps and their rates are equations, solved to rounding whatever the tolerance."""
     recording = run(load()[name].scene, rtol, 6.0, solver="ida")
     assert recording.resting_time.max() > 0.1
@@ -94,7 +92,7 @@ def _ida(scene: Scene, end: float, rtol: float) -> tuple[Task, DirectIda]:
 
 
 @pytest.mark.parametrize("name", ["thrown", "damped", "B03", "C03", "E01"])
-def test_the_force_is_an_unknown_of_ida(name: str) -> None:
+def test_the_force_is_an_unknown_of_ida(name):
     """At the end of every step λ of IDA's vector is what the loop finds without it."""
     rtol = 1e-9
     scenes = {"thrown": (_thrown(), 0.7), "damped": (_thrown(damping=0.4), 0.7)}
@@ -119,18 +117,18 @@ def test_the_force_is_an_unknown_of_ida(name: str) -> None:
     assert max(errors) < rtol * ida.scales.force
 
 
-def test_energy_closes() -> None:
+def test_energy_closes():
     response = response_of(pounding_pair(), "ida", 1e-9, duration=6.0, energy=True)
     assert abs(response.energy.closure) < allowed(1.0, 1e-9)
 
 
 @pytest.mark.parametrize("seed", [0, 5, 8, 24, 72, 423])
-def test_random_scenes(seed: int) -> None:
+def test_random_scenes(seed):
     verdict = judge(seed, "ida")
     assert verdict.word in ("agree", "agree when tight", "ill-conditioned"), verdict
 
 
-def test_nothing_is_taken_from_the_reduced_equations() -> None:
+def test_nothing_is_taken_from_the_reduced_equations():
     """Of the modules with CVODE's right-hand side, only types, and which body is a support."""
     types = {
         "eventpound.mechanics.reduced": {"Forcing"},
@@ -145,7 +143,7 @@ def test_nothing_is_taken_from_the_reduced_equations() -> None:
                 assert {a.name for a in node.names} <= types[node.module], path.name
 
 
-def test_a_failure_keeps_what_was_computed() -> None:
+def test_a_failure_keeps_what_was_computed():
     task, ida = _ida(_thrown(), 1.5, 1e-6)
     loop = EventLoop(task, ida)
 
@@ -159,7 +157,7 @@ def test_a_failure_keeps_what_was_computed() -> None:
     assert 1.0 <= caught.value.recording.history.t[-1] < 1.5
 
 
-def test_objects_are_freed() -> None:
+def test_objects_are_freed():
     task, ida = _ida(_thrown(), 0.7, 1e-6)
     EventLoop(task, ida).run()
     finalizer = next(iter(ida._memories.values()))._finalizer
@@ -169,13 +167,13 @@ def test_objects_are_freed() -> None:
     assert not finalizer.alive
 
 
-def test_what_cannot_be_set_up_is_an_error() -> None:
+def test_what_cannot_be_set_up_is_an_error():
     library = sundials.ida_library()
     with pytest.raises(MemoryError, match="flag -22"):
         IdaMemory(library, -1.0, np.ones(2), np.zeros(2, bool), 1, 1, 1)
 
 
-def test_units_in_which_energies_are_large_numbers_take_the_same_steps() -> None:
+def test_units_in_which_energies_are_large_numbers_take_the_same_steps():
     # A row of the ledger must not be the pivot of a velocity: Newton's iteration then ends in
     # the rounding of an energy, here of some 1e25, and steps shrink to 1e-8 T.
     scene, end = random_scene(72140)

@@ -1,7 +1,5 @@
 """What instants demand, done by Python and by compiled code: the same runs to the last bit."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -25,7 +23,7 @@ def recorded(seed: int) -> Recording:
     return replace(found, work=replace(found.work, seconds=0.0, compilation=0.0))
 
 
-def test_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_same_bits(monkeypatch):
     compiled = [recorded(seed) for seed in SEEDS]
     itself, run = Entry.__call__, []
 

@@ -1,7 +1,5 @@
 """CVODE called from compiled code and through scikit-sundae: the same steps, the same answers."""
 
-from __future__ import annotations
-
 import ctypes
 import gc
 from dataclasses import replace
@@ -70,7 +68,7 @@ def _runs(task: Task, method: str) -> tuple[Recording, Recording]:
         pytest.param("row", "Adams", marks=pytest.mark.sweep),
     ],
 )
-def test_both_ways_take_the_same_steps(name: str, method: str) -> None:
+def test_both_ways_take_the_same_steps(name, method):
     scene, end, rtol = SCENES[name]
     task = Task(scene, 0.0, end, rtol, output_times=np.linspace(0.0, end, 37), energy=True)
     ours, theirs = _runs(task, method)
@@ -94,14 +92,14 @@ def test_both_ways_take_the_same_steps(name: str, method: str) -> None:
     np.testing.assert_allclose(ours.displacement.minimum, theirs.displacement.minimum, atol=atol)
 
 
-def test_where_the_library_is_out_of_reach_scikit_sundae_steps(monkeypatch) -> None:
+def test_where_the_library_is_out_of_reach_scikit_sundae_steps(monkeypatch):
     assert isinstance(integrator(1e-6, "Adams"), compiled_cvode.DirectCvode)
     monkeypatch.setattr(library, "library", lambda: None)
     assert isinstance(integrator(1e-6, "Adams"), WrappedCvode)
 
 
 @pytest.mark.parametrize("way", ["direct", "wrapped"])
-def test_a_failure_keeps_what_was_computed(way: str) -> None:
+def test_a_failure_keeps_what_was_computed(way):
     """CVODE gives up on equations that become numbers no more; the rows before it stay."""
     scene = Scene((Body("m", 1.0, 1e-3),), (Spring("k", (GROUND, "m"), Linear(1.0)),))
     task = Task(scene, 0.0, 10.0, 1e-6, output_times=np.linspace(0.0, 10.0, 101))
@@ -132,7 +130,7 @@ def _never_called() -> int:
     return ctypes.cast(ctypes.CFUNCTYPE(ctypes.c_int)(lambda: -1), ctypes.c_void_p).value or 0
 
 
-def test_objects_are_freed() -> None:
+def test_objects_are_freed():
     layout = MemoryLayout(1e-6, np.ones(3), 0)
     memory = CvodeMemory(library.library(), "Adams", layout, _never_called(), 0)
     finalizer = memory._finalizer
@@ -142,14 +140,14 @@ def test_objects_are_freed() -> None:
     assert not finalizer.alive
 
 
-def test_what_cannot_be_set_up_is_an_error() -> None:
+def test_what_cannot_be_set_up_is_an_error():
     with pytest.raises(MemoryError, match="flag -22"):
         CvodeMemory(
             library.library(), "Adams", MemoryLayout(-1.0, np.ones(3), 0), _never_called(), 0
         )
 
 
-def test_a_step_to_the_end_of_a_record_has_a_length() -> None:
+def test_a_step_to_the_end_of_a_record_has_a_length():
     """The end less 0.51 s, where the integrator begins, and plus it is another number."""
     oscillator = Scene(
         (Body("m", 1.0),),

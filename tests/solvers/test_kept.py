@@ -1,9 +1,5 @@
 """Whether the fast solver is compiled is told without compiling it."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 
 from eventpound.numerics.compiled import store
@@ -27,7 +23,7 @@ PAIR = Scene(
 
 
 @pytest.mark.parametrize("scene", [ALONE, PAIR])
-def test_kept_after_a_run(scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_kept_after_a_run(scene, tmp_path, monkeypatch):
     task = Task(scene, 0.0, 1.0, 1e-6)
     solver_named("fast").solve(task)
     assert kernels_kept(task)

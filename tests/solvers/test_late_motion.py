@@ -1,7 +1,5 @@
 """Motions that come after a long rest: the response is that of the motion at once, only later."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -73,7 +71,7 @@ def differ(one: Recording, other: Recording) -> float:
 @pytest.mark.parametrize("moved", ["ground", "support", "force"])
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_a_pulse_long_after_the_start_is_met(solver: str, law: Law, moved: str) -> None:
+def test_a_pulse_long_after_the_start_is_met(solver, law, moved):
     for pulse in PULSES:
         at_once = run(deck(law, pulse(5.0, 0.5, center=CENTER), moved), END, solver, 1e-9)
         for rest, rtol in ((2.0, 1e-4), (40.0, 1e-6), (2.5, 1e-8), (10.0, 1e-10)):
@@ -85,7 +83,7 @@ def test_a_pulse_long_after_the_start_is_met(solver: str, law: Law, moved: str) 
 @pytest.mark.parametrize("moved", ["ground", "support", "force"])
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_a_record_behind_a_rest_is_met(solver: str, law: Law, moved: str) -> None:
+def test_a_record_behind_a_rest_is_met(solver, law, moved):
     at_once = run(deck(law, shaking(0.0), moved), END, solver, 1e-9)
     for rest, noise, rtol in ((10.0, 0.0, 1e-4), (30.0, 0.0, 1e-6), (30.0, 1e-7, 1e-4)):
         late = run(deck(law, shaking(rest, noise), moved), rest + END, solver, rtol)
@@ -94,9 +92,7 @@ def test_a_record_behind_a_rest_is_met(solver: str, law: Law, moved: str) -> Non
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
 @pytest.mark.parametrize("way", WAYS)
-def test_other_ways_into_sundials_meet_it(
-    solver: str, way: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_other_ways_into_sundials_meet_it(solver, way, monkeypatch):
     scene = deck(LAWS[1], Ricker(5.0, 0.5, center=CENTER + 10.0), "ground")
     direct, other = directly_and_by(way, Task(scene, 0.0, 10.0 + END, 1e-6), solver, monkeypatch)
     assert differ(direct, other) <= 1e-4

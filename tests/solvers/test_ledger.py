@@ -3,8 +3,6 @@
 That of several keeps the energy ledger.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -89,7 +87,7 @@ def assert_near(one: object, other: object, error: float, **scales: float) -> No
 
 
 @pytest.mark.parametrize("of", ALONE.values(), ids=ALONE)
-def test_a_body_alone_has_a_way_of_its_own_without_a_ledger(of: Scene) -> None:
+def test_a_body_alone_has_a_way_of_its_own_without_a_ledger(of):
     model = assemble(of)
     assert oscillator_of(model, 1.0, links_of(model), energy=False).alone
     assert not oscillator_of(model, 1.0, links_of(model), energy=True).alone
@@ -97,7 +95,7 @@ def test_a_body_alone_has_a_way_of_its_own_without_a_ledger(of: Scene) -> None:
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])
 @pytest.mark.parametrize("name", ALONE)
-def test_the_same_run(name: str, rtol: float) -> None:
+def test_the_same_run(name, rtol):
     """Ends, extremes, events and rows, to what the tolerance allows."""
     without, kept = both(ALONE[name], rtol)
     error = allowed(1.0, rtol)

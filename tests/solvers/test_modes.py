@@ -1,7 +1,5 @@
 """The table of contact modes and transitions, row by row."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -40,14 +38,12 @@ TRANSITIONS = [
 
 
 @pytest.mark.parametrize(("before", "gap", "gap_rate", "demanded"), TABLE)
-def test_duty(before: str, gap: float, gap_rate: float, demanded: int) -> None:
+def test_duty(before, gap, gap_rate, demanded):
     assert in_python(duty)(gap, gap_rate) == demanded
 
 
 @pytest.mark.parametrize(("was_resting", "rests", "gap_rate", "kind"), TRANSITIONS)
-def test_transition(
-    was_resting: bool, rests: bool, gap_rate: float, kind: EventKind | None
-) -> None:
+def test_transition(was_resting, rests, gap_rate, kind):
     kinds = None, EventKind.REST, EventKind.DETACHMENT, EventKind.SEPARATION
     assert kinds[in_python(transition_code)(was_resting, rests, gap_rate)] is kind
 
@@ -66,7 +62,7 @@ def _instant(law: object, u: float, v: float) -> Instant:
     return EventRun(Task(scene, 0.0, 1.0, 1e-8)).arrays.instant
 
 
-def test_what_a_mode_watches() -> None:
+def test_what_a_mode_watches():
     # a rests on b and b between a and the barrier: all three together are locked.
     table = _table(
         Contact("left", "barrier", "a", 0.0, 0.5),
@@ -82,7 +78,7 @@ def test_what_a_mode_watches() -> None:
     assert not locked.unlocked.any()
 
 
-def test_a_mode_is_built_once() -> None:
+def test_a_mode_is_built_once():
     table = _table(Contact("joint", "a", "b", 0.0, 0.5))
     branch = np.zeros(1, np.int64)
     one = table.mode(np.array([True]), branch)
@@ -103,13 +99,13 @@ def test_a_mode_is_built_once() -> None:
         (0.2, 0.0, 0.0, 1.0, -1),
     ],
 )
-def test_branch_of_a_kinked_spring(u: float, v: float, a: float, onset: float, side: int) -> None:
+def test_branch_of_a_kinked_spring(u, v, a, onset, side):
     at = _instant(BilinearElastic(1.0, 2.0, 0.2), u, v)
     in_python(choose_branches)(np.array([a, 0.0]), 0.0, onset, at)
     assert at.branch[0] == side
 
 
-def test_a_straight_spring_has_no_branch() -> None:
+def test_a_straight_spring_has_no_branch():
     at = _instant(Linear(1.0), 0.0, 0.0)
     in_python(choose_branches)(np.zeros(2), 0.0, 1.0, at)
     assert at.branch[0] == 0
@@ -120,7 +116,7 @@ def test_a_straight_spring_has_no_branch() -> None:
     # Within rounding of the kink the velocity after an impact decides, and nowhere else.
     [(0.0, 1.0, 1), (0.0, -1.0, -1), (1e-14, -1.0, -1), (1e-12, -1.0, 1), (0.0, 0.0, 1)],
 )
-def test_side_of_a_kink_after_an_impact(away: float, v: float, side: int) -> None:
+def test_side_of_a_kink_after_an_impact(away, v, side):
     at = _instant(BilinearElastic(1.0, 2.0, 0.2), 0.2, v)
     at.u[0] += away * at.length
     at.branch[0] = 1
@@ -129,7 +125,7 @@ def test_side_of_a_kink_after_an_impact(away: float, v: float, side: int) -> Non
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_pack_keeps_the_momentum() -> None:
+def test_pack_keeps_the_momentum():
     table = _table(Contact("joint", "a", "b", 0.4, 0.5))
     mode = table.mode(np.array([True]), np.zeros(1, np.int64))
     assert mode.clusters.count == 1

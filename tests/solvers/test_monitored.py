@@ -1,7 +1,5 @@
 """Which columns of a table of extremes are whose, and that only one module knows."""
 
-from __future__ import annotations
-
 import sys
 from contextlib import nullcontext
 from dataclasses import asdict, replace
@@ -89,7 +87,7 @@ SCENES = {
 }
 
 
-def test_columns_follow_each_other_and_are_told_for_every_kind() -> None:
+def test_columns_follow_each_other_and_are_told_for_every_kind():
     at = places_in(assemble(shaken()))
     counts = {kind: len(range(at.end)[columns_of_kind(kind, at)]) for kind in KINDS}
     assert counts == {
@@ -104,7 +102,7 @@ def test_columns_follow_each_other_and_are_told_for_every_kind() -> None:
     assert len(SCALES) == len(KINDS)
 
 
-def test_columns_of_many_runs_have_the_scales_of_each() -> None:
+def test_columns_of_many_runs_have_the_scales_of_each():
     """The rounding of a run among many is that of the run by itself."""
     scene = shaken()
     model = assemble(scene)
@@ -120,9 +118,7 @@ def test_columns_of_many_runs_have_the_scales_of_each() -> None:
     ("name", "solver"),
     [(name, "fast") for name in SCENES] + [("that yields", s) for s in ("moreau", "cvode", "ida")],
 )
-def test_nobody_else_knows_where_they_are(
-    name: str, solver: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nobody_else_knows_where_they_are(name, solver, monkeypatch):
     """With columns of another quantity in front every run finds the same extremes."""
     expected = _run(SCENES[name], solver)
     original = monitored.places_of

@@ -1,7 +1,5 @@
 """Tolerances follow each body: a stiff one beside a soft one is as accurate as alone."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -60,7 +58,7 @@ def _scales(scene: Scene) -> SceneScales:
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9])
 @pytest.mark.parametrize("omega", [1e2, 1e3])
-def test_a_stiff_body_beside_a_soft_one(solver: str, omega: float, rtol: float) -> None:
+def test_a_stiff_body_beside_a_soft_one(solver, omega, rtol):
     """``u'' + ω² u = -a sin Ωt``, to a part of its own motion."""
     recording = response_of(_beside_a_soft_one(omega), solver, rtol, duration=0.9).recording
     c, t = -A / (omega**2 - OMEGA**2), 0.9
@@ -71,7 +69,7 @@ def test_a_stiff_body_beside_a_soft_one(solver: str, omega: float, rtol: float) 
     assert abs(recording.v[0] - v) <= allowed * abs(c) * omega
 
 
-def test_a_stiff_body_under_a_record(solver: str) -> None:
+def test_a_stiff_body_under_a_record(solver):
     """Its motion drowns in the rounding of a frame that moves with the ground."""
     rng = np.random.default_rng(3)
     record = Record(np.cumsum(rng.normal(size=100)), 0.01, pga=A)
@@ -82,7 +80,7 @@ def test_a_stiff_body_under_a_record(solver: str) -> None:
     assert abs(found.u[0] - truth.u[0]) <= GROWTH * 1e-9 * 1e4 * static
 
 
-def test_what_carries_a_load() -> None:
+def test_what_carries_a_load():
     """Springs, yielded or not, and dashpots; never more than the scene's own scales."""
     strong = BoucWen(10.0, 50.0 * A, 1e-3)
     weak = BoucWen(1e3, 0.5 * A, 1e-3)
@@ -100,7 +98,7 @@ def test_what_carries_a_load() -> None:
     np.testing.assert_allclose(own.own_speed, [*np.sqrt(load * reach), LENGTH / TIME, load / 1e3])
 
 
-def test_energy_limits_free_motion() -> None:
+def test_energy_limits_free_motion():
     """The time of the stiffest body is that of the scene; the others' speeds do not follow it."""
     springs = (
         Spring("s", (GROUND, "stiff"), Linear(1e8)),
@@ -113,21 +111,21 @@ def test_energy_limits_free_motion() -> None:
     np.testing.assert_allclose(own.own_speed, [1.0, 0.5])
 
 
-def test_ordinary_scenes_keep_the_scales_of_the_scene() -> None:
+def test_ordinary_scenes_keep_the_scales_of_the_scene():
     own = _scales(pounding_pair())
     np.testing.assert_array_equal(own.own_length, own.length)
     np.testing.assert_array_equal(own.own_speed, own.speed)
 
 
 @pytest.mark.parametrize("omega", [1e2, 1e4])
-def test_units_do_not_matter(omega: float) -> None:
+def test_units_do_not_matter(omega):
     scene = _beside_a_soft_one(omega)
     one, other = _scales(scene), _scales(scaled(scene, 1e3, 1e-2, 1e5)[0])
     np.testing.assert_allclose(other.own_length / other.length, one.own_length / one.length)
     np.testing.assert_allclose(other.own_speed / other.speed, one.own_speed / one.speed)
 
 
-def test_a_tolerance_that_is_given_is_that_of_every_body() -> None:
+def test_a_tolerance_that_is_given_is_that_of_every_body():
     scene = _beside_a_soft_one(1e3)
     given = tolerances(Task(scene, 0.0, 1.0, 1e-6, {"velocity": 1e-5}), _scales(scene))
     np.testing.assert_array_equal(given["velocity"], [1e-5, 1e-5])
@@ -135,7 +133,7 @@ def test_a_tolerance_that_is_given_is_that_of_every_body() -> None:
 
 
 @pytest.mark.parametrize("rtol", [1e-12])
-def test_impacts_and_rests_of_a_stiff_body(solver: str, rtol: float) -> None:
+def test_impacts_and_rests_of_a_stiff_body(solver, rtol):
     """A soft body thrown at a stiff one: the contact opens where the stiff one lets go.
 
     Struck without restitution both go on as one on both springs, at first with the speed that
@@ -153,7 +151,7 @@ def test_impacts_and_rests_of_a_stiff_body(solver: str, rtol: float) -> None:
     assert recording.v[1] == pytest.approx(0.5 * speed, rel=1e3 * rtol)
 
 
-def test_rows_of_many_are_what_each_is_alone() -> None:
+def test_rows_of_many_are_what_each_is_alone():
     """To the last bit, with what differs in a leading axis."""
     stiffness = np.geomspace(1.0, 1e8, 9)
     mass = np.geomspace(1e-3, 1e3, 9)

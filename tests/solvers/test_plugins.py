@@ -1,7 +1,5 @@
 """Solvers of other packages: found, named where broken, harmless to the rest."""
 
-from __future__ import annotations
-
 import math
 import re
 import sys

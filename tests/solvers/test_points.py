@@ -1,11 +1,8 @@
 """Contacts at points between bodies, against closed forms and other ways to say the same."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -83,7 +80,7 @@ def towers(point: object = None, restitution: float = 0.4) -> Scene:
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
-def test_a_body_strikes_a_point_of_free_bodies(restitution: float, solver: str) -> None:
+def test_a_body_strikes_a_point_of_free_bodies(restitution, solver):
     """Λ = (1 + ε) m v with 1/m = Σ w²/m_b; what is lost is ½ (1 - ε²) m v²."""
     masses, w, v, gap = (1.3, 0.7, 2.9), 0.35, 2.0, 0.1
     scene = Scene(
@@ -108,7 +105,7 @@ def test_a_body_strikes_a_point_of_free_bodies(restitution: float, solver: str) 
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_the_middle_of_two_equal_bodies_is_one_of_twice_the_mass(solver: str) -> None:
+def test_the_middle_of_two_equal_bodies_is_one_of_twice_the_mass(solver):
     """Under the same springs both move as one body does."""
     bodies = (Body("a", 1.0, 0.0, 1.0), Body("b", 0.5), Body("c", 0.5))
     springs = tuple(
@@ -134,7 +131,7 @@ def test_the_middle_of_two_equal_bodies_is_one_of_twice_the_mass(solver: str) ->
 
 
 @pytest.mark.parametrize("solver", SOLVERS[1:])
-def test_towers_are_those_of_the_reference(solver: str) -> None:
+def test_towers_are_those_of_the_reference(solver):
     """Yielding springs, cascades, rests at points: programs that share no equation of motion."""
     theirs, ours = (
         run(towers(restitution=0.3), 4.0),
@@ -150,7 +147,7 @@ def test_towers_are_those_of_the_reference(solver: str) -> None:
 
 
 @pytest.mark.parametrize("seed", [4, 6, 10, 11, 12])
-def test_random_scenes(seed: int) -> None:
+def test_random_scenes(seed):
     """Rests on points, on barriers and on each other, some of them redundant; cascades."""
     scene, end = pointed_scene(seed)
     theirs = run(scene, end, 1e-10)
@@ -206,7 +203,7 @@ def plain_scene(seed: int, supports: int, *, slides: bool = False) -> tuple[Scen
 
 @pytest.mark.parametrize("slides", [False, True])
 @pytest.mark.parametrize("supports", [0, 1, 2])
-def test_random_scene_moves_as_in_another_program(supports: int, *, slides: bool) -> None:
+def test_random_scene_moves_as_in_another_program(supports, *, slides):
     """That shares nothing with the package: it tries who rests, and has SciPy solve impacts."""
     scene, end = plain_scene(0, supports, slides=slides)
     check_scene(scene)
@@ -222,7 +219,7 @@ def test_random_scene_moves_as_in_another_program(supports: int, *, slides: bool
         assert abs(found.energy.closure) < 1e-7, solver
 
 
-def test_a_point_on_the_ground_alone_is_a_barrier() -> None:
+def test_a_point_on_the_ground_alone_is_a_barrier():
     """It is no coordinate, whose number those behind it would have to skip."""
     ends = ({GROUND: 1.0}, BARRIER)
     models = [
@@ -235,7 +232,7 @@ def test_a_point_on_the_ground_alone_is_a_barrier() -> None:
         np.testing.assert_array_equal(*(getattr(model, name) for model in models))
 
 
-def test_many_at_once_are_those_one_by_one() -> None:
+def test_many_at_once_are_those_one_by_one():
     scene, gaps = towers(), np.array([0.001, 0.004, 0.02])
     many = simulate_many(
         scene, {"contact.roof.gap": gaps}, rtol=1e-9, duration=4.0, accelerations=True, workers=1
@@ -254,7 +251,7 @@ def test_many_at_once_are_those_one_by_one() -> None:
         assert many.impacts[i].sum() == sum(e.count for e in one.events if e.kind in impacts)
 
 
-def test_with_all_weight_on_one_body_it_is_a_contact_with_that() -> None:
+def test_with_all_weight_on_one_body_it_is_a_contact_with_that():
     """The other's part in it, 1e-10, changes as much, amplified by what impacts amplify."""
     near = run(towers({"B1": 1e-10, "B2": 1.0 - 1e-10}), 4.0)
     alone = run(towers("B2"), 4.0)
@@ -267,7 +264,7 @@ def test_with_all_weight_on_one_body_it_is_a_contact_with_that() -> None:
 
 
 @pytest.mark.parametrize("seed", [0, 3, 15, 23, 26, 57])
-def test_points_of_one_body_are_the_bodies(seed: int) -> None:
+def test_points_of_one_body_are_the_bodies(seed):
     """Rows of bodies, some locked, by clusters and by constraints: two ways through the code.
 
     So tried were 150 scenes; in those here are rests on barriers, cascades and a locked row.
@@ -293,7 +290,7 @@ def test_points_of_one_body_are_the_bodies(seed: int) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_at_rest_on_a_point_it_is_a_linear_system(solver: str) -> None:
+def test_at_rest_on_a_point_it_is_a_linear_system(solver):
     """A body pressed on a column: the matrix exponential in coordinates that the constraint leaves.
 
     The contact's force is what the pressed body does not take: ``λ = p - m a``.
@@ -339,7 +336,7 @@ def test_at_rest_on_a_point_it_is_a_linear_system(solver: str) -> None:
     assert abs(found.energy.closure) < 1e-10 * own
 
 
-def test_mirror_and_units() -> None:
+def test_mirror_and_units():
     scene = towers()
     whole = run(scene, 4.0)
     image, view = mirrored(scene)
@@ -353,14 +350,14 @@ def test_mirror_and_units() -> None:
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_other_ways_into_sundials(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_ways_into_sundials(way, monkeypatch):
     task = Task(towers(restitution=0.0), 0.0, 3.0, 1e-8)
     direct, other = directly_and_by(way, task, "cvode", monkeypatch)
     np.testing.assert_allclose(other.u, direct.u, atol=1e-6)
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_nothing_moves_but_the_ground(solver: str) -> None:
+def test_nothing_moves_but_the_ground(solver):
     """Two floors held between a wall and a column: forces follow the ground, until they let go.
 
     A single body on a point of itself is known by its contact with a barrier.
@@ -381,7 +378,7 @@ def test_nothing_moves_but_the_ground(solver: str) -> None:
 
 
 @pytest.mark.skipif(PLAIN, reason="Numba compiles in its own way here")
-def test_other_scenes_have_nothing_of_it_to_compile() -> None:
+def test_other_scenes_have_nothing_of_it_to_compile():
     """What waits for a point is made ready by towers, and not by a pair that pounds before them."""
     program = """
 from eventpound.mechanics import followers
@@ -398,7 +395,7 @@ for scene in (pounding_pair(), towers()):
     assert done.stdout.splitlines() == ["0 0", "1 1"]
 
 
-def test_what_follows_from_rows_knows_the_points() -> None:
+def test_what_follows_from_rows_knows_the_points():
     """The largest opening between rows, and impacts read off the motion alone."""
     scene = towers()
     response = response_of(scene, rtol=1e-10, duration=4.0, output_step=1e-3)
@@ -415,7 +412,7 @@ def test_what_follows_from_rows_knows_the_points() -> None:
         assert same.gap_velocity_before == pytest.approx(event.gap_velocity_before, rel=1e-6)
 
 
-def test_the_gap_that_would_have_avoided_it() -> None:
+def test_the_gap_that_would_have_avoided_it():
     scene = towers()
     run = response_of(scene, rtol=1e-11, duration=4.0)
     names = {c.name: f"contacts.{c.name}.avoiding_gap" for c in scene.contacts}
@@ -431,7 +428,7 @@ def test_the_gap_that_would_have_avoided_it() -> None:
         assert {e.contact for e in found.recording.events} == {wide.contacts.index(contact)}
 
 
-def test_a_comparison_is_checked_by_another_program(tmp_path: Path) -> None:
+def test_a_comparison_is_checked_by_another_program(tmp_path):
     scene = towers()
     case = Case("", scene, RunOptions(0.0, 1.5, 0.1), SolverOptions(), tmp_path, "", None, (), {})
     reference = reference_of(case, case.run, None)

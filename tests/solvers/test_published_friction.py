@@ -1,7 +1,5 @@
 """Sliders beside published examples: Siconos' friction oscillator, Den Hartog's and Shaw's."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -47,7 +45,7 @@ def forced(friction: float, beta: float, ratio: float, periods: int, solver: str
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_the_oscillator_of_siconos_stops_where_it_does(solver: str) -> None:
+def test_the_oscillator_of_siconos_stops_where_it_does(solver):
     rows = siconos(0.01, 25.0)
     for t, *expected in SICONOS:
         np.testing.assert_allclose(rows[round(t / 0.01)], expected, rtol=0.0, atol=1e-12)
@@ -68,9 +66,7 @@ def test_the_oscillator_of_siconos_stops_where_it_does(solver: str) -> None:
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("beta", [0.8, 1.3, 2.0])
-def test_oscillator_stops_where_friction_is_above_the_boundary_of_den_hartog(
-    beta: float, solver: str
-) -> None:
+def test_oscillator_stops_where_friction_is_above_the_boundary_of_den_hartog(beta, solver):
     # At a turn of x0 = sqrt(V^2 - f^2 U^2) the pull is x0/V: it turns back where
     # x0 - x0/V > f, that is beta^2 x0 > f.
     V = 1.0 / (1.0 - beta**2)
@@ -100,9 +96,7 @@ def amplitude_of_shaw(beta: float, ratio: float, friction: float) -> float:
 @pytest.mark.parametrize(
     ("beta", "ratio", "friction"), [(0.7, 0.1, 0.3), (1.3, 0.05, 0.3), (2.0, 0.2, 0.2)]
 )
-def test_oscillator_with_a_dashpot_has_the_steady_amplitude_of_shaw(
-    beta: float, ratio: float, friction: float, solver: str
-) -> None:
+def test_oscillator_with_a_dashpot_has_the_steady_amplitude_of_shaw(beta, ratio, friction, solver):
     # J. Sound Vib. 108 (1986) 305-325: dry friction and viscous damping.
     found = forced(friction, beta, ratio, 40, solver)
     history = found.history

@@ -1,7 +1,5 @@
 """Contacts whose forces are not unique decide nothing: a split body moves as the whole one."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 
@@ -30,7 +28,7 @@ def _row(middle: dict[str, tuple[float, float]]) -> Scene:
     return Scene(bodies, springs, (), contacts, Sine(1.0, 2.0 * math.pi, reverse=True))
 
 
-def test_two_halves_side_by_side_move_as_the_whole(solver: str):
+def test_two_halves_side_by_side_move_as_the_whole(solver):
     rtol = 1e-9
     whole = response_of(_row({"B": (1.0, 1.0)}), solver, rtol, duration=25.0)
     split = response_of(_row({"B": (0.5, 0.5), "C": (0.5, 0.5)}), solver, rtol, duration=25.0)
@@ -44,7 +42,7 @@ def test_two_halves_side_by_side_move_as_the_whole(solver: str):
     assert np.all(split.recording.history.contact_force > -1e-10)
 
 
-def test_a_locked_row_is_pressed_as_little_as_may_be(solver: str) -> None:
+def test_a_locked_row_is_pressed_as_little_as_may_be(solver):
     # Random masses and springs between two barriers without play, under a sine: nothing moves. Of
     # forces that balance springs and ground the smallest without a pull leave some contact none.
     dice = np.random.default_rng(7)
@@ -73,7 +71,7 @@ def test_a_locked_row_is_pressed_as_little_as_may_be(solver: str) -> None:
     assert force.min() >= 0.0
 
 
-def test_a_contact_that_others_keep_closed_has_no_force_of_a_mode_before() -> None:
+def test_a_contact_that_others_keep_closed_has_no_force_of_a_mode_before():
     # Two bodies without play between two barriers, locked after a cascade at the start.
     scene, end = random_scene(149)
     fast, wanted = (
@@ -83,7 +81,7 @@ def test_a_contact_that_others_keep_closed_has_no_force_of_a_mode_before() -> No
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9])
-def test_bodies_that_fill_a_moving_support_go_with_it(solver: str, rtol: float) -> None:
+def test_bodies_that_fill_a_moving_support_go_with_it(solver, rtol):
     # Three bodies without play between two walls of one support, which a spring and a force press
     # now to one side and now to the other: when one wall lets go the other has to take over.
     scene, end = driven_scene(200179)

@@ -1,7 +1,5 @@
 """Contacts that come to rest, are released together, or open by a high derivative."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -32,9 +30,7 @@ from tests.solvers.scenes import run
     "eps", [(0.5, 0.5, 0.5), (0.75, 0.3, 0.9), (0.2, 0.8, 0.3), (0.98, 0.5, 0.7)]
 )
 @pytest.mark.parametrize("v", [0.2, -0.2])
-def test_a_row_without_play_comes_to_rest_at_once(
-    solver: str, eps: tuple[float, float, float], v: float
-) -> None:
+def test_a_row_without_play_comes_to_rest_at_once(solver, eps, v):
     # Barrier, a, b, barrier, every gap zero: no body can move, and with ε < 1 the impacts
     # of the first instant take all the energy.
     scene = Scene(
@@ -53,7 +49,7 @@ def test_a_row_without_play_comes_to_rest_at_once(
     assert sum(e.energy_lost for e in recording.events) == pytest.approx(0.5 * v**2, rel=1e-9)
 
 
-def test_a_row_without_play_stays_at_rest(solver: str) -> None:
+def test_a_row_without_play_stays_at_rest(solver):
     # The impacts of the first instant leave speeds at rounding, whose damping forces keep
     # the three gap accelerations from adding up to exactly nothing.
     scene = Scene(
@@ -74,7 +70,7 @@ def test_a_row_without_play_stays_at_rest(solver: str) -> None:
 
 @pytest.mark.parametrize("law", [Linear(60.0), BoucWen(0.3, 3.3, 0.054)], ids=["linear", "loop"])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, RTOL])
-def test_released_together_but_not_opened(solver: str, law: Linear | BoucWen, rtol: float) -> None:
+def test_released_together_but_not_opened(solver, law, rtol):
     # a and b rest against the barrier on their right until the cosine turns at T/4, where
     # both contact forces vanish. b, free, is then pulled off the barrier and on to a, which
     # its spring holds back from the fourth derivative on: only the barrier is left.
@@ -94,7 +90,7 @@ def test_released_together_but_not_opened(solver: str, law: Linear | BoucWen, rt
 
 
 @pytest.mark.parametrize("omega", [1.0, 30.0, 1e3, 1e5])
-def test_a_gap_opened_by_its_third_derivative(solver: str, omega: float) -> None:
+def test_a_gap_opened_by_its_third_derivative(solver, omega):
     # a and b move left at v; b's spring, slack at 0, holds it back from there on:
     # gap = v (t - sin(ω t)/ω). At ω t = 0.1 a meets a wall and returns to meet b.
     v, eps = 0.3 * omega, 0.6
@@ -131,7 +127,7 @@ def test_a_gap_opened_by_its_third_derivative(solver: str, omega: float) -> None
     assert impacts[1].gap_velocity_before == pytest.approx(approach, rel=accuracy)
 
 
-def test_a_ledger_that_ends_at_nothing_still_closes(solver: str) -> None:
+def test_a_ledger_that_ends_at_nothing_still_closes(solver):
     # A free body is at rest again after a whole sine: every term of the ledger vanishes.
     scene = Scene((Body("m", 2.0),), motion=Sine(1.0, 1.5))
     recording = run(scene, RTOL, 3.0, solver=solver, energy=True)
@@ -139,7 +135,7 @@ def test_a_ledger_that_ends_at_nothing_still_closes(solver: str) -> None:
     assert abs(recording.energy.closure) < allowed(1.0)
 
 
-def test_a_force_that_vanishes_as_the_row_meets_a_barrier(solver: str) -> None:
+def test_a_force_that_vanishes_as_the_row_meets_a_barrier(solver):
     """The impact presses together what its vanishing force was about to let go.
 
     On springs of their own, k_b/m_b > k_a/m_a, the force between two bodies in touch is a
@@ -164,9 +160,7 @@ def test_a_force_that_vanishes_as_the_row_meets_a_barrier(solver: str) -> None:
 
 @pytest.mark.parametrize("pulse", [Ricker, AntisymmetricRicker])
 @pytest.mark.parametrize("company", [False, True], ids=["alone", "beside another"])
-def test_a_force_that_dies_away_holds(
-    solver: str, company: bool, pulse: type[Ricker | AntisymmetricRicker]
-) -> None:
+def test_a_force_that_dies_away_holds(solver, company, pulse):
     """The tail of a pulse presses a body without a spring for ever, however little.
 
     What another body does meanwhile, which meets its own barrier again and again, is nothing
@@ -195,9 +189,7 @@ def test_a_force_that_dies_away_holds(
 
 @pytest.mark.parametrize("turned", [False, True], ids=["to ground", "from ground"])
 @pytest.mark.parametrize("reverse", [False, True], ids=["left", "right"])
-def test_a_kink_at_the_start_is_left_the_way_the_ground_sets_out(
-    solver: str, turned: bool, reverse: bool
-) -> None:
+def test_a_kink_at_the_start_is_left_the_way_the_ground_sets_out(solver, turned, reverse):
     # Nothing acts at the start, neither springs nor ground, whose acceleration grows from zero
     # and takes both bodies along; what parts them is of fifth order, the difference of their
     # stiffnesses. On the branch that a goes to it is softer than b, on the other one stiffer.
@@ -225,7 +217,7 @@ def test_a_kink_at_the_start_is_left_the_way_the_ground_sets_out(
 
 
 @pytest.mark.parametrize("part", [1e-12, 1e-11, 1e-10])
-def test_bodies_that_accelerate_almost_alike_part(part: float) -> None:
+def test_bodies_that_accelerate_almost_alike_part(part):
     # Both are let go from x0, where they touch: x = x0 cos ωt, and so the gap is
     # 2 x0 sin((ω_a + ω_b) t/2) sin((ω_a - ω_b) t/2).
     x0, k = -1.0, 4.0
@@ -244,7 +236,7 @@ def test_bodies_that_accelerate_almost_alike_part(part: float) -> None:
 
 
 @pytest.mark.parametrize("seeds", [range(15), range(15, 30)], ids=["few", "more"])
-def test_an_impulse_passed_on_opens_nothing(solver: str, seeds: range) -> None:
+def test_an_impulse_passed_on_opens_nothing(solver, seeds):
     # a stands at its wall on an unstrained stiff spring, b hits it, all without restitution: the
     # impulse goes through a into the wall, and afterwards nothing acts on a. The ground is still.
     for seed in seeds:
@@ -270,7 +262,7 @@ def test_an_impulse_passed_on_opens_nothing(solver: str, seeds: range) -> None:
         assert recording.v[0] == 0.0
 
 
-def test_bodies_without_springs_part_from_a_third_together(solver: str) -> None:
+def test_bodies_without_springs_part_from_a_third_together(solver):
     # Both contact forces are parts of one spring force, so they vanish in one instant, in which
     # rounding has hold of the smaller first. What is left of it is nothing that parts b from c.
     bodies = tuple(

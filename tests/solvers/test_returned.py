@@ -5,7 +5,6 @@ runs Python. A signal that came while the function ran is answered there, by an 
 that the wrapper does not look for: the process dies.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -49,7 +48,7 @@ def runs_python(kind: Any) -> bool:
 
 
 @pytest.fixture
-def returned(monkeypatch: pytest.MonkeyPatch) -> Callable[[], dict[str, Any]]:
+def returned(monkeypatch):
     """What functions return that Python called since, by their names."""
     called: set[Any] = set()
     itself = Entry.__mro__[1].__call__
@@ -67,7 +66,7 @@ def returned(monkeypatch: pytest.MonkeyPatch) -> Callable[[], dict[str, Any]]:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast", "moreau", "penalty"])
-def test_no_objects_of_python_classes(solver: str, returned: Callable[[], dict[str, Any]]) -> None:
+def test_no_objects_of_python_classes(solver, returned):
     settings = {"time_step": 1e-3} if solver in ("moreau", "penalty") else None
     for scene in scenes():
         response_of(scene, solver, 1e-6, duration=2.0, energy=True, settings=settings)
@@ -76,7 +75,7 @@ def test_no_objects_of_python_classes(solver: str, returned: Callable[[], dict[s
     assert not {name: kind for name, kind in found.items() if runs_python(kind)}
 
 
-def test_none_of_many_runs(returned: Callable[[], dict[str, Any]]) -> None:
+def test_none_of_many_runs(returned):
     simulate_many(pounding_pair(), {"body.a.mass": [1.0, 1.1]}, rtol=1e-6, duration=1.0)
     found = returned()
     assert found

@@ -1,7 +1,5 @@
 """Reversals of hysteretic links: where they are found, and what they leave of a tolerance."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -57,7 +55,7 @@ def _crossing(*roots: float) -> Polynomial:
 
 
 @pytest.mark.parametrize(("z", "sign"), [(0.8, 1.0), (0.8, -1.0), (-0.8, 1.0), (-0.8, -1.0)])
-def test_beyond_a_reversal_the_rate_of_z_goes_on(z: float, sign: float) -> None:
+def test_beyond_a_reversal_the_rate_of_z_goes_on(z, sign):
     """With a direction it is linear in x', and that of the law where x' has the direction."""
     law = memory_of(5.0, 0.7, 0.3, 1e-2)
     rates = [z_rate(0, law, x_rate, sign, z, 0.0) for x_rate in (-1.0, 1.0, 2.0)]
@@ -66,7 +64,7 @@ def test_beyond_a_reversal_the_rate_of_z_goes_on(z: float, sign: float) -> None:
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_directions_are_those_of_the_motion_and_stay() -> None:
+def test_directions_are_those_of_the_motion_and_stay():
     system = _system((GROUND, "a"), ("a", "b"), (GROUND, "b"))
     y, direction = np.zeros(system.size), np.array([0.0, 0.0, -1.0])
     y[system.iv] = 1.0, 1.0
@@ -78,7 +76,7 @@ def test_directions_are_those_of_the_motion_and_stay() -> None:
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_the_first_of_several_reversals() -> None:
+def test_the_first_of_several_reversals():
     """Links that reverse in the same instant do so together; others wait."""
     system = _system((GROUND, "a"), (GROUND, "b"), ("b", GROUND), ("a", "b"))
     step = _step(system, [_crossing(0.9), _crossing(0.7)])
@@ -99,7 +97,7 @@ def test_the_first_of_several_reversals() -> None:
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_two_reversals_within_a_step_are_seen() -> None:
+def test_two_reversals_within_a_step_are_seen():
     """Its ends move alike; the parabola through them tells that it may have turned between."""
     system = _system((GROUND, "a"))
     speed = _crossing(0.5, 0.7)
@@ -115,7 +113,7 @@ def test_two_reversals_within_a_step_are_seen() -> None:
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_what_does_not_matter_only_changes_the_direction() -> None:
+def test_what_does_not_matter_only_changes_the_direction():
     system = _system((GROUND, "a"))
     before, rate, after = np.zeros((3, system.size))
     before[system.iv[0]], after[system.iv[0]], rate[system.iv[0]] = 1e-3, -1e-3, -1.0
@@ -130,7 +128,7 @@ def test_what_does_not_matter_only_changes_the_direction() -> None:
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_one_that_does_not_matter_waits_for_one_that_does() -> None:
+def test_one_that_does_not_matter_waits_for_one_that_does():
     """The step ends where the second link reverses, perhaps before the first has."""
     system = _system((GROUND, "a"), (GROUND, "b"))
     before, rate, after = np.zeros((3, system.size))
@@ -142,7 +140,7 @@ def test_one_that_does_not_matter_waits_for_one_that_does() -> None:
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_in_a_moving_frame_the_links_reverse_where_they_do_on_the_ground() -> None:
+def test_in_a_moving_frame_the_links_reverse_where_they_do_on_the_ground():
     record = Record(np.random.default_rng(3).normal(size=9), 0.25)
     sampled = next(piece for piece in record.pieces() if piece.family is Family.SAMPLES)
     frame, origin = moving_frame(sampled), 0.3
@@ -181,7 +179,7 @@ STRUCK = Scene(
 
 
 @pytest.mark.parametrize("events", ["own", "sundials"])
-def test_a_tighter_tolerance_gives_a_smaller_error(events: str) -> None:
+def test_a_tighter_tolerance_gives_a_smaller_error(events):
     """Some hundred rtol at most; where reversals were stepped over, 3000."""
     truth = response_of(STRUCK, "fast", 1e-13, duration=LENGTH).recording
     size = abs(truth.displacement.minimum[0])
@@ -192,7 +190,7 @@ def test_a_tighter_tolerance_gives_a_smaller_error(events: str) -> None:
         assert abs(run.u[0] - truth.u[0]) < 400.0 * rtol * size
 
 
-def test_without_compiled_calls_the_steps_end_there_too() -> None:
+def test_without_compiled_calls_the_steps_end_there_too():
     """The steps of scikit-sundae's own interface, which take long: the first two seconds."""
     task = Task(STRUCK, 0.0, 2.0, 1e-11)
     truth = solver_named("fast").solve(replace(task, rtol=1e-13))

@@ -1,7 +1,5 @@
 """``events = "sundials"``: the library's own root finder gives the events of the table of modes."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 from typing import Any
@@ -37,7 +35,7 @@ from eventpound.solvers.events.roots import on_the_root, root_functions
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, EVENT_FOUND, Examination
 from eventpound.solvers.events.step_search import INTEGRATOR
 from eventpound.solvers.sundials import library
-from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
+from tests.hard.catalogue import REFUSED, WARNED, catalogue
 from tests.hard.outcome import Outcome, verdict
 from tests.reference.comparison import compare
 from tests.reference.problems import load
@@ -57,7 +55,7 @@ SUNDIALS_ROOTS = {"events": "sundials"}
 
 
 @pytest.fixture
-def nothing_else_looks(monkeypatch: pytest.MonkeyPatch) -> None:
+def nothing_else_looks(monkeypatch):
     """In a segment the event loop has no event to look for, and looks for none."""
 
     begin = Segment.__init__
@@ -104,7 +102,7 @@ HARD = (
         for name in load()
     ],
 )
-def test_solved_problem(nothing_else_looks, solver, rtol, name) -> None:
+def test_solved_problem(nothing_else_looks, solver, rtol, name):
     problem = load()[name]
     response = response_of(
         problem.scene, solver, rtol, duration=problem.end, settings=SUNDIALS_ROOTS
@@ -121,7 +119,7 @@ def test_solved_problem(nothing_else_looks, solver, rtol, name) -> None:
         if hard.name not in REFUSED
     ],
 )
-def test_hard_scene(hard: Hard) -> None:
+def test_hard_scene(hard):
     """Motion, counts and resting times of both finders; where they differ, a warning."""
     ways = (("cvode", {}), ("cvode", SUNDIALS_ROOTS), ("ida", SUNDIALS_ROOTS))
     responses = [response_of(hard.case, solver=s, settings=settings) for s, settings in ways]
@@ -144,7 +142,7 @@ def _oscillator(gap: float) -> Scene:
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize("overshoot", [1e-2, 1e-3, 1e-4, 1e-5])
-def test_a_dip_within_a_step_is_found(overshoot: float, rtol: float) -> None:
+def test_a_dip_within_a_step_is_found(overshoot, rtol):
     # u'' + u = -sin ωt from rest: u = -(sin ωt - ω sin t)/(1 - ω²) while the pulse lasts,
     # with its first minimum where cos ωt = cos t, at t = 2π/(1 + ω).
     omega = 1.3
@@ -167,7 +165,7 @@ def _loop(scene: Scene, rtol: float, end: float) -> tuple[EventLoop, DirectCvode
 
 
 @pytest.mark.parametrize("gap", [0.0, -1e-13])
-def test_a_gap_that_is_zero_at_a_start_and_closes_is_found_at_once(gap: float) -> None:
+def test_a_gap_that_is_zero_at_a_start_and_closes_is_found_at_once(gap):
     """CVODE alone would call such a root inactive and never report it."""
     bodies = (Body("b", 1.0, 1.0, -1.0),)
     scene = Scene(bodies, (), (), (Contact("wall", BARRIER, "b", 0.0, 0.5),))
@@ -182,7 +180,7 @@ def test_a_gap_that_is_zero_at_a_start_and_closes_is_found_at_once(gap: float) -
     assert 0.0 < run.t < 3e-15
 
 
-def test_roots_of_one_step_come_one_after_the_other() -> None:
+def test_roots_of_one_step_come_one_after_the_other():
     """Two bodies that fly to their walls, the second 1e-9 s after the first; third at once."""
     late = 1e-9
     bodies = tuple(Body(name, 1.0, 0.0, -1.0) for name in "abc")
@@ -199,7 +197,7 @@ def test_roots_of_one_step_come_one_after_the_other() -> None:
     np.testing.assert_allclose(times, [1.0, 1.0, 1.0 + late], rtol=0.0, atol=1e-12)
 
 
-def test_a_kink_and_a_release() -> None:
+def test_a_kink_and_a_release():
     # A spring of 4 N/m in compression and 1 N/m in extension throws b off a at its zero force.
     bodies = (Body("a", 1.0, -0.3), Body("b", 1.0, -0.3))
     spring = Spring("k", (GROUND, "a"), BilinearElastic(8.0, 2.0, 0.0))
@@ -220,7 +218,7 @@ def test_a_kink_and_a_release() -> None:
         )
 
 
-def test_a_root_is_put_on_the_zero() -> None:
+def test_a_root_is_put_on_the_zero():
     # Two values fallen by 1e-14 and 4e-14 below their noise of 1e-15, at 1 m/s; a third still up.
     pairs = np.array([[-1e-14, -1.0], [-4e-14, -1.0], [0.1, -1.0]])
     noise = np.full(3, 1e-15)
@@ -230,7 +228,7 @@ def test_a_root_is_put_on_the_zero() -> None:
     assert on_the_root(pairs, noise, 1.0 - 1e-14, 1.0, 1e-13) == 1.0
 
 
-def test_a_rate_that_has_died_away_turns_no_more() -> None:
+def test_a_rate_that_has_died_away_turns_no_more():
     # A link between bodies that rest on each other: its rate decays until its digits are gone.
     pairs = np.array([[0.4, -2e-311], [0.4, 0.0], [0.4, -1e-15]])
     root_functions(pairs, np.zeros(3))
@@ -241,7 +239,7 @@ def test_a_rate_that_has_died_away_turns_no_more() -> None:
     assert np.abs(by["ida"].u - by["fast"].u).max() < 1e-6 * np.abs(by["fast"].u).max()
 
 
-def test_a_root_that_is_found_again_and_again_is_an_end() -> None:
+def test_a_root_that_is_found_again_and_again_is_an_end():
     def steps(*given: Any) -> Any:
         return ROOT_RETURN, 0, 1.0, 1.5, CLEAR, 0.0, 0
 
@@ -255,7 +253,7 @@ def test_a_root_that_is_found_again_and_again_is_an_end() -> None:
     assert start == end == 1.0
 
 
-def test_it_is_what_ida_takes_unless_told_otherwise(nothing_else_looks) -> None:
+def test_it_is_what_ida_takes_unless_told_otherwise(nothing_else_looks):
     scene = _oscillator(1.0)
     assert response_of(scene, "ida", 1e-6, duration=1.0).recording.success
     for solver, settings in (("ida", {"events": "own"}), ("cvode", {})):
@@ -264,7 +262,7 @@ def test_it_is_what_ida_takes_unless_told_otherwise(nothing_else_looks) -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
-def test_a_word_that_is_none(solver: str) -> None:
+def test_a_word_that_is_none(solver):
     message = r"\[solver\]: events = 'foo'; accepted: own or sundials"
     options = SolverOptions(solver, settings={"events": "foo"})
     with pytest.raises(InputError, match=message):
@@ -288,8 +286,8 @@ def test_a_word_that_is_none(solver: str) -> None:
     ],
 )
 def test_through_scikit_sundae_it_finds_the_same(
-    nothing_else_looks, monkeypatch, solver: str, rtol: float, name: str, allowed_error: float
-) -> None:
+    nothing_else_looks, monkeypatch, solver, rtol, name, allowed_error
+):
     """Where the library's symbols are out of reach, by the `eventsfn` of scikit-sundae."""
     monkeypatch.setattr(library, "library", lambda: None)
     monkeypatch.setattr(library, "ida_library", lambda: None)
@@ -302,7 +300,7 @@ def test_through_scikit_sundae_it_finds_the_same(
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
-def test_through_scikit_sundae_every_search_has_a_log_of_its_own(monkeypatch, solver: str) -> None:
+def test_through_scikit_sundae_every_search_has_a_log_of_its_own(monkeypatch, solver):
     """It keeps its log of roots on the function that it is given, and hands all of it out."""
     monkeypatch.setattr(library, "library", lambda: None)
     monkeypatch.setattr(library, "ida_library", lambda: None)
@@ -333,7 +331,7 @@ def test_through_scikit_sundae_every_search_has_a_log_of_its_own(monkeypatch, so
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
-def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str) -> None:
+def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver):
     """Where a root lies in a step whose end leaves |z| beyond its bound, the step is taken anew."""
     law = BoucWen(4.0, 0.5, 0.1, 20.0)
     body, spring = Body("b", 1.0, 0.0, 1.0), Spring("k", (GROUND, "b"), law)
@@ -364,7 +362,7 @@ def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str) -> None:
     np.testing.assert_allclose(*times, rtol=allowed(1.0, 1e-9))
 
 
-def test_a_limit_of_steps_is_kept() -> None:
+def test_a_limit_of_steps_is_kept():
     with pytest.raises(ComputationError, match="the limit of 300 steps") as caught:
         response_of(pounding_pair(), "cvode", duration=6.0, settings=SUNDIALS_ROOTS, max_steps=300)
     recording = caught.value.recording
@@ -373,7 +371,7 @@ def test_a_limit_of_steps_is_kept() -> None:
 
 
 @pytest.mark.parametrize("seed", [156, 330, 439])
-def test_rows_of_a_step_with_a_root_at_its_end_are_on_its_polynomial(seed: int) -> None:
+def test_rows_of_a_step_with_a_root_at_its_end_are_on_its_polynomial(seed):
     # The root is the bottom of a dip: the step goes on, but IDA has no more of it to tell.
     scene, end = random_scene(seed)
     settings = {"events": "sundials"}
@@ -384,7 +382,7 @@ def test_rows_of_a_step_with_a_root_at_its_end_are_on_its_polynomial(seed: int) 
     assert np.all(u >= extremes.minimum - noise)
 
 
-def test_what_is_done_meanwhile_changes_no_direction(monkeypatch) -> None:
+def test_what_is_done_meanwhile_changes_no_direction(monkeypatch):
     """Another thread may take free memory as soon as the library is called."""
     found = library.ida_library()
     told = []

@@ -1,7 +1,5 @@
 """Closings of one instant are solved together; where one ends is one rule for all integrators."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -26,7 +24,7 @@ def _pinched(later: float) -> Scene:
 
 @pytest.mark.parametrize("solver", ["fast", "cvode", "ida"])
 @pytest.mark.parametrize("later", [*TOGETHER, *APART])
-def test_two_closings_are_one_impact_within_an_instant_only(solver: str, later: float) -> None:
+def test_two_closings_are_one_impact_within_an_instant_only(solver, later):
     recording = solver_named(solver).solve(Task(_pinched(later), 0.0, 1.5, 1e-12))
     groups = [event.group for event in recording.events]
     if later in TOGETHER:

@@ -1,7 +1,5 @@
 """Recordings from rows, and impacts read off them, against a solver that knows better."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Several bodies: peaks beside fine histories; rows, pauses and a ledger change nothing."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
@@ -77,7 +75,7 @@ def row(gap: float, motion: GroundMotion = MOTIONS["sine"], damped: bool = True)
     return Scene(bodies, springs, dashpots, contacts, motion)
 
 
-def test_base_shear_is_that_of_all_at_once() -> None:
+def test_base_shear_is_that_of_all_at_once():
     """Its peaks are those of the sum of the forces, which a fine history comes close to."""
     times = np.linspace(0.0, END, 20_001)
     for damped in (False, True):
@@ -90,7 +88,7 @@ def test_base_shear_is_that_of_all_at_once() -> None:
         assert found.base_shear.maximum[0] >= shear.max() - 1e-9 * near
 
 
-def test_gaps_are_watched_from_one_step_to_the_other() -> None:
+def test_gaps_are_watched_from_one_step_to_the_other():
     """Smallest and largest gap between bodies that never touch, beside a fine history."""
     times = np.linspace(0.0, END, 20_001)
     task = Task(row(FAR), 0.0, END, 1e-10, output_times=times)
@@ -105,7 +103,7 @@ def test_gaps_are_watched_from_one_step_to_the_other() -> None:
 
 
 @pytest.mark.usefixtures("interpreted")
-def test_a_run_among_many_takes_no_acceleration_over() -> None:
+def test_a_run_among_many_takes_no_acceleration_over():
     """That of a run that ended with numbers that are not finite would come into the next defect."""
     task, model = Task(row(0.2), 0.0, END, 1e-9), assemble(row(0.2))
     plan = plan_of(task, model, scene_scales(task.scene, model, END))
@@ -156,9 +154,7 @@ def solved(scene: Scene, rows: int, energy: bool = False) -> Recording:
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_rows_pauses_and_a_ledger_change_nothing(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_rows_pauses_and_a_ledger_change_nothing(name, monkeypatch):
     few, many = solved(SCENES[name], rows=2), solved(SCENES[name], rows=1777)
     kept = solved(SCENES[name], rows=2, energy=True)
     monkeypatch.setattr(fast, "BUDGET", 3)

@@ -1,7 +1,5 @@
 """The kernel of a single body, instant by instant and step by step."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -94,7 +92,7 @@ def settle(run: SdofRun, g: float) -> None:
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize(("before", "gap", "gap_rate", "duty"), TABLE)
-def test_duty(before: str, gap: float, gap_rate: float, duty: int, side: float) -> None:
+def test_duty(before, gap, gap_rate, duty, side):
     """The rows of the table of modes; what presses the body on the barrier is the ground."""
     run = at_barrier(side, gap == 0.0, gap_rate, before == "resting")
     settle(run, -side * 3.0)
@@ -118,7 +116,7 @@ def test_duty(before: str, gap: float, gap_rate: float, duty: int, side: float) 
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("eps", [0.0, 0.35, 1.0])
-def test_impact_is_that_of_the_law(side: float, eps: float) -> None:
+def test_impact_is_that_of_the_law(side, eps):
     run = at_barrier(side, True, -0.7)
     run.plan.contacts.restitution[:] = eps
     settle(run, 0.0)
@@ -154,9 +152,7 @@ def test_impact_is_that_of_the_law(side: float, eps: float) -> None:
         ([1e-15, -1.0], True),
     ],
 )
-def test_a_vanished_force_is_decided_by_the_first_coefficient(
-    side: float, coefficients: list[float], stays: bool
-) -> None:
+def test_a_vanished_force_is_decided_by_the_first_coefficient(side, coefficients, stays):
     """On the right barrier λ = m (A - a_g) falls where a_g grows."""
     cubic = np.zeros(4)
     cubic[1 : 1 + len(coefficients)] = side * np.array(coefficients)
@@ -167,7 +163,7 @@ def test_a_vanished_force_is_decided_by_the_first_coefficient(
     assert bool(found) is stays
 
 
-def test_a_body_squeezed_between_two_barriers_is_left_to_the_general_kernel() -> None:
+def test_a_body_squeezed_between_two_barriers_is_left_to_the_general_kernel():
     spring = Spring("s", (GROUND, "a"), Linear(1.0))
     contacts = (
         Contact("right", "a", BARRIER, 0.0, RESTITUTION),
@@ -181,7 +177,7 @@ def test_a_body_squeezed_between_two_barriers_is_left_to_the_general_kernel() ->
 
 @pytest.mark.parametrize("dt", [1e-9, 0.005, 0.08])
 @pytest.mark.parametrize("damping", [0.0, 0.3])
-def test_a_table_is_that_of_the_matrix_exponential(dt: float, damping: float) -> None:
+def test_a_table_is_that_of_the_matrix_exponential(dt, damping):
     """Without damping every other term of the series is zero."""
     body, step, stiffness = at_barrier(1.0, False, 0.0).body, np.zeros(7), 16.0
     body.damping = damping

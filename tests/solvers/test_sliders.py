@@ -1,7 +1,5 @@
 """Sliders beside closed forms, Den Hartog's oscillator, and a program in SciPy."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace
@@ -16,7 +14,6 @@ from eventpound.contact.state import Now
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.model import assemble, with_sliders
 from eventpound.motion import Harmonic, NoMotion, Record, Ricker, Sine
-from eventpound.motion.base import GroundMotion
 from eventpound.motion.constant import Constant
 from eventpound.numerics.compiled import by_python
 from eventpound.response import Response
@@ -65,9 +62,7 @@ def on_ground(law: Slider, **body: float) -> tuple[Body, Spring]:
 
 
 @pytest.mark.parametrize(("solver", "events"), SOLVERS)
-def test_swing_loses_twice_its_dead_zone_each_half_cycle_and_stops(
-    solver: str, events: str
-) -> None:
+def test_swing_loses_twice_its_dead_zone_each_half_cycle_and_stops(solver, events):
     law = Slider.pendulum(0.1, 1000.0 * g, 1000.0 * g / 4.0e5)
     deck, bearing = on_ground(law, displacement=0.05)
     response = run(Scene((deck,), (bearing,), motion=NoMotion()), 3.0, solver, events)
@@ -121,9 +116,7 @@ def block_on_shaken_plane(a: float, w: float, friction: float, end: float) -> tu
 
 @pytest.mark.parametrize(("solver", "events"), SOLVERS)
 @pytest.mark.parametrize("strong", [1.3, 3.0], ids=["sticks", "slips on"])
-def test_block_on_a_shaken_plane_sticks_and_slips_as_in_closed_form(
-    solver: str, events: str, strong: float
-) -> None:
+def test_block_on_a_shaken_plane_sticks_and_slips_as_in_closed_form(solver, events, strong):
     friction, w, end = 0.1 * g, 5.0, 9.0
     deck, bearing = on_ground(Slider(0.1, 1000.0 * g))
     scene = Scene((deck,), (bearing,), motion=Harmonic(strong * friction, 2.0 * math.pi / w))
@@ -148,9 +141,7 @@ def steady_amplitude(response: Response, period: float) -> float:
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 @pytest.mark.parametrize("beta", [0.7, 1.3, 2.0])
-def test_oscillator_that_does_not_stop_has_the_amplitude_of_den_hartog(
-    solver: str, beta: float
-) -> None:
+def test_oscillator_that_does_not_stop_has_the_amplitude_of_den_hartog(solver, beta):
     # Transactions of the ASME 53 (1931), eq. 13: a^2 = V^2 - (F/P)^2 U^2 in P/k.
     deck, bearing = on_ground(Slider(0.1, 1000.0 * g, 1.0e5))
     omega = 10.0 * beta
@@ -195,7 +186,7 @@ def den_hartog_with_stops(m: float, k: float, F: float, P: float, w: float) -> f
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_oscillator_that_stops_twice_a_cycle_has_its_steady_amplitude(solver: str) -> None:
+def test_oscillator_that_stops_twice_a_cycle_has_its_steady_amplitude(solver):
     deck, bearing = on_ground(Slider(0.1, 1000.0 * g, 1.0e5))
     F = bearing.law.strength
     pull, omega = F / 0.75, 4.0
@@ -225,9 +216,7 @@ def broken_stick() -> Scene:
 
 @pytest.mark.parametrize("restitution", [(), (0.5,)])
 @pytest.mark.parametrize(("solver", "events"), SOLVERS)
-def test_friction_pulls_against_the_slip_from_the_first_row_on(
-    solver: str, events: str, restitution: tuple[float, ...]
-) -> None:
+def test_friction_pulls_against_the_slip_from_the_first_row_on(solver, events, restitution):
     # Thrown to the left, alone or against a wall that it touches, which turns it round.
     deck, bearing = on_ground(Slider(0.1, 1000.0 * g), velocity=-0.5)
     walls = [Contact("wall", BARRIER, "deck", 0.0, e) for e in restitution]
@@ -237,7 +226,7 @@ def test_friction_pulls_against_the_slip_from_the_first_row_on(
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_impact_breaks_a_stick_where_it_strikes_and_nowhere_else(solver: str) -> None:
+def test_impact_breaks_a_stick_where_it_strikes_and_nowhere_else(solver):
     response = run(broken_stick(), 6.0, solver)
     # Equal masses: it takes over 1 m/s at t = 1 s, and friction stops it over 1 / (2 0.3).
     way = 1.0 / 0.6
@@ -250,7 +239,7 @@ def test_impact_breaks_a_stick_where_it_strikes_and_nowhere_else(solver: str) ->
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
-def test_friction_ends_what_bounces_without_a_loss(solver: str) -> None:
+def test_friction_ends_what_bounces_without_a_loss(solver):
     # Pressed by P and held by friction F it keeps a part r of its speed from bounce to bounce.
     P, F, h = 1.0, 0.25, 0.1
     r = math.sqrt((P - F) / (P + F))
@@ -276,7 +265,7 @@ def test_friction_ends_what_bounces_without_a_loss(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_deck_that_soil_pushes_against_a_sliding_one_comes_to_rest_on_it(solver: str) -> None:
+def test_deck_that_soil_pushes_against_a_sliding_one_comes_to_rest_on_it(solver):
     # Friction stops the pushed deck after each impact. Once the flights between are no time at
     # all, that must not go on.
     weight, ultimate = 1e5 * g, 2193245.4
@@ -298,9 +287,7 @@ def test_deck_that_soil_pushes_against_a_sliding_one_comes_to_rest_on_it(solver:
 
 
 @pytest.mark.parametrize(("solver", "events"), SOLVERS)
-def test_deck_pressed_on_an_abutment_parts_when_pulled_by_more_than_friction(
-    solver: str, events: str
-) -> None:
+def test_deck_pressed_on_an_abutment_parts_when_pulled_by_more_than_friction(solver, events):
     # At rest on the barrier at its right; the ground's a sin(w t) presses it on, then pulls it off.
     friction, a, w = 2.0, 3.0, 1.0
     scene = Scene(
@@ -324,7 +311,7 @@ def test_deck_pressed_on_an_abutment_parts_when_pulled_by_more_than_friction(
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_two_sliders_side_by_side_are_one_of_both_forces(solver: str) -> None:
+def test_two_sliders_side_by_side_are_one_of_both_forces(solver):
     motion = Harmonic(3.0, 1.1)
     deck, bearing = on_ground(Slider(0.1, 1000.0 * g, 2.0e4))
     parts = (Slider(0.07, 1000.0 * g, 2.0e4), Slider(0.03, 1000.0 * g))
@@ -342,7 +329,7 @@ def test_two_sliders_side_by_side_are_one_of_both_forces(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_shares_of_a_load_are_told_as_not_unique(solver: str) -> None:
+def test_shares_of_a_load_are_told_as_not_unique(solver):
     scene = Scene(
         (Body("deck", 1000.0), Body("p", 1000.0), Body("q", 1000.0)),
         (
@@ -365,7 +352,7 @@ def test_shares_of_a_load_are_told_as_not_unique(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_sticks_in_a_cycle_of_unlike_masses_move_as_in_another_program(solver: str) -> None:
+def test_sticks_in_a_cycle_of_unlike_masses_move_as_in_another_program(solver):
     sticks = (
         Spring("s0", (GROUND, "b1"), Slider(0.03, 2e4)),
         Spring("s1", ("b0", "b1"), Slider(0.03, 2e7, 3e8)),
@@ -380,7 +367,7 @@ def test_sticks_in_a_cycle_of_unlike_masses_move_as_in_another_program(solver: s
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_slider_on_a_support_is_that_on_the_ground_which_moves_so(solver: str) -> None:
+def test_slider_on_a_support_is_that_on_the_ground_which_moves_so(solver):
     motion = Sine(3.0, 1.1)
     deck, bearing = on_ground(Slider(0.1, 1000.0 * g, 2.0e4))
     whole = run(Scene((deck,), (bearing,), motion=motion), 6.0, solver).recording
@@ -394,9 +381,7 @@ def test_slider_on_a_support_is_that_on_the_ground_which_moves_so(solver: str) -
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 @pytest.mark.parametrize("part", [0.9, 3.0])
-def test_block_that_is_pushed_moves_as_on_a_ground_that_is_shaken_so(
-    solver: str, part: float
-) -> None:
+def test_block_that_is_pushed_moves_as_on_a_ground_that_is_shaken_so(solver, part):
     deck, bearing = on_ground(Slider(0.2, 1000.0 * g))
     push = Sine(part * 0.2 * g, 1.0)
     pushed = Scene((deck,), (bearing,), motion=NoMotion(), forces=(Force("deck", push, True),))
@@ -442,7 +427,7 @@ def random_scene(seed: int) -> tuple[Scene, float]:
 
 
 @pytest.mark.parametrize("seed", [0, 1, 3, 4, 5, 6, 7])
-def test_random_scene_moves_as_in_another_program(seed: int) -> None:
+def test_random_scene_moves_as_in_another_program(seed):
     scene, end = random_scene(seed)
     by_solver = {solver: run(scene, end, solver) for solver in ("cvode", "ida", "fast")}
     size = float(np.abs(by_solver["cvode"].recording.history.u).max())
@@ -458,7 +443,7 @@ def test_random_scene_moves_as_in_another_program(seed: int) -> None:
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 @pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 5])
-def test_base_shear_turns_nowhere_beyond_its_extremes(seed: int, solver: str) -> None:
+def test_base_shear_turns_nowhere_beyond_its_extremes(seed, solver):
     # Friction is part of it, also of what stands still on the ground.
     scene, end = random_scene(seed)
     scene = replace(scene, motion=Harmonic(0.6, 4.0))
@@ -505,7 +490,7 @@ def on_a_support(scene: Scene, seed: int) -> Scene:
 
 
 @pytest.mark.parametrize("seed", [1, 4, 5, 9])
-def test_random_scene_on_a_support_moves_as_in_another_program(seed: int) -> None:
+def test_random_scene_on_a_support_moves_as_in_another_program(seed):
     scene, end = random_scene(seed)
     scene = on_a_support(scene, seed)
     by_solver = {solver: run(scene, end, solver) for solver in ("cvode", "ida", "fast")}
@@ -533,9 +518,7 @@ def test_random_scene_on_a_support_moves_as_in_another_program(seed: int) -> Non
     ],
     ids=["late", "late, back", "from a tail", "with its jerk", "with its jerk, back"],
 )
-def test_deck_held_by_ground_and_pier_goes_with_the_one_that_tells(
-    solver: str, motion: GroundMotion
-) -> None:
+def test_deck_held_by_ground_and_pier_goes_with_the_one_that_tells(solver, motion):
     # The pier stands at its left. Friction holds it against the push onto the pier.
     scene = Scene(
         (Body("deck", 1.0),),
@@ -553,9 +536,7 @@ def test_deck_held_by_ground_and_pier_goes_with_the_one_that_tells(
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 @pytest.mark.parametrize("ground", [5.0, 20.0])
-def test_deck_goes_with_the_stronger_of_two_that_a_tail_moves_apart(
-    solver: str, ground: float
-) -> None:
+def test_deck_goes_with_the_stronger_of_two_that_a_tail_moves_apart(solver, ground):
     # As the run begins there is no motion yet that a number could hold.
     wavelet = Ricker(4.0, 0.3, center=3.0)
     scene = Scene(
@@ -584,7 +565,7 @@ def test_deck_goes_with_the_stronger_of_two_that_a_tail_moves_apart(
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_deck_at_a_wall_stays_there_while_a_tail_pushes_it(solver: str) -> None:
+def test_deck_at_a_wall_stays_there_while_a_tail_pushes_it(solver):
     wavelet = Ricker(4.0, 0.3, center=3.0)
     scene = Scene(
         (Body("deck", 1.0),),
@@ -605,9 +586,7 @@ def test_deck_at_a_wall_stays_there_while_a_tail_pushes_it(solver: str) -> None:
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 @pytest.mark.parametrize("bounds", [(1.0, 2.0), (2.0, 1.0)])
-def test_bearings_on_ground_and_pier_carry_together_more_than_one_can(
-    solver: str, bounds: tuple[float, float]
-) -> None:
+def test_bearings_on_ground_and_pier_carry_together_more_than_one_can(solver, bounds):
     ends = (GROUND, "pier")
     bearings = [
         Spring(f"on {end}", (end, "deck"), Slider(1.0, bound))
@@ -629,9 +608,7 @@ def test_bearings_on_ground_and_pier_carry_together_more_than_one_can(
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 @pytest.mark.parametrize("pull", [-0.2, 0.0])
-def test_deck_comes_to_rest_between_ground_and_what_a_tail_still_moves(
-    solver: str, pull: float
-) -> None:
+def test_deck_comes_to_rest_between_ground_and_what_a_tail_still_moves(solver, pull):
     scene = Scene(
         (Body("deck", 1.0, velocity=1.0),),
         (
@@ -647,7 +624,7 @@ def test_deck_comes_to_rest_between_ground_and_what_a_tail_still_moves(
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
-def test_what_supports_squeeze_without_a_way_out_is_refused_by_name(solver: str) -> None:
+def test_what_supports_squeeze_without_a_way_out_is_refused_by_name(solver):
     scene = Scene(
         (Body("deck", 1.0),),
         (Spring("bearing", (GROUND, "deck"), Slider(2.0, 1.0)),),
@@ -663,7 +640,7 @@ def test_what_supports_squeeze_without_a_way_out_is_refused_by_name(solver: str)
 
 
 @pytest.mark.parametrize("solver", ["moreau", "penalty"])
-def test_a_solver_that_does_not_know_sliders_says_so_in_one_message(solver: str) -> None:
+def test_a_solver_that_does_not_know_sliders_says_so_in_one_message(solver):
     deck, bearing = on_ground(Slider(0.1, 1.0))
     with pytest.raises(InputError) as caught:
         simulate(Scene((deck,), (bearing,), motion=Sine(1.0, 1.0)), solver=solver, duration=1.0)
@@ -672,7 +649,7 @@ def test_a_solver_that_does_not_know_sliders_says_so_in_one_message(solver: str)
 
 
 @pytest.mark.parametrize("cut", [0.4, 1.8], ids=["while it slips", "while it sticks"])
-def test_run_goes_on_where_another_ended(cut: float) -> None:
+def test_run_goes_on_where_another_ended(cut):
     deck, bearing = on_ground(Slider(0.1, 1000.0 * g, 4.0e5), displacement=0.05)
     scene = Scene((deck,), (bearing,), motion=NoMotion())
     whole, first = run(scene, 2.0), run(scene, cut)
@@ -682,7 +659,7 @@ def test_run_goes_on_where_another_ended(cut: float) -> None:
 
 
 @pytest.mark.parametrize("problems", [0, 3])
-def test_an_instant_that_paused_for_room_does_not_end_slips_again(problems: int) -> None:
+def test_an_instant_that_paused_for_room_does_not_end_slips_again(problems):
     deck, bearing = on_ground(Slider(0.1, 1000.0))
     model = with_sliders(assemble(Scene((deck,), (bearing,), motion=NoMotion())))
     now = np.zeros(1, Now.layout)

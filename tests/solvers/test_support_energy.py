@@ -1,7 +1,5 @@
 """Work of supports in the energy ledger, against closed forms and on scenes at random."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -22,7 +20,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
 @pytest.mark.parametrize(("solver", "allowed"), [("fast", 1e-12), ("cvode", 1e-9), ("ida", 1e-9)])
-def test_oscillator_between_two_supports(solver: str, allowed: float) -> None:
+def test_oscillator_between_two_supports(solver, allowed):
     """The pier does ∫ k (s - u) s' dt through its spring, here by Gauss's rule."""
     deck = DeckBetween()
     motion, period, delay = deck.motion, deck.period, deck.delay
@@ -47,7 +45,7 @@ def test_oscillator_between_two_supports(solver: str, allowed: float) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_a_body_carried_by_a_support(solver: str) -> None:
+def test_a_body_carried_by_a_support(solver):
     """What rests on a seat is lifted by it against the force that presses it down."""
     push, a, period, mass = 4.0, 3.0, 1.0, 4.0
     scene = Scene(
@@ -67,7 +65,7 @@ def test_a_body_carried_by_a_support(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_impulses_of_a_support(solver: str) -> None:
+def test_impulses_of_a_support(solver):
     """A ball between impacts at a support that comes on: only those give it energy."""
     scene = Scene(
         (Body("ball", 2.0, 0.0, -1.0),),
@@ -91,7 +89,7 @@ def test_impulses_of_a_support(solver: str) -> None:
     [ContactLaw("linear", 900.0), ContactLaw("kelvin-voigt", 9000.0, 0.3)],
     ids=lambda law: law.kind,
 )
-def test_an_element_at_a_support(law: ContactLaw) -> None:
+def test_an_element_at_a_support(law):
     """Its force works while it is closed; its impulse is no further work."""
     scene = Scene(
         (Body("a", 2.0),),
@@ -108,7 +106,7 @@ def test_an_element_at_a_support(law: ContactLaw) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_one_work_a_support(solver: str) -> None:
+def test_one_work_a_support(solver):
     """Two supports that move as one do what one does."""
     one = pounding_on_two()
     own = one.supports[0]
@@ -127,7 +125,7 @@ def test_one_work_a_support(solver: str) -> None:
     assert second.input == pytest.approx(first.input, rel=1e-7)
 
 
-def test_closes_on_random_scenes() -> None:
+def test_closes_on_random_scenes():
     """As well as rtol says; works and input add up whatever the contacts do."""
     worked = 0
     for seed in range(40):
@@ -142,7 +140,7 @@ def test_closes_on_random_scenes() -> None:
     assert worked > 15
 
 
-def test_summary_names_them() -> None:
+def test_summary_names_them():
     scene = replace(pounding_on_two(), forces=(Force("b", PhasedSine(6.0, 0.7, cycles=1.0)),))
     response = response_of(scene, "fast", 1e-8, duration=3.0, energy=True)
     energy = summarise(response)["energy"]

@@ -1,9 +1,6 @@
 """Supports that move apart and forces on bodies, against what is known of them otherwise."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
@@ -116,7 +113,7 @@ class DeckBetween(NamedTuple):
 
 
 @pytest.mark.parametrize(("solver", "allowed"), [("fast", 1e-12), ("cvode", 3e-11), ("ida", 3e-11)])
-def test_oscillator_between_two_supports(solver: str, allowed: float) -> None:
+def test_oscillator_between_two_supports(solver, allowed):
     deck = DeckBetween()
     motion, delay = deck.motion, deck.delay
     recording = run(deck.scene(), 3.0, solver, 1e-14 if solver == "fast" else 1e-13)
@@ -134,7 +131,7 @@ def test_oscillator_between_two_supports(solver: str, allowed: float) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_no_delay_is_no_support(solver: str) -> None:
+def test_no_delay_is_no_support(solver):
     def named(end: str) -> str:
         return "pier" if end in (GROUND, BARRIER) else end
 
@@ -153,7 +150,7 @@ def test_no_delay_is_no_support(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_a_delay_of_no_motion_is_no_support(solver: str) -> None:
+def test_a_delay_of_no_motion_is_no_support(solver):
     """Where nothing moves the supports, a body swings as on the ground; none has an energy."""
     spring, body = Spring("s", ("pier", "a"), Linear(40.0)), Body("a", 1.0, 0.1)
     moved = Scene((body,), (spring,), supports=(Support("pier", 0.3),))
@@ -182,7 +179,7 @@ def pounding_on_two() -> Scene:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_another_reference(solver: str) -> None:
+def test_another_reference(solver):
     """The pier chosen as the reference changes u by the difference of the displacements."""
     scene = pounding_on_two()
     pier, ground = scene.supports[0].motion, scene.motion
@@ -231,7 +228,7 @@ def _at_outputs(recording: Recording) -> np.ndarray:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_resting_on_a_support(solver: str) -> None:
+def test_resting_on_a_support(solver):
     """A body that a force presses on a support moves with it until that falls away too fast."""
     push, a, period = 2.0, 3.0, 1.0
     scene = Scene(
@@ -257,7 +254,7 @@ def test_resting_on_a_support(solver: str) -> None:
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-11])
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_a_turn_in_the_middle_of_a_time_step(solver: str, rtol: float) -> None:
+def test_a_turn_in_the_middle_of_a_time_step(solver, rtol):
     """A body that rests on one support turns from another where their velocities are equal."""
     samples = np.repeat([0.0, -3.0, 0.0, 3.0], [1, 26, 12, 26])
     scene = Scene(
@@ -275,9 +272,7 @@ def test_a_turn_in_the_middle_of_a_time_step(solver: str, rtol: float) -> None:
 
 
 @pytest.mark.parametrize(("solver", "allowed"), [("cvode", 1e-14), ("ida", 1e-8), ("fast", 1e-9)])
-def test_a_support_is_where_its_history_has_it_at_any_tolerance(
-    solver: str, allowed: float
-) -> None:
+def test_a_support_is_where_its_history_has_it_at_any_tolerance(solver, allowed):
     """What rests on it is there with it, in ida up to Newton's iteration, in fast one step.
 
     Were it integrated it would be 5e-5 m away.
@@ -366,7 +361,7 @@ class PressedOn(NamedTuple):
 
 @pytest.mark.parametrize("exponent", [2.0, 20.0])
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_a_spring_that_yields_at_a_support(solver: str, exponent: float) -> None:
+def test_a_spring_that_yields_at_a_support(solver, exponent):
     """It moves nobody: what it does to the force of the contact is all that tells when it parts."""
     pressed = PressedOn(exponent)
     recording = run(pressed.scene(), 0.6, solver, 1e-10)
@@ -376,7 +371,7 @@ def test_a_spring_that_yields_at_a_support(solver: str, exponent: float) -> None
 
 
 @pytest.mark.parametrize("gap", [0.01, 0.02, 0.03])
-def test_a_support_is_put_in_its_place_with_what_it_carries(gap: float) -> None:
+def test_a_support_is_put_in_its_place_with_what_it_carries(gap):
     """Its motion errs by a tolerance, which is taken back where the next piece of it begins."""
     scene = Scene(
         (Body("deck", 5e5),),
@@ -390,7 +385,7 @@ def test_a_support_is_put_in_its_place_with_what_it_carries(gap: float) -> None:
     assert np.abs(loose.displacement.maximum - close.displacement.maximum).max() <= 1e-6
 
 
-def test_a_spring_that_yields_on_a_heavy_body() -> None:
+def test_a_spring_that_yields_on_a_heavy_body():
     """Its force is nothing to the two together, and all that parts them."""
     heavy, omega = 1e7, 7.702782177955612
     scene = Scene(
@@ -413,7 +408,7 @@ def test_a_spring_that_yields_on_a_heavy_body() -> None:
 
 @pytest.mark.parametrize("end", [BARRIER, "pier"])
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_a_force_quicker_than_all_that_moves(solver: str, end: str) -> None:
+def test_a_force_quicker_than_all_that_moves(solver, end):
     """No body moves with it, so no error of a step shows it; the force of the contact does."""
     slow, quick, period, a, of_pier = 0.6, 0.5, 0.05, 0.1, 8.0
     supports = (Support("pier", motion=Sine(a, of_pier)),) if end == "pier" else ()
@@ -449,7 +444,7 @@ def test_a_force_quicker_than_all_that_moves(solver: str, end: str) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_a_record_quicker_than_all_that_moves(solver: str) -> None:
+def test_a_record_quicker_than_all_that_moves(solver):
     """A force that lifts a body off between two steps of everything else."""
     lifts, dt = np.zeros(160), 0.01
     lifts[100:103] = 0.0, 1.2, 0.0
@@ -470,7 +465,7 @@ def test_a_record_quicker_than_all_that_moves(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_column_of_beads(solver: str) -> None:
+def test_column_of_beads(solver):
     """Beads that fall in a row, followed from impact to impact by their parabolas."""
     g, e, mass = 9.81, (0.9, 0.8, 0.7), np.array([1.0, 2.0, 1.5])
     gaps = np.array([0.1, 0.05, 0.02])
@@ -524,9 +519,7 @@ def shaken(t: np.ndarray, p: float, omega: float) -> np.ndarray:
     [(Constant(3.0), stepped), (PhasedSine(3.0, 2.0 * np.pi / 5.0, phase=0.6), shaken)],
     ids=["constant", "phased"],
 )
-def test_forced_oscillator(
-    solver: str, history: Any, exact: Callable[[np.ndarray, float, float], np.ndarray]
-) -> None:
+def test_forced_oscillator(solver, history, exact):
     mass, omega = 2.0, 7.0
     scene = Scene(
         (Body("m", mass),),
@@ -541,7 +534,7 @@ def test_forced_oscillator(
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_a_record_as_a_force(solver: str) -> None:
+def test_a_record_as_a_force(solver):
     """``-m a_g`` as a force on every body is the ground motion itself, in absolute measure."""
     samples = 8.0 * np.random.default_rng(3).normal(size=60)
     shake = Record(samples, 0.05)
@@ -557,7 +550,7 @@ def test_a_record_as_a_force(solver: str) -> None:
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
 @pytest.mark.parametrize("way", WAYS)
-def test_other_ways_into_sundials(solver: str, way: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_ways_into_sundials(solver, way, monkeypatch):
     scene = replace(pounding_on_two(), forces=(Force("a", "-0.5 m/s^2"),))
     direct, other = directly_and_by(way, Task(scene, 0.0, 3.0, 1e-8), solver, monkeypatch)
     assert len(direct.events) >= 3
@@ -565,7 +558,7 @@ def test_other_ways_into_sundials(solver: str, way: str, monkeypatch: pytest.Mon
     assert np.abs(other.u - direct.u).max() <= 1e-6 * scale
 
 
-def test_an_element_at_a_support() -> None:
+def test_an_element_at_a_support():
     """A stiff element between a deck and a support is a spring to it while it is pressed."""
     support = Support("pier", motion=Sine(3.0, 0.8, reverse=True))
     element = Contact("seat", "pier", "a", 0.0, None, ContactLaw("linear", 900.0))
@@ -585,7 +578,7 @@ def test_an_element_at_a_support() -> None:
     assert np.abs(one.displacement.minimum - two.displacement.minimum).max() <= 1e-8 * scale
 
 
-def test_supports_that_close_in() -> None:
+def test_supports_that_close_in():
     scene = Scene(
         (Body("a", 1.0),),
         contacts=(
@@ -601,7 +594,7 @@ def test_supports_that_close_in() -> None:
 
 
 @pytest.mark.parametrize("way", ["squeezed", "free", "apart"])
-def test_supports_close_in_on_levers(way: str) -> None:
+def test_supports_close_in_on_levers(way):
     """A point half on the pier, half on a body that the ground holds, presses another at a wall."""
     contacts = (
         Contact("lever", Point({"pier": 0.5, "held": 0.5}), "a", 0.0, 0.0),
@@ -624,7 +617,7 @@ def test_supports_close_in_on_levers(way: str) -> None:
 
 @pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
 @pytest.mark.parametrize("reverse", [False, True])
-def test_supports_close_in_only_where_they_approach(solver: str, reverse: bool) -> None:
+def test_supports_close_in_only_where_they_approach(solver, reverse):
     scene = Scene(
         (Body("a", 1.0), Body("b", 1.0, 0.1)),
         (Spring("swing", (GROUND, "b"), Linear(400.0)),),
@@ -662,7 +655,7 @@ def impacts(recording: Recording) -> list[float]:
 
 
 @pytest.mark.parametrize("order", [("abutment", "deck"), ("deck", "abutment")])
-def test_a_joint_that_is_closed_as_a_tail_begins(order: tuple[str, str]) -> None:
+def test_a_joint_that_is_closed_as_a_tail_begins(order):
     # The tail of the wavelet has moved the support by 1e-156 m as the run begins.
     own = Ricker(1.0, 0.5, center=3.0)
     for support in (Support("abutment", 0.4), Support("abutment", motion=own)):
@@ -674,21 +667,21 @@ def test_a_joint_that_is_closed_as_a_tail_begins(order: tuple[str, str]) -> None
             assert impacts(other) == pytest.approx(impacts(one), abs=1e-7)
 
 
-def test_a_joint_that_was_closed_too_far_is_refused() -> None:
+def test_a_joint_that_was_closed_too_far_is_refused():
     scene = closed_beside(("abutment", "deck"), Support("abutment", 0.4))
     late = replace(scene, bodies=(Body("deck", 1e5, -1e-9),))
     with pytest.raises(InputError, match="not penetrated at the start"):
         response_of(late, "fast", duration=1.0)
 
 
-def test_a_rest_that_no_force_decides_does_not_come_again_for_ever() -> None:
+def test_a_rest_that_no_force_decides_does_not_come_again_for_ever():
     # Where the tail begins to be more than rounding the force is below zero, and no order tells it.
     found = run(closed_beside(("deck", "abutment"), Support("abutment", 0.4)), 6.0, "cvode", 1e-8)
     assert len(impacts(found)) == 6
 
 
 @pytest.mark.parametrize("name", ["moreau", "penalty"])
-def test_others_refuse(name: str) -> None:
+def test_others_refuse(name):
     for scene, word in (
         (pounding_on_two(), "supports"),
         (replace(pounding_pair(), forces=(Force("a", 1.0),)), "forces"),
@@ -697,7 +690,7 @@ def test_others_refuse(name: str) -> None:
             response_of(scene, name, settings={"time_step": 1e-3}, duration=1.0)
 
 
-def test_delays_in_one_call() -> None:
+def test_delays_in_one_call():
     scene = replace(pounding_on_two(), supports=(Support("pier", 0.05),))
     delays = [0.0, 0.03, 0.06]
     many = simulate_many(scene, {"support.pier.delay": delays}, rtol=1e-8)
@@ -710,7 +703,7 @@ def test_delays_in_one_call() -> None:
         simulate_many(scene, {"support.pier.delay": [0.1, -0.1]})
 
 
-def test_a_run_lasts_until_the_last_motion_has_died_down() -> None:
+def test_a_run_lasts_until_the_last_motion_has_died_down():
     record = Record(np.ones(11), 0.1)
     scene = Scene(
         (Body("a", 1.0),),
@@ -722,7 +715,7 @@ def test_a_run_lasts_until_the_last_motion_has_died_down() -> None:
     assert default_duration(scene, 0.0) == pytest.approx(1.5 + 5.0 * math.pi, rel=1e-14)
 
 
-def test_columns() -> None:
+def test_columns():
     response = response_of(pounding_on_two(), "fast", 1e-6, duration=2.0)
     table = response.history
     assert list(table.columns)[-3:] == ["s.pier", "sv.pier", "sf.pier"]
@@ -732,7 +725,7 @@ def test_columns() -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_forces_on_supports(solver: str) -> None:
+def test_forces_on_supports(solver):
     """What stands on pier and ground pushes them by what its mass resists."""
     scene = replace(pounding_on_two(), forces=(Force("b", 70.0),))
     table = response_of(scene, solver, 1e-9, duration=4.0).rows(jumps=False)
@@ -746,7 +739,7 @@ def test_forces_on_supports(solver: str) -> None:
     assert np.abs(table["sf.pier"] - bare - table["lambda.right"]).max() <= 1e-9
 
 
-def test_summary_has_base_shears() -> None:
+def test_summary_has_base_shears():
     """Of the ground and of each support apart, which the force on a support attains."""
     scene = replace(pounding_on_two(), contacts=pounding_on_two().contacts[:2])
     response = response_of(scene, "fast", 1e-8, duration=4.0, output_step=0.001)
@@ -776,7 +769,7 @@ def larger(scene: Scene, length: float, time: float, mass: float) -> Scene:
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("factors", [(4.0, 2.0, 8.0), (0.3, 7.0, 90.0)])
-def test_complete_similarity(solver: str, factors: tuple[float, float, float]) -> None:
+def test_complete_similarity(solver, factors):
     """Scenes of one set of Π-terms, that of the delay among them, move alike."""
     length, time, mass = factors
     scene = replace(pounding_on_two(), supports=(Support("pier", 0.15),))
@@ -812,7 +805,7 @@ def _sizes(recording: Recording) -> dict[str, tuple[int, ...]]:
     return sizes | {name: value.maximum.shape for name, value in extremes.items()}
 
 
-def test_nothing_in_a_recording_is_of_a_support(solver: str) -> None:
+def test_nothing_in_a_recording_is_of_a_support(solver):
     scene = pounding_pair()
     spring, *others = scene.springs
     moved = replace(spring, between=tuple("p" if e == GROUND else e for e in spring.between))

@@ -1,7 +1,5 @@
 """Where a rate given by its Taylor coefficients vanishes, against the roots of the polynomial."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
@@ -14,7 +12,7 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 
 @pytest.mark.parametrize("bend", [0.1, 1.0, 30.0])
 @pytest.mark.parametrize("seed", range(10))
-def test_turns_are_the_roots_of_the_rate(seed: int, bend: float) -> None:
+def test_turns_are_the_roots_of_the_rate(seed, bend):
     """With little bend the rate goes one way and has one root at most; with much it has several."""
     rng = np.random.default_rng(seed)
     c = rng.normal(size=9) * np.array([0.4, 1.0] + [bend] * 7)

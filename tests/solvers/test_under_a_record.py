@@ -1,7 +1,5 @@
 """Rows of bodies under a record beside CVODE: motion, events, peaks and rows are the same."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 
@@ -85,7 +83,7 @@ def solved(scene: Scene, end: float, solver: str, rtol: float) -> Recording:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_as_cvode(seed: int) -> None:
+def test_as_cvode(seed):
     scene, end = row(seed, 2 + seed % 6) if seed < 9 else row(seed, 20, 3.0)
     # In seed 6 bodies touch: cvode tells when to the square root of its tolerance, and is 6e-6 of
     # the motion off at 1e-11, 1e-7 at 1e-13, where fast is 5e-9 off at 1e-10.
@@ -106,7 +104,7 @@ def test_as_cvode(seed: int) -> None:
         np.testing.assert_allclose(rows, wanted, rtol=0.0, atol=far, err_msg=name)
 
 
-def test_rows_do_not_change_the_motion() -> None:
+def test_rows_do_not_change_the_motion():
     """Nor does being one of many, to the last bit."""
     scene, end = row(3, 5)
     with_rows = solved(scene, end, "fast", RTOL)
@@ -119,7 +117,7 @@ def test_rows_do_not_change_the_motion() -> None:
         assert (peaks == with_rows.displacement.maximum[b]).all()
 
 
-def test_plastic_impacts() -> None:
+def test_plastic_impacts():
     """Two bodies rest on each other, while others go on."""
     scene, end = row(5, 4)
     contacts = tuple(replace(contact, restitution=0.0) for contact in scene.contacts)

@@ -1,7 +1,5 @@
 """CVODE and IDA through scikit-sundae alone, as where the library's symbols are out of reach."""
 
-from __future__ import annotations
-
 import json
 import math
 import subprocess
@@ -29,7 +27,7 @@ from tests.solvers.scenes import pounding_pair
 
 
 @pytest.fixture
-def out_of_reach(monkeypatch: pytest.MonkeyPatch) -> None:
+def out_of_reach(monkeypatch):
     monkeypatch.setattr(library, "library", lambda: None)
     monkeypatch.setattr(library, "ida_library", lambda: None)
 
@@ -39,7 +37,7 @@ def _chosen(task: Task) -> object:
     return ida.integrator(task, model, scene_scales(task.scene, model, task.end))
 
 
-def test_both_are_chosen_there(out_of_reach) -> None:
+def test_both_are_chosen_there(out_of_reach):
     assert isinstance(integrator(1e-6, "Adams"), WrappedCvode)
     assert isinstance(_chosen(Task(pounding_pair(), 0.0, 1.0, 1e-6)), WrappedIda)
 
@@ -60,7 +58,7 @@ def test_both_are_chosen_there(out_of_reach) -> None:
         ),
     ],
 )
-def test_solved_problem(out_of_reach, name, rtol, accuracy, solver) -> None:
+def test_solved_problem(out_of_reach, name, rtol, accuracy, solver):
     problem = load()[name]
     response = response_of(problem.scene, solver, rtol, duration=problem.end)
     assert compare(problem, response, accuracy).failures == []
@@ -74,7 +72,7 @@ def _both(monkeypatch: pytest.MonkeyPatch, task: Task) -> tuple[Recording, Recor
     return ours, solver_named("ida").solve(task)
 
 
-def test_ida_gives_the_same_both_ways(monkeypatch) -> None:
+def test_ida_gives_the_same_both_ways(monkeypatch):
     """Rests, a record's history, energy and drift: the same to what the tolerance leaves."""
     rtol, end = 1e-8, 6.0
     task = Task(
@@ -94,7 +92,7 @@ def test_ida_gives_the_same_both_ways(monkeypatch) -> None:
     assert theirs.work.steps == pytest.approx(ours.work.steps, rel=0.3)
 
 
-def test_drift_of_ida_is_a_part_of_the_tolerance(out_of_reach) -> None:
+def test_drift_of_ida_is_a_part_of_the_tolerance(out_of_reach):
     """What is seen of a state is closed; what IDA itself leaves open is reported."""
     problem = load()["B03"]
     for rtol in (1e-6, 1e-9):
@@ -104,7 +102,7 @@ def test_drift_of_ida_is_a_part_of_the_tolerance(out_of_reach) -> None:
         assert 0.0 < max(recording.drift.gap, recording.drift.gap_rate) < rtol
 
 
-def test_a_failure_of_ida_keeps_what_was_computed(out_of_reach) -> None:
+def test_a_failure_of_ida_keeps_what_was_computed(out_of_reach):
     scene = Scene((Body("m", 1.0, 1e-3),), (Spring("k", (GROUND, "m"), Linear(1.0)),))
     task = Task(scene, 0.0, 10.0, 1e-6, output_times=np.linspace(0.0, 10.0, 101))
     chosen = _chosen(task)
@@ -138,7 +136,7 @@ print(json.dumps([times, loaded]))
 """
 
 
-def test_nothing_that_needs_the_symbols_is_loaded_there() -> None:
+def test_nothing_that_needs_the_symbols_is_loaded_there():
     """In a process of its own: what is linked to them would end it where they are missing."""
     done = subprocess.run(
         [sys.executable, "-c", BOUNCE], capture_output=True, text=True, check=True, timeout=600

@@ -1,7 +1,5 @@
 """The same task by other ways into SUNDIALS."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Studies that take a moment."""
 
-from pathlib import Path
-
 import pytest
 
 from eventpound.study.reading import load_study
@@ -33,7 +31,7 @@ count = 40
 
 
 @pytest.fixture
-def make_study(tmp_path: Path):
+def make_study(tmp_path):
     """Loader of a study from the text of its case."""
 
     def make(text: str = ELASTOPLASTIC, name: str = "case"):

@@ -7,8 +7,6 @@ impacts. At one, where the gap g(x, p) is zero, the state jumps to R(x, p), and 
     R_x S + R_p + (R_x f- - f+) dt/dp,    dt/dp = -(g_x S + g_p) / (g_x f-).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

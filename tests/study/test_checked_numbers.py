@@ -1,7 +1,5 @@
 """Numbers of many variants are checked where they meet others."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The study of contact laws: what each comes to with its stiffness, beside Newton's law."""
 
-from __future__ import annotations
-
 import csv
 from dataclasses import replace
 
@@ -25,7 +23,7 @@ def newton(restitution: float) -> float:
 
 
 @pytest.fixture(scope="module")
-def stiffest() -> dict[str, float]:
+def stiffest():
     """What is left with the stiffest of each law."""
     study = load_study(FOLDER / "contact-laws").study
     table = header(study) + b"".join(compute(study, chunk) for chunk in study.chunks())
@@ -35,15 +33,13 @@ def stiffest() -> dict[str, float]:
     return {row["part"]: float(row[KEY]) for row in rows}
 
 
-def test_the_line_is_newtons_law() -> None:
+def test_the_line_is_newtons_law():
     (plan,) = load_study(FOLDER / "contact-laws").figures
     assert plan.levels == pytest.approx((newton(0.6),), abs=1e-7)
 
 
 @pytest.mark.sweep
-def test_laws_come_to_the_rigid_one_of_the_restitution_that_they_give(
-    stiffest: dict[str, float],
-) -> None:
+def test_laws_come_to_the_rigid_one_of_the_restitution_that_they_give(stiffest):
     # Times in contact of 0.6 ms and 0.8 ms in a motion of a second.
     assert stiffest["linear"] == pytest.approx(newton(1.0), rel=5e-3)
     assert stiffest["hertz"] == pytest.approx(newton(1.0), rel=5e-3)

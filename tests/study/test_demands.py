@@ -1,7 +1,5 @@
 """What is decided by a scene: elements by kind, seats, capacities; beside SciPy and by hand."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -92,7 +90,7 @@ def by_scipy() -> dict[str, float]:
     }
 
 
-def test_forces_seats_and_shears_are_those_of_an_independent_program() -> None:
+def test_forces_seats_and_shears_are_those_of_an_independent_program():
     run = simulate(bridge(), "fast", rtol=1e-10, duration=END)
     table = design_of_run(run).set_index("quantity")
     for name, value in by_scipy().items():
@@ -105,7 +103,7 @@ def test_forces_seats_and_shears_are_those_of_an_independent_program() -> None:
     assert kinds["seats.ledge.max_opening"] == "Seats"
 
 
-def test_slack_that_is_left_is_told_by_what_keeps_least(tmp_path: Path) -> None:
+def test_slack_that_is_left_is_told_by_what_keeps_least(tmp_path):
     cable = (
         '[[spring]]\nname = "cable"\nbetween = ["ground", "deck"]\nlaw = "bilinear-elastic"\n'
         'compression = 0\nextension = "1 kN/m"\noffset = "2 m"\n'
@@ -144,7 +142,7 @@ duration = "3 s"
 """
 
 
-def test_a_building_has_shear_roof_and_the_storey_of_its_largest_drift(tmp_path: Path) -> None:
+def test_a_building_has_shear_roof_and_the_storey_of_its_largest_drift(tmp_path):
     (tmp_path / "case.toml").write_text(FRAME)
     case = load_case(tmp_path)
     assert dict(case.run.stated.capacities) == {
@@ -178,7 +176,7 @@ def suite_with(tmp_path: Path, capacity: str, more: str = "") -> pd.DataFrame:
     return design_numbers(load_case(tmp_path)).set_index("quantity")
 
 
-def test_a_demand_is_held_at_the_fractile_that_is_stated(tmp_path: Path) -> None:
+def test_a_demand_is_held_at_the_fractile_that_is_stated(tmp_path):
     more = '[[seat]]\nname = "end"\nbetween = ["ground", "deck"]\ncapacity = { length = "1 m" }\n'
     more += "[capacity]\nfractile = 60\n"
     table = suite_with(tmp_path, "{ ductility = 3 }", more)
@@ -194,7 +192,7 @@ def test_a_demand_is_held_at_the_fractile_that_is_stated(tmp_path: Path) -> None
     assert runs["demand_over_capacity"].to_numpy() == pytest.approx(ratios.to_numpy(), rel=1e-12)
 
 
-def test_what_has_to_be_left_is_held_from_below(tmp_path: Path) -> None:
+def test_what_has_to_be_left_is_held_from_below(tmp_path):
     more = '[[spring]]\nname = "cable"\nbetween = ["ground", "deck"]\nlaw = "bilinear-elastic"\n'
     more += "compression = 0\nextension = 1e3\noffset = 10\n"
     name = "springs.cable.slack_left"
@@ -208,7 +206,7 @@ def test_what_has_to_be_left_is_held_from_below(tmp_path: Path) -> None:
     assert runs["demand_over_capacity"].to_numpy() == pytest.approx(9.99 / runs[name], rel=1e-12)
 
 
-def test_quantities_of_the_case_stand_in_its_report(tmp_path: Path) -> None:
+def test_quantities_of_the_case_stand_in_its_report(tmp_path):
     words = '["velocity.<body>.abs_max", "free.peaks.deck.abs_max", "impacts"]'
     table = suite_with(tmp_path, "{ ductility = 9 }", f"[run]\nquantities = {words}\n")
     asked = table[table["kind"] == "Asked for in the case"]
@@ -223,7 +221,7 @@ def test_quantities_of_the_case_stand_in_its_report(tmp_path: Path) -> None:
     assert asked.loc["impacts", ["50 %", "84 %"]].tolist() == np.ceil(fractiles).tolist()
 
 
-def test_a_capacity_has_any_unit_of_its_quantity(tmp_path: Path) -> None:
+def test_a_capacity_has_any_unit_of_its_quantity(tmp_path):
     name = "acceleration.deck.abs_max"
     suite_with(tmp_path, "{ ductility = 9 }", f'[capacity]\n"{name}" = "0.5 g"\n')
     case = load_case(tmp_path)
@@ -231,7 +229,7 @@ def test_a_capacity_has_any_unit_of_its_quantity(tmp_path: Path) -> None:
     assert read_case(case.understood, tmp_path / "case.toml").run.stated == case.run.stated
 
 
-def test_a_pier_with_a_height_is_no_storey() -> None:
+def test_a_pier_with_a_height_is_no_storey():
     scene = bridge()
     pier = replace(scene.springs[0], height=7.0)
     scene = replace(scene, springs=(pier, *scene.springs[1:]))
@@ -243,7 +241,7 @@ def test_a_pier_with_a_height_is_no_storey() -> None:
     assert not [name for name in table.index if name.startswith("structures.")]
 
 
-def test_where_a_record_failed_nobody_knows_whether_all_would_pass(tmp_path: Path) -> None:
+def test_where_a_record_failed_nobody_knows_whether_all_would_pass(tmp_path):
     (tmp_path / "e.txt").write_text("0.1\nNaN\n")
     table = suite_with(tmp_path, '{ ductility = 1e6, force = "1 kN" }')
     assert table.loc["springs.frame.ductility", "passes"] == "not known"
@@ -272,9 +270,7 @@ def test_where_a_record_failed_nobody_knows_whether_all_would_pass(tmp_path: Pat
         ("{}", '[[seat]]\nbetween = ["ground", "dek"]\n', "between: found ['ground', 'dek']"),
     ],
 )
-def test_what_no_capacity_or_seat_is_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], capacity: str, more: str, said: str
-) -> None:
+def test_what_no_capacity_or_seat_is_is_refused(tmp_path, capsys, capacity, more, said):
     (tmp_path / "a.txt").write_text(time_series(0.2))
     text = CASE.format('suite = "?.txt"\nunits = "g"\ntime_step = "0.02 s"')
     text = text.replace('name = "frame"', f'name = "frame"\ncapacity = {capacity}') + more
@@ -286,15 +282,13 @@ def test_what_no_capacity_or_seat_is_is_refused(
     assert not (tmp_path / "results").exists()
 
 
-def test_a_seat_of_python_is_checked() -> None:
+def test_a_seat_of_python_is_checked():
     scene = Scene((Body("deck", 1e5),), seats=(Seat("end", (GROUND, "pier")),))
     with pytest.raises(InputError, match=r"seat 1 \(end\): between"):
         simulate(scene, duration=1.0)
 
 
-def test_curves_by_an_axis_are_those_of_its_values(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_curves_by_an_axis_are_those_of_its_values(tmp_path, capsys):
     rng, rows = np.random.default_rng(4), ["pga,gap,demand,success,message"]
     for gap in (0.01, 0.02):
         for pga in np.repeat([1.0, 2.0, 3.0, 4.0], 20):

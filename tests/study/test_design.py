@@ -1,9 +1,5 @@
 """Design numbers: those of single runs, with fractiles over records, as tables and as text."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -35,7 +31,7 @@ JOINT = "contacts.joint."
 
 
 @pytest.fixture
-def suite(tmp_path: Path) -> Path:
+def suite(tmp_path):
     for name, amplitude in RECORDS.items():
         (tmp_path / f"{name}.txt").write_text(time_series(amplitude))
     (tmp_path / "e.txt").write_text("0.1\nNaN\n")
@@ -48,7 +44,7 @@ def by_name(table: pd.DataFrame) -> pd.DataFrame:
     return table.set_index("quantity")
 
 
-def test_fractiles_are_of_the_runs_of_each_record(suite: Path) -> None:
+def test_fractiles_are_of_the_runs_of_each_record(suite):
     case = load_case(suite)
     table = by_name(design_numbers(case))
     assert case.suite is not None
@@ -69,7 +65,7 @@ def test_fractiles_are_of_the_runs_of_each_record(suite: Path) -> None:
         assert found["under"] == members[int(np.argmax(values))].name
 
 
-def test_records_that_pound_are_counted_and_others_have_no_impulse(suite: Path) -> None:
+def test_records_that_pound_are_counted_and_others_have_no_impulse(suite):
     table = by_name(design_numbers(load_case(suite)))
     assert table.loc[JOINT + "max_impulse", "pounding"] == 3
     assert pd.isna(table.loc["peaks.deck.abs_max", "pounding"])
@@ -79,7 +75,7 @@ def test_records_that_pound_are_counted_and_others_have_no_impulse(suite: Path) 
     assert [found[key] for key in ("pounding", "50 %", "largest")] == [0, 0.0, 0.0]
 
 
-def test_a_run_has_a_value_of_each_demand(suite: Path) -> None:
+def test_a_run_has_a_value_of_each_demand(suite):
     text = (suite / "case.toml").read_text().replace("suite = ", "file = ").replace("?", "d")
     (suite / "case.toml").write_text(text + '[run]\ncontact_stiffness = "2e9 N/m"\n')
     case = load_case(suite)
@@ -90,7 +86,7 @@ def test_a_run_has_a_value_of_each_demand(suite: Path) -> None:
     assert JOINT + "estimated_force" in set(table["quantity"])
 
 
-def test_bearings_and_soil_have_what_they_are_designed_for() -> None:
+def test_bearings_and_soil_have_what_they_are_designed_for():
     ends = (GROUND, "deck")
     pier = DegradingBoucWen(0.0, 1e4, 0.01, strength_degradation=0.1, stiffness_degradation=0.1)
     springs = (
@@ -116,7 +112,7 @@ def test_bearings_and_soil_have_what_they_are_designed_for() -> None:
         assert lost + left == 1.0
 
 
-def test_the_largest_loss_is_that_of_the_strongest_record(suite: Path) -> None:
+def test_the_largest_loss_is_that_of_the_strongest_record(suite):
     text = (suite / "case.toml").read_text().replace('"bouc-wen"', '"degrading-bouc-wen"')
     degrading = "hardening = 0.05\nstrength_degradation = 0.1\nstiffness_degradation = 0.2"
     (suite / "case.toml").write_text(text.replace("hardening = 0.05", degrading))
@@ -127,14 +123,14 @@ def test_the_largest_loss_is_that_of_the_strongest_record(suite: Path) -> None:
         assert found["under"] == "d.txt"
 
 
-def test_a_scene_of_two_bodies_has_what_codes_combine() -> None:
+def test_a_scene_of_two_bodies_has_what_codes_combine():
     table = by_name(design_numbers(row()))
     assert table.loc[JOINT + "srss", "unit"] == "m"
     assert table.loc[JOINT + "absolute_sum", "value"] > table.loc[JOINT + "srss", "value"]
     assert "contacts.wall.srss" not in table.index
 
 
-def test_a_study_has_them_at_each_of_its_points(suite: Path) -> None:
+def test_a_study_has_them_at_each_of_its_points(suite):
     gaps = [0.01, 0.02]
     study = Study(load_case(suite), {"contact.joint.gap": gaps})
     table = design_numbers(study)
@@ -148,21 +144,19 @@ def test_a_study_has_them_at_each_of_its_points(suite: Path) -> None:
     assert impulses.iloc[0] != impulses.iloc[1]
 
 
-def test_what_is_no_case_is_refused() -> None:
+def test_what_is_no_case_is_refused():
     with pytest.raises(InputError, match="design_numbers: case"):
         design_numbers("bridge")  # type: ignore[arg-type]
 
 
-def test_every_demand_is_a_quantity() -> None:
+def test_every_demand_is_a_quantity():
     from eventpound.quantities.listed import LISTED
 
     assert set(DEMANDS) <= {quantity.path for quantity in LISTED}
     assert find(row(), JOINT + "avoiding_gap_alone") is not None
 
 
-def test_the_command_prints_tables_and_writes_one(
-    suite: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_prints_tables_and_writes_one(suite, capsys):
     assert main(["report", str(suite)]) == 0
     out, err = capsys.readouterr()
     assert "Contact joint: deck | barrier, gap 12.7 mm, struck under 3 of 4 records" in out
@@ -182,9 +176,7 @@ def shown_largest(table: pd.DataFrame) -> str:
     return three_digits(1e3 * table.loc[JOINT + "seat_used", "largest"])
 
 
-def test_the_command_takes_a_run_and_a_study(
-    suite: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_takes_a_run_and_a_study(suite, capsys):
     assert main(["report", str(suite), "--suite", str(suite / "d.txt")]) == 0
     text = (suite / "case.toml").read_text()
     one = text.replace("suite = ", "file = ").replace("?", "d")
@@ -222,13 +214,11 @@ def test_the_command_takes_a_run_and_a_study(
         (float("nan"), "–"),
     ],
 )
-def test_three_digits_without_an_exponent(value: float, text: str) -> None:
+def test_three_digits_without_an_exponent(value, text):
     assert three_digits(value) == text
 
 
-def test_a_run_and_a_suite_say_how_many_impacts_matter(
-    suite: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_and_a_suite_say_how_many_impacts_matter(suite, capsys):
     assert main(["run", str(suite), "--no-figures"]) == 0
     table = pd.read_csv(suite / "results" / "suite.csv")
     count, faster = (int(table[JOINT + word].sum()) for word in ("impacts", "impacts_faster"))
@@ -245,9 +235,7 @@ def test_a_run_and_a_suite_say_how_many_impacts_matter(
     assert f"ductility {three_digits(found.summary['springs.frame.ductility'])}" in out
 
 
-def test_records_without_bodies_and_suites_that_all_fail_are_no_design(
-    suite: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_records_without_bodies_and_suites_that_all_fail_are_no_design(suite, capsys):
     (suite / "f.txt").write_text("0.1\nNaN\n")
     assert main(["report", str(suite), "--suite", str(suite / "[ef].txt")]) == 1
     assert "all 2 records failed, the first because of: line 2" in capsys.readouterr().err
@@ -277,7 +265,7 @@ def white_noise(seed: int, count: int) -> Record:
     return Record(np.random.default_rng(seed).normal(0.0, 1.0, count), 0.02)
 
 
-def test_the_spectral_difference_is_what_two_linear_buildings_need_under_white_noise() -> None:
+def test_the_spectral_difference_is_what_two_linear_buildings_need_under_white_noise():
     needed, cqc, srss = [], [], []
     for seed in range(12):
         table = by_name(design_numbers(two_buildings(white_noise(seed, 1500))))
@@ -292,7 +280,7 @@ def test_the_spectral_difference_is_what_two_linear_buildings_need_under_white_n
     assert np.mean(needed) < 0.9 * np.mean(srss)
 
 
-def test_ten_records_need_what_a_bisection_finds(tmp_path: Path) -> None:
+def test_ten_records_need_what_a_bisection_finds(tmp_path):
     text = CASE.format('suite = "?.txt"\nunits = "g"\ntime_step = "0.02 s"')
     (tmp_path / "case.toml").write_text(text)
     for seed in range(10):

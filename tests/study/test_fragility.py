@@ -1,9 +1,6 @@
 """Fragility against published maximum likelihood fits, and what has no curve."""
 
-from __future__ import annotations
-
 import re
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -16,7 +13,7 @@ from eventpound.errors import InputError
 from eventpound.study.fragility import fit_capacities, fit_counts, fragility_table
 
 
-def test_beetles_of_bliss() -> None:
+def test_beetles_of_bliss():
     """Bliss (1935), the probit fit that Agresti and Dobson print: -34.94 + 19.73 log10 x."""
     dose = 10.0 ** np.array([1.6907, 1.7242, 1.7552, 1.7842, 1.8113, 1.8369, 1.8610, 1.8839])
     total = np.array([59.0, 60.0, 62.0, 56.0, 63.0, 59.0, 62.0, 60.0])
@@ -27,7 +24,7 @@ def test_beetles_of_bliss() -> None:
     assert -slope * np.log10(fit.theta) == pytest.approx(-34.94, abs=0.005)
 
 
-def test_locomotives_of_nelson() -> None:
+def test_locomotives_of_nelson():
     """Nelson (1982), 37 failures of 96, the others censored: mean 2.2223 and 0.3064 of log10."""
     failed = [
         22.5, 37.5, 46.0, 48.5, 51.5, 53.0, 54.5, 57.5, 66.5, 68.0, 69.5, 76.5, 77.0, 78.5, 80.0,
@@ -39,7 +36,7 @@ def test_locomotives_of_nelson() -> None:
     assert fit.beta / np.log(10.0) == pytest.approx(0.3064, abs=1e-4)
 
 
-def test_example_of_baker() -> None:
+def test_example_of_baker():
     """The eight stripes of 40 motions that come with Baker (2015), by another optimiser."""
     x = np.array([0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0])
     collapses = np.array([0.0, 0.0, 0.0, 4.0, 6.0, 13.0, 12.0, 16.0])
@@ -54,7 +51,7 @@ def test_example_of_baker() -> None:
     assert fit.probability(np.array([fit.theta]))[0] == pytest.approx(0.5)
 
 
-def test_errors_are_those_of_repeated_experiments() -> None:
+def test_errors_are_those_of_repeated_experiments():
     """Of 400 experiments with known answers: no bias, and the spread that is stated."""
     rng = np.random.default_rng(5)
     x = np.linspace(0.4, 2.0, 9)
@@ -69,7 +66,7 @@ def test_errors_are_those_of_repeated_experiments() -> None:
     assert beta.std() == pytest.approx(np.mean([fit.error_beta for fit in fits]), rel=0.15)
 
 
-def test_capacities_that_are_known_of_both_sides() -> None:
+def test_capacities_that_are_known_of_both_sides():
     """Censored capacities are neither thrown away nor taken for known."""
     rng = np.random.default_rng(2)
     capacity = np.exp(rng.normal(np.log(3.0), 0.5, 20_000))
@@ -91,7 +88,7 @@ def test_capacities_that_are_known_of_both_sides() -> None:
         ([4, 2, 1], "does not grow"),
     ],
 )
-def test_no_curve(exceeded: list[int], said: str) -> None:
+def test_no_curve(exceeded, said):
     fit = fit_counts(np.array([1.0, 2.0, 3.0]), np.full(3, 5.0), np.array(exceeded, float))
     assert said in fit.note
     assert np.isnan([fit.theta, fit.beta]).all()
@@ -106,7 +103,7 @@ ROWS = pd.DataFrame(
 )
 
 
-def test_capacities_of_a_table() -> None:
+def test_capacities_of_a_table():
     columns = "excitation.psa", "peaks.deck.abs_max"
     found = fragility_table(ROWS, *columns, [0.025, 0.5], "excitation.file")
     # Linear between two intensities: 1.75 and 1.25; the third is censored at 2, its last number.
@@ -127,7 +124,7 @@ def test_capacities_of_a_table() -> None:
         ("peaks.deck.abs_max", "excitation.psa", "excitation.file", "several rows"),
     ],
 )
-def test_refused(measure: str, demand: str, records: str | None, said: str) -> None:
+def test_refused(measure, demand, records, said):
     with pytest.raises(InputError, match=said):
         fragility_table(ROWS, measure, demand, [0.1], records)
 
@@ -154,7 +151,7 @@ values = ["0.1 g", "0.2 g", "0.4 g"]
 """
 
 
-def test_command_on_a_study_by_psa(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_on_a_study_by_psa(tmp_path, capsys):
     rng = np.random.default_rng(7)
     (tmp_path / "records").mkdir()
     for i in range(6):
@@ -202,7 +199,7 @@ def test_command_on_a_study_by_psa(tmp_path: Path, capsys: pytest.CaptureFixture
     assert not (tmp_path / "results" / "fragility-2.csv").exists()
 
 
-def test_an_intensity_that_is_the_same_for_all_is_none() -> None:
+def test_an_intensity_that_is_the_same_for_all_is_none():
     """Of records scaled to one PGA only the rounding of it differs."""
     rounded = 2.94 * (1.0 + np.finfo(float).eps * np.arange(6))
     table = pd.DataFrame({"PGA": rounded, "u": [1.0, 3.0, 1.0, 2.0, 3.0, 1.0]})

@@ -1,7 +1,5 @@
 """Records that are scaled by much are told, however they are scaled, in one line."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -17,7 +15,7 @@ READ = 'units = "g"\ntime_step = "0.02 s"\n'
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def folder(tmp_path):
     for name, amplitude in PEAKS.items():
         (tmp_path / f"{name}.txt").write_text(time_series(amplitude))
     return tmp_path
@@ -42,9 +40,7 @@ def told(folder: Path, excitation: str, rest: str, capsys: pytest.CaptureFixture
         ('pga = "0.01 g"', ""),
     ],
 )
-def test_a_suite_lists_its_records(
-    folder: Path, size: str, factors: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_suite_lists_its_records(folder, size, factors, capsys):
     said = told(folder, f'suite = "?.txt"\n{size}', "", capsys)
     for name in PEAKS:
         assert (f"{name}.txt times " in said) == (name in factors)
@@ -52,7 +48,7 @@ def test_a_suite_lists_its_records(
         assert f"{len(factors)} of 3 records are scaled by more than" in said
 
 
-def test_a_run_says_it_of_its_record(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_says_it_of_its_record(folder, capsys):
     psa = 'file = "a.txt"\npsa = "3 g"\npsa_period = "T1"'
     said = told(folder, psa, "", capsys)
     assert "the record is scaled by more than 4 (largest_scale in [excitation])" in said
@@ -61,7 +57,7 @@ def test_a_run_says_it_of_its_record(folder: Path, capsys: pytest.CaptureFixture
     assert told(folder, f"{psa}\nlargest_scale = 1e6", "", capsys) == ""
 
 
-def test_a_study_says_it_in_one_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_study_says_it_in_one_line(folder, capsys):
     axis = '[study]\n[[study.axis]]\nkey = "excitation.{}"\nvalues = {}\n'
     files = axis.format("file", ["a.txt", "b.txt", "c.txt"])
     pga = axis.format("pga", [0.1, 0.5, 2.0, 10.0]).removeprefix("[study]\n")
@@ -84,7 +80,7 @@ def _written(folder: Path, excitation: str) -> Path:
     return folder
 
 
-def test_of_many_runs_only_the_largest_are_named() -> None:
+def test_of_many_runs_only_the_largest_are_named():
     factors = [(f"r{i}", 5.0 + i + j) for i in range(9) for j in range(4)]
     said = large_scales(factors, 4.0)
     assert said.endswith("r8 times 16, r7 times 15, r6 times 14, r5 times 13 and 5 more")
@@ -94,9 +90,7 @@ def test_of_many_runs_only_the_largest_are_named() -> None:
 @pytest.mark.parametrize(
     ("value", "said"), [("-1", "accepted: a positive number"), ('"1 m"', "1 m")]
 )
-def test_a_limit_that_is_none_is_refused(
-    folder: Path, value: str, said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_limit_that_is_none_is_refused(folder, value, said, capsys):
     _written(folder, f'file = "a.txt"\nlargest_scale = {value}')
     assert main(["check", str(folder)]) == 2
     err = capsys.readouterr().err
@@ -104,9 +98,7 @@ def test_a_limit_that_is_none_is_refused(
     assert said in err
 
 
-def test_a_support_has_the_limit_of_the_case(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_support_has_the_limit_of_the_case(folder, capsys):
     own = '[[support]]\nname = "east"\nexcitation = { kind = "record", file = "b.txt", scale = 5'
     own = f"{own}, {READ.replace(chr(10), ', ').removesuffix(', ')}"
     said = told(folder, 'file = "c.txt"', own + " }\n", capsys)

@@ -1,7 +1,5 @@
 """Many variants in one call give what each gives by itself, to the last bit."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -173,7 +171,7 @@ SCENES: dict[str, tuple[Scene, float | None, dict[str, Floats]]] = {
 
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("accelerations", [False, True])
-def test_same_as_one_by_one(name: str, accelerations: bool) -> None:
+def test_same_as_one_by_one(name, accelerations):
     scene, duration, parameters = SCENES[name]
     result = simulate_many(
         scene, parameters, duration=duration, accelerations=accelerations, workers=2
@@ -184,7 +182,7 @@ def test_same_as_one_by_one(name: str, accelerations: bool) -> None:
 
 
 @pytest.mark.parametrize("seed", [255, 274, 505, 763, 891])
-def test_no_variant_depends_on_those_before_it(seed: int) -> None:
+def test_no_variant_depends_on_those_before_it(seed):
     """Rows under a record in which a gap and a spring may be what a step ends with."""
     scene, duration = random_scene(seed)
     key = f"contact.{scene.contacts[0].name}.restitution"

@@ -1,7 +1,5 @@
 """A prepared scene gives with other numbers what a scene with these numbers gives by itself."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The bridge under real records: the fast solver beside CVODE on some of every kind."""
 
-from __future__ import annotations
-
 import pytest
 
 from eventpound import load_case, simulate
@@ -16,7 +14,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def test_peaks_agree_with_the_reference() -> None:
+def test_peaks_agree_with_the_reference():
     case = load_case(CASE, str(INDEX))
     assert case.suite is not None
     members = case.suite.members(case.directory)

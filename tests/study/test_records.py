@@ -32,7 +32,7 @@ READ = 'units = "g"\ntime_step = "0.02 s"\n'
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def folder(tmp_path):
     for i, amplitude in enumerate((0.2, 0.5, 0.8, 0.4)):
         # Of different lengths.
         lines = time_series(amplitude).splitlines()
@@ -51,7 +51,7 @@ def table_of(study, folder: Path):
     return read_table(folder / "results")
 
 
-def test_rows_are_those_of_an_axis_of_files(folder: Path) -> None:
+def test_rows_are_those_of_an_axis_of_files(folder):
     found = table_of(study_of(folder), folder)
     assert list(found.columns[:3]) == ["record", "contact.joint.gap", "excitation.pga"]
     assert found["record"].tolist() == [f"{i}.txt" for i in range(4) for _ in range(6)]
@@ -64,7 +64,7 @@ def test_rows_are_those_of_an_axis_of_files(folder: Path) -> None:
     assert found["excitation.time_step"].unique().tolist() == [0.02]
 
 
-def test_rows_are_those_of_a_suite(folder: Path) -> None:
+def test_rows_are_those_of_a_suite(folder):
     text = CASE.format('suite = "?.txt"\n' + READ)
     study = '[study]\nquantities = ["peaks.deck.abs_max", "contacts.joint.sum_impulse"]\n'
     (folder / "case.toml").write_text(text + study)
@@ -75,7 +75,7 @@ def test_rows_are_those_of_a_suite(folder: Path) -> None:
         assert found[name].tolist() == suite[name].tolist()
 
 
-def test_rows_do_not_depend_on_chunks_or_engines(folder: Path) -> None:
+def test_rows_do_not_depend_on_chunks_or_engines(folder):
     study = study_of(folder)
     whole = compute(study, Chunk(0, 0, 0, 24))
     parts = [(0, 1), (1, 7), (7, 9), (9, 24)]
@@ -85,7 +85,7 @@ def test_rows_do_not_depend_on_chunks_or_engines(folder: Path) -> None:
     assert b"".join(found[chunk] for chunk in chunks) == whole
 
 
-def test_a_record_that_cannot_be_read_is_rows_with_its_reason(folder: Path) -> None:
+def test_a_record_that_cannot_be_read_is_rows_with_its_reason(folder):
     good = table_of(study_of(folder), folder)
     (folder / "2.txt").write_text("0.1\n0.2\nNaN\n0.1\n")
     study = study_of(folder)
@@ -101,7 +101,7 @@ def test_a_record_that_cannot_be_read_is_rows_with_its_reason(folder: Path) -> N
     assert study.digest != study_of(folder, 'records = "[013].txt"').digest
 
 
-def test_other_solvers_agree(folder: Path) -> None:
+def test_other_solvers_agree(folder):
     for i in (1, 2):
         (folder / f"{i}.txt").unlink()
     fast = table_of(study_of(folder), folder)
@@ -120,7 +120,7 @@ def test_other_solvers_agree(folder: Path) -> None:
         ("records = 3", ["[study]", "records", "3"]),
     ],
 )
-def test_wrong_records_are_refused(records, words, folder, capsys) -> None:
+def test_wrong_records_are_refused(records, words, folder, capsys):
     with pytest.raises(InputError) as error:
         study_of(folder, records)
     for word in words:
@@ -129,7 +129,7 @@ def test_wrong_records_are_refused(records, words, folder, capsys) -> None:
     assert not (folder / "results").exists()
 
 
-def test_records_are_of_records_only(folder: Path) -> None:
+def test_records_are_of_records_only(folder):
     (folder / "case.toml").write_text(
         CASE.format("").replace('kind = "record"', 'kind = "sine"\namplitude = 1\nperiod = 1')
         + AXES.format(records='records = "?.txt"', further="")
@@ -138,7 +138,7 @@ def test_records_are_of_records_only(folder: Path) -> None:
         load_study(folder)
 
 
-def test_no_record_that_can_be_read_is_an_error(folder: Path) -> None:
+def test_no_record_that_can_be_read_is_an_error(folder):
     for path in folder.glob("?.txt"):
         path.write_text("nothing")
     with pytest.raises(InputError, match=r"\.txt"):

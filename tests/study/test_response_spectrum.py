@@ -1,7 +1,5 @@
 """Response spectra against Chopra's numbers, the piecewise closed form, and limits of a pulse."""
 
-from __future__ import annotations
-
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
@@ -51,7 +49,7 @@ def largest(record: Record, period: float, ratio: float) -> float:
 
 
 @pytest.mark.parametrize(("period", "ratio"), [(0.2, 0.05), (0.7, 0.0), (6.0, 0.2)])
-def test_against_the_piecewise_exact_response(period: float, ratio: float) -> None:
+def test_against_the_piecewise_exact_response(period, ratio):
     record = Record(np.random.default_rng(4).normal(0.0, 2.0, 120), 0.02)
     spectrum = response_spectrum(record, ratio, [period])
     # Samples a 400th of a step apart err by (w h)^2 / 8, 3e-7 at 0.2 s; the solver by its rtol.
@@ -66,13 +64,13 @@ def test_against_the_piecewise_exact_response(period: float, ratio: float) -> No
     ("period", "ratio", "inches"),
     [(0.5, 0.02, 2.67), (1.0, 0.02, 5.97), (2.0, 0.02, 7.47), (2.0, 0.0, 9.91), (2.0, 0.05, 5.37)],
 )
-def test_deformations_of_chopra_under_el_centro(period: float, ratio: float, inches: float) -> None:
+def test_deformations_of_chopra_under_el_centro(period, ratio, inches):
     # Figures 6.4.1 and 6.4.2 print two decimals; his record and method have their own rounding.
     found = response_spectrum(el_centro(), ratio, [period])["SD"][0] / INCH
     assert found == pytest.approx(inches, rel=0.01)
 
 
-def test_limits_of_a_pulse() -> None:
+def test_limits_of_a_pulse():
     pulse = Sine(3.0, 1.0)
     spectrum = response_spectrum(pulse, 0.05, [0.002, 100.0])
     # A stiff oscillator follows the ground; a soft one stays where it was.
@@ -90,17 +88,17 @@ def test_limits_of_a_pulse() -> None:
         ("5 m", [1], "5 m"),
     ],
 )
-def test_refused(damping: float | str, periods: list[float], said: str) -> None:
+def test_refused(damping, periods, said):
     with pytest.raises(InputError, match=said):
         response_spectrum(Sine(1.0, 1.0), damping, periods)
 
 
-def test_a_motion_without_end() -> None:
+def test_a_motion_without_end():
     with pytest.raises(InputError, match="needs a motion that ends"):
         response_spectrum(Harmonic(1.0, 1.0))
 
 
-def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command(tmp_path, capsys):
     record = tmp_path / "a.txt"
     values = np.random.default_rng(1).normal(0.0, 0.1, 200)
     record.write_text("\n".join(f"{v:.6f}" for v in values))
@@ -120,7 +118,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize("ratio", [0.02, 0.05, 0.2])
-def test_spectrum_of_pyrotd(ratio: float) -> None:
+def test_spectrum_of_pyrotd(ratio):
     """PyRotD goes by Fourier series: of the same straight lines, sampled ever more finely.
 
     They are periodic, so that the record is followed by rest until a vibration has died away; a

@@ -1,7 +1,5 @@
 """Records that are scaled by much are told to a call in Python, too: once, in one line."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -43,7 +41,7 @@ def said(call: Callable[[], object]) -> list[str]:
 
 
 @pytest.mark.parametrize("way", ["pga = 12", 'target = [[0.1, "3 g"], [2.0, "3 g"]]'])
-def test_a_suite_names_its_records(tmp_path: Path, way: str) -> None:
+def test_a_suite_names_its_records(tmp_path, way):
     between = '\ntarget_periods = ["0.2 s", "1 s"]' if "target" in way else ""
     case = folder(tmp_path, f'suite = "?.txt"\n{way}{between}')
     scale = simulate_suite(
@@ -59,7 +57,7 @@ def test_a_suite_names_its_records(tmp_path: Path, way: str) -> None:
         assert "\n" not in text
 
 
-def test_a_study_of_intensities_says_it_once(tmp_path: Path) -> None:
+def test_a_study_of_intensities_says_it_once(tmp_path):
     case = folder(tmp_path, 'suite = "?.txt"\npga = 1')
     study = Study(case, LEVELS, quantities=["peaks.deck.abs_max"])
     for call in (study.run, lambda: design_numbers(study)):
@@ -67,20 +65,20 @@ def test_a_study_of_intensities_says_it_once(tmp_path: Path) -> None:
         assert text.startswith("6 of 9 runs scale their record by more than 4")
 
 
-def test_of_one_record_its_file_is_named(tmp_path: Path) -> None:
+def test_of_one_record_its_file_is_named(tmp_path):
     case = folder(tmp_path, 'file = "b.txt"\npga = 1')
     (text,) = said(Study(case, LEVELS).run)
     assert text.startswith("2 of 3 runs scale their record by more than 4")
     assert "b.txt times " in text
 
 
-def test_what_is_within_the_limit_is_not_told(tmp_path: Path) -> None:
+def test_what_is_within_the_limit_is_not_told(tmp_path):
     case = folder(tmp_path, 'suite = "?.txt"\npga = 12\nlargest_scale = 1e4')
     assert said(lambda: simulate_suite(case)) == []
     assert said(lambda: Study(case, LEVELS).run()) == []
 
 
-def test_a_scene_made_in_python_has_the_usual_limit() -> None:
+def test_a_scene_made_in_python_has_the_usual_limit():
     wave = np.sin(7.0 * np.arange(0.0, 4.0, 0.02))
     deck, spring = Body("deck", 1e6), Spring("pier", ("ground", "deck"), Linear(4e7))
     scene = Scene([deck], [spring], motion=Record(wave, 0.02, scale=9.0))

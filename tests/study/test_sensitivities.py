@@ -1,11 +1,8 @@
 """Sensitivities beside a closed form, saltation matrices and cvode; where there are none."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -41,7 +38,7 @@ def column(table: pd.DataFrame, quantity: str, name: str, keys: list[str]) -> Ar
     return table[table["quantity"] == quantity].set_index("to").loc[keys, name].to_numpy()
 
 
-def test_of_an_elastic_impact_they_are_those_of_the_closed_form() -> None:
+def test_of_an_elastic_impact_they_are_those_of_the_closed_form():
     m, k, d, e, v = 2.0, 50.0, 0.1, 0.8, 1.0
     scene = Scene(
         (Body("a", m, velocity=v),),
@@ -77,7 +74,7 @@ def sine(t: float, p: Array) -> Array:
     return p[-2] * np.sin(2.0 * np.pi * t / p[-1])
 
 
-def test_of_one_body_they_are_those_of_saltation_matrices() -> None:
+def test_of_one_body_they_are_those_of_saltation_matrices():
     p = np.array([1.3, 60.0, 1.1, 0.02, 0.7, 2.0, 0.9])
     keys = ["body.a.mass", "spring.s.stiffness", "dashpot.ground-a.coefficient"]
     keys += ["contact.c.gap", "contact.c.restitution"]
@@ -95,7 +92,7 @@ def test_of_one_body_they_are_those_of_saltation_matrices() -> None:
     beside(scene, system, p, [*keys, "excitation.amplitude", "excitation.period"])
 
 
-def test_of_two_bodies_they_are_those_of_saltation_matrices() -> None:
+def test_of_two_bodies_they_are_those_of_saltation_matrices():
     p = np.array([1.0, 3.0, 40.0, 90.0, 0.5, 0.01, 0.6, 2.0, 0.8])
     keys = ["body.a.mass", "body.b.mass", "spring.a.stiffness", "spring.b.stiffness"]
     keys += ["dashpot.a-b.coefficient", "contact.c.gap", "contact.c.restitution"]
@@ -133,7 +130,7 @@ def beside(scene: Scene, system: LinearSystem, p: Array, keys: list[str]) -> Non
 
 
 @pytest.mark.parametrize("key", ["contact.joint.gap", "body.segment2.mass"])
-def test_through_the_impacts_of_a_bridge_they_are_those_of_another_solver(key: str) -> None:
+def test_through_the_impacts_of_a_bridge_they_are_those_of_another_solver(key):
     case, of = load_case(BRIDGE), "peaks.segment2.abs_max"
     row = sensitivities(case, of=[of], to=[key]).iloc[0]
     place, step = number_places(case.scene)[key], 1e-5 * row["at"]
@@ -158,7 +155,7 @@ def grazing(gap: float) -> Scene:
     )
 
 
-def test_where_an_impact_appears_within_the_step_there_is_none() -> None:
+def test_where_an_impact_appears_within_the_step_there_is_none():
     keys = ["contact.c.gap", "contact.c.restitution"]
     with pytest.warns(
         AccuracyWarning, match="no derivative, 1 of 4.*: of final.a.u to contact.c.g"
@@ -172,14 +169,14 @@ def test_where_an_impact_appears_within_the_step_there_is_none() -> None:
     ]
 
 
-def test_an_impact_that_appears_after_a_peak_leaves_its_derivative() -> None:
+def test_an_impact_that_appears_after_a_peak_leaves_its_derivative():
     late = replace(grazing(0.1 * (1.0 + 5e-6)), bodies=(Body("a", 1.0, velocity=-1.0),))
     table = sensitivities(late, of=["peaks.a.min"], to=["body.a.velocity"], duration=0.6)
     assert table["note"].tolist() == [""]
     assert table["derivative"][0] == pytest.approx(0.1, rel=1e-9)
 
 
-def test_what_cannot_be_varied_by_a_part_of_itself_is_left_out_or_given_a_step() -> None:
+def test_what_cannot_be_varied_by_a_part_of_itself_is_left_out_or_given_a_step():
     scene = grazing(0.05)
     elastic = replace(scene, contacts=(replace(scene.contacts[0], restitution=1.0),))
     keys = set(sensitivities(elastic, duration=1.0)["to"])
@@ -189,13 +186,13 @@ def test_what_cannot_be_varied_by_a_part_of_itself_is_left_out_or_given_a_step()
     assert away["derivative"].tolist() == pytest.approx([0.0], abs=1e-9)
 
 
-def test_a_number_that_is_named_twice_has_one_row() -> None:
+def test_a_number_that_is_named_twice_has_one_row():
     table = sensitivities(grazing(0.05), to=["body.a.mass"] * 2, of=["peaks.a.min"], duration=1.0)
     assert len(table) == 1
     assert np.isfinite(table["derivative"]).all()
 
 
-def test_without_contact_the_peak_of_a_swing_follows_its_speed_and_mass() -> None:
+def test_without_contact_the_peak_of_a_swing_follows_its_speed_and_mass():
     # v sqrt(m/k) = 0.1 m, with and without a gap of half of it.
     free, keys = "free.peaks.a.max", ["body.a.velocity", "body.a.mass", "contact.c.gap"]
     table = sensitivities(grazing(0.05), to=keys, of=[free], duration=1.0)
@@ -215,14 +212,12 @@ def test_without_contact_the_peak_of_a_swing_follows_its_speed_and_mass() -> Non
         ({"of": []}, "of: found []; accepted: at least one quantity"),
     ],
 )
-def test_what_is_refused(options: dict[str, object], said: str) -> None:
+def test_what_is_refused(options, said):
     with pytest.raises(InputError, match=re.escape(said)):
         sensitivities(grazing(0.05), duration=1.0, **options)  # type: ignore[arg-type]
 
 
-def test_the_command_writes_the_table_and_a_tornado(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_writes_the_table_and_a_tornado(tmp_path, capsys):
     words = ["study", "sensitivities", str(BRIDGE), "--to", "contact.joint.gap"]
     assert main([*words, "--of", "peaks.segment1.abs_max", "--out", str(tmp_path)]) == 0
     assert "contact.joint.gap         +0.1099" in capsys.readouterr().out
@@ -238,7 +233,7 @@ def test_the_command_writes_the_table_and_a_tornado(
     assert "cannot be written to" in capsys.readouterr().err
 
 
-def test_a_tornado_has_a_bar_for_each_number_and_a_cross_where_there_is_no_derivative() -> None:
+def test_a_tornado_has_a_bar_for_each_number_and_a_cross_where_there_is_no_derivative():
     rows = [("a", 2.0, ""), ("b", -0.5, ""), ("c", 9.0, "0 to 1 impacts of c within the steps")]
     table = pd.DataFrame(
         [

@@ -1,7 +1,5 @@
 """Options of ``[run]`` times ways to run a case: each holds, is refused by name, or is said."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Iterable
@@ -154,7 +152,7 @@ def with_word(word: str, options: Iterable[str]) -> list[tuple[str, Ran]]:
 
 
 @pytest.mark.parametrize(("option", "way"), with_word("same", OPTIONS))
-def test_an_option_is_the_same_in_every_way_to_run(tmp_path: Path, way: Ran, option: str) -> None:
+def test_an_option_is_the_same_in_every_way_to_run(tmp_path, way, option):
     line, column = OPTIONS[option]
     found = way(tmp_path, line, column)
     case = load_case(written(tmp_path, line))
@@ -199,9 +197,7 @@ def told(name: str, folder: Path, option: str) -> dict[str, object]:
 @pytest.mark.parametrize(
     ("option", "name"), [p for p, said in CELLS.items() if p[0] in OF_A_RUN and said == "same"]
 )
-def test_an_option_without_a_column_is_the_same_in_every_way(
-    tmp_path: Path, name: str, option: str
-) -> None:
+def test_an_option_without_a_column_is_the_same_in_every_way(tmp_path, name, option):
     found, other = (told(name, tmp_path, lines)[option] for lines in OF_A_RUN[option])
     expected = {"start": 5e5 / 233443e3, "output_step": found, "error_estimate": True}[option]
     assert found == pytest.approx(expected, rel=1e-9)
@@ -209,9 +205,7 @@ def test_an_option_without_a_column_is_the_same_in_every_way(
 
 
 @pytest.mark.parametrize(("option", "way"), with_word("refused", OF_A_RUN))
-def test_an_option_is_refused_before_anything_runs(
-    tmp_path: Path, way: Ran, option: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_option_is_refused_before_anything_runs(tmp_path, way, option, capsys):
     try:
         way(tmp_path, OF_A_RUN[option][0], "t_final")
     except InputError as error:
@@ -223,12 +217,12 @@ def test_an_option_is_refused_before_anything_runs(
 
 
 @pytest.mark.parametrize(("option", "way"), with_word("none", OF_A_RUN))
-def test_an_option_changes_nothing(tmp_path: Path, way: Ran, option: str) -> None:
+def test_an_option_changes_nothing(tmp_path, way, option):
     found, other = (way(tmp_path, lines, "peaks.deck.abs_max") for lines in OF_A_RUN[option])
     assert found == other
 
 
-def test_a_study_in_pi_terms_has_their_columns_too(tmp_path: Path) -> None:
+def test_a_study_in_pi_terms_has_their_columns_too(tmp_path):
     text = '[excitation]\nkind = "sine"\n[pi]\nstructure = "elastic"\ndelta = 0.1\nepsilon = 0.5\n'
     axis = 'quantities = ["pi_um"]\n[[study.axis]]\nkey = "pi.omega_s"\nvalues = [0.5, 1.5]\n'
     (tmp_path / "case.toml").write_text(f"{text}[study]\n{axis}[run]\navoiding_gap = true\n")
@@ -245,7 +239,7 @@ def test_a_study_in_pi_terms_has_their_columns_too(tmp_path: Path) -> None:
         assert gap > 0.1
 
 
-def test_a_wide_gap_avoids_what_a_narrower_one_does_not(tmp_path: Path) -> None:
+def test_a_wide_gap_avoids_what_a_narrower_one_does_not(tmp_path):
     case = load_case(written(tmp_path, "avoiding_gap = true"))
     (gap,) = by_command(tmp_path, "avoiding_gap = true", "contacts.joint.avoiding_gap")
     # The least gap is known to the error of the runs.
@@ -254,7 +248,7 @@ def test_a_wide_gap_avoids_what_a_narrower_one_does_not(tmp_path: Path) -> None:
     assert many.table["contacts.joint.avoiding_gap"].to_numpy() == pytest.approx(gap, rel=1e-8)
 
 
-def test_a_curve_of_fragility_over_the_gap_that_avoids_contact(tmp_path: Path) -> None:
+def test_a_curve_of_fragility_over_the_gap_that_avoids_contact(tmp_path):
     folder = written(tmp_path, "avoiding_gap = true", 'suite = "?.txt"')
     for name, amplitude in zip("abcdef", (0.2, 0.25, 0.4, 0.35, 0.6, 0.8), strict=True):
         (folder / f"{name}.txt").write_text(time_series(amplitude))
@@ -263,12 +257,12 @@ def test_a_curve_of_fragility_over_the_gap_that_avoids_contact(tmp_path: Path) -
     assert curve["exceeded"].tolist() == [3]
 
 
-def test_an_equilibrium_that_no_number_moves_holds_in_a_study(tmp_path: Path) -> None:
+def test_an_equilibrium_that_no_number_moves_holds_in_a_study(tmp_path):
     case = load_case(written(tmp_path, 'start = "equilibrium"'))
     assert Study(case, {"excitation.scale": [1.0, 2.0]}).plan.size == 2
 
 
-def test_a_study_says_that_it_keeps_no_rows_and_tells_nothing_in_units(tmp_path: Path) -> None:
+def test_a_study_says_that_it_keeps_no_rows_and_tells_nothing_in_units(tmp_path):
     folder = written(tmp_path, f'output_step = "0.1 s"\n{UNITS}', tables=study())
     said = "output_step, units: no part of a study"
     assert any(said in text for text in load_study(folder).warnings)
@@ -278,7 +272,7 @@ def test_a_study_says_that_it_keeps_no_rows_and_tells_nothing_in_units(tmp_path:
     "option", [*(name for name in OPTIONS if name not in ("start_time", "duration")), "units"]
 )
 @pytest.mark.parametrize("way", [Way.VERIFY, Way.COMPARE, Way.EXPORT, Way.FLOOR])
-def test_what_other_commands_leave_out_is_said(tmp_path: Path, way: Way, option: str) -> None:
+def test_what_other_commands_leave_out_is_said(tmp_path, way, option):
     """Here a warning is an error, so that nothing is computed."""
     case = load_case(written(tmp_path, UNITS if option == "units" else OPTIONS[option][0]))
     calls: dict[Way, Callable[[], object]] = {
@@ -293,9 +287,7 @@ def test_what_other_commands_leave_out_is_said(tmp_path: Path, way: Way, option:
 
 
 @pytest.mark.parametrize("option", ["contact_stiffness", "avoiding_gap", "threshold_speed"])
-def test_an_option_of_contacts_is_refused_where_there_are_none(
-    tmp_path: Path, option: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_option_of_contacts_is_refused_where_there_are_none(tmp_path, option, capsys):
     folder = written(tmp_path, OPTIONS[option][0])
     text = (folder / "case.toml").read_text()
     before, after = text.split("[[contact]]")
@@ -308,7 +300,7 @@ def test_an_option_of_contacts_is_refused_where_there_are_none(
         simulate(load_case(folder))
 
 
-def test_an_estimated_force_needs_the_stiffness(tmp_path: Path) -> None:
+def test_an_estimated_force_needs_the_stiffness(tmp_path):
     name = "contacts.joint.estimated_force"
     case = load_case(written(tmp_path, ""))
     calls: list[Callable[[Case], object]] = [
@@ -324,7 +316,7 @@ def test_an_estimated_force_needs_the_stiffness(tmp_path: Path) -> None:
         load_study(written(tmp_path, "", tables=tables))
 
 
-def test_without_contact_goes_with_quantities_of_contacts(tmp_path: Path) -> None:
+def test_without_contact_goes_with_quantities_of_contacts(tmp_path):
     """The same without contact has no such quantities: it was refused when all was computed."""
     option = 'without_contact = true\ncontact_stiffness = "50 MN/m"\n'
     option += 'quantities = ["contacts.joint.largest_gap"]'
@@ -336,7 +328,7 @@ def test_without_contact_goes_with_quantities_of_contacts(tmp_path: Path) -> Non
     assert np.isfinite(free.summary["peaks.deck.max"])
 
 
-def test_columns_of_parts_that_differ_in_their_contacts(tmp_path: Path) -> None:
+def test_columns_of_parts_that_differ_in_their_contacts(tmp_path):
     """An option holds where one part has something for it; the cells of the others are empty."""
     part = '[[study.part]]\nname = "{}"\n{}\n'
     parts = part.format("with", "") + part.format("without", "contact = []")

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -34,7 +33,7 @@ QUANTITIES = ["peaks.deck.abs_max", "contacts.joint.impacts", "body.deck.mass"]
 
 
 @pytest.fixture
-def scene() -> Scene:
+def scene():
     return Scene(
         (Body("deck", 100.0),),
         (Spring("frame", (GROUND, "deck"), BoucWen(1000.0, 100.0, 0.005)),),
@@ -43,7 +42,7 @@ def scene() -> Scene:
     )
 
 
-def test_rows_are_the_runs_that_simulate_makes(scene: Scene) -> None:
+def test_rows_are_the_runs_that_simulate_makes(scene):
     found = Study(scene, AXES, quantities=QUANTITIES).run()
     assert list(found.table.columns) == [*AXES, *QUANTITIES, "success", "message"]
     assert len(found) == 6
@@ -59,7 +58,7 @@ def test_rows_are_the_runs_that_simulate_makes(scene: Scene) -> None:
     assert found["contacts.joint.impacts"].sum() == 6
 
 
-def test_rows_are_those_of_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_rows_are_those_of_a_file(tmp_path, capsys):
     text = ELASTOPLASTIC.replace('key = "excitation.reverse"', 'key = "pi.uy"').replace(
         "values = [false, true]", "values = [0.2, 0.3]"
     )
@@ -79,7 +78,7 @@ def test_rows_are_those_of_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert found.equals(table)
 
 
-def test_a_folder_keeps_what_is_done(scene: Scene, tmp_path: Path) -> None:
+def test_a_folder_keeps_what_is_done(scene, tmp_path):
     class StopError(Exception):
         pass
 
@@ -109,7 +108,7 @@ def test_a_folder_keeps_what_is_done(scene: Scene, tmp_path: Path) -> None:
     assert not other["peaks.deck.abs_max"].equals(found["peaks.deck.abs_max"])
 
 
-def test_motions_that_differ_are_studies_that_differ(scene: Scene) -> None:
+def test_motions_that_differ_are_studies_that_differ(scene):
     samples = np.sin(np.arange(100.0))
     motions = (Cosine(2.0, 0.8), Cosine(2.0, 0.9), Record(samples, 0.02), Record(-samples, 0.02))
     axes = {"contact.joint.gap": [0.01]}
@@ -117,7 +116,7 @@ def test_motions_that_differ_are_studies_that_differ(scene: Scene) -> None:
     assert len(digests) == 4
 
 
-def test_axes_together_and_numbers_with_units(scene: Scene) -> None:
+def test_axes_together_and_numbers_with_units(scene):
     axes = {"contact.joint.gap": ["1 cm", "2 cm"], "contact.joint.restitution": [0.5, "70 %"]}
     found = Study(scene, axes, together=[list(axes)], duration="5 s", quantities=["t_final"]).run()
     assert found["contact.joint.gap"].tolist() == [0.01, 0.02]
@@ -125,7 +124,7 @@ def test_axes_together_and_numbers_with_units(scene: Scene) -> None:
     assert found["t_final"].tolist() == [5.0, 5.0]
 
 
-def test_records(scene: Scene, tmp_path: Path) -> None:
+def test_records(scene, tmp_path):
     for i, amplitude in enumerate((0.2, 0.5)):
         lines = time_series(amplitude).splitlines()
         (tmp_path / f"{i}.txt").write_text(
@@ -140,7 +139,7 @@ def test_records(scene: Scene, tmp_path: Path) -> None:
     assert same.run().table.equals(found.table)
 
 
-def test_words_are_short(scene: Scene, capsys: pytest.CaptureFixture[str]) -> None:
+def test_words_are_short(scene, capsys):
     study = Study(scene, AXES, quantities=QUANTITIES)
     assert repr(study) == (
         "<Study: 6 runs over contact.joint.gap, spring.frame.strength; fast, rtol 1e-06>"
@@ -154,14 +153,14 @@ def test_words_are_short(scene: Scene, capsys: pytest.CaptureFixture[str]) -> No
     assert capsys.readouterr().err.endswith("100%  6 of 6 runs\n")
 
 
-def test_other_solvers_agree(scene: Scene) -> None:
+def test_other_solvers_agree(scene):
     fast = Study(scene, AXES, quantities=QUANTITIES).run()
     cvode = Study(scene, AXES, quantities=QUANTITIES, solver="cvode", rtol=1e-9).run()
     # rtol 1e-6 promises a hundred times that.
     np.testing.assert_allclose(cvode["peaks.deck.abs_max"], fast["peaks.deck.abs_max"], rtol=1e-4)
 
 
-def test_a_failed_run_is_a_row(scene: Scene) -> None:
+def test_a_failed_run_is_a_row(scene):
     # Each value by itself is sound.
     axes = {"contact.joint.gap": [0.05, 0.01], "body.deck.displacement": [0.0, 0.03]}
     found = Study(scene, axes, quantities=QUANTITIES).run()
@@ -190,14 +189,14 @@ def test_a_failed_run_is_a_row(scene: Scene) -> None:
         ({"contact.joint.gap": [0.1]}, {"together": [["x"]]}, ["'x' is no axis"]),
     ],
 )
-def test_what_is_wrong_is_said_before_anything_runs(axes, options, words, scene) -> None:
+def test_what_is_wrong_is_said_before_anything_runs(axes, options, words, scene):
     with pytest.raises(InputError) as error:
         Study(scene, axes, **options)
     for word in words:
         assert word in str(error.value)
 
 
-def test_records_set_the_lengths_of_a_scene(scene: Scene, tmp_path: Path) -> None:
+def test_records_set_the_lengths_of_a_scene(scene, tmp_path):
     for i in range(2):
         (tmp_path / f"{i}.AT2").write_text(at2(motion(100 + 50 * i, 0.02), 0.02).text)
     found = Study(
@@ -209,7 +208,7 @@ def test_records_set_the_lengths_of_a_scene(scene: Scene, tmp_path: Path) -> Non
     assert np.diff(found["t_final"]) == pytest.approx(50 * 0.02)
 
 
-def test_a_record_at_a_support_sets_the_lengths_of_the_runs(scene: Scene) -> None:
+def test_a_record_at_a_support_sets_the_lengths_of_the_runs(scene):
     """Five periods follow it, which are longer of a heavier body."""
     recorded = Support("pier", motion=Record(np.sin(np.arange(50.0)), 0.02))
     frame = Spring("frame", ("pier", "deck"), Linear(1000.0))

@@ -1,7 +1,5 @@
 """A suite: its rows are those of single runs, and nothing stops it."""
 
-from __future__ import annotations
-
 import csv
 import json
 from dataclasses import replace
@@ -53,7 +51,7 @@ def time_series(amplitude: float) -> str:
 
 
 @pytest.fixture
-def case_folder(tmp_path: Path) -> Path:
+def case_folder(tmp_path):
     for name, amplitude in (("a", 0.2), ("b", 0.5), ("d", 0.8)):
         (tmp_path / f"{name}.txt").write_text(time_series(amplitude))
     (tmp_path / "c.txt").write_text("0.1\n0.2\nNaN\n0.1\n")
@@ -62,7 +60,7 @@ def case_folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_rows_are_single_runs(case_folder: Path) -> None:
+def test_rows_are_single_runs(case_folder):
     case = load_case(case_folder)
     table = simulate_suite(case)
     assert list(table["record"]) == ["a.txt", "b.txt", "c.txt", "d.txt"]
@@ -84,14 +82,14 @@ def test_rows_are_single_runs(case_folder: Path) -> None:
     assert table["impacts"].max() > 0
 
 
-def test_threads_change_nothing(case_folder: Path) -> None:
+def test_threads_change_nothing(case_folder):
     case = load_case(case_folder)
     one, two = (simulate_suite(case, workers=workers) for workers in (1, 2))
     drop = ["seconds.read", "seconds.solve"]
     pd.testing.assert_frame_equal(one.drop(columns=drop), two.drop(columns=drop), check_exact=True)
 
 
-def test_a_bad_file_is_a_row_with_its_reason(case_folder: Path) -> None:
+def test_a_bad_file_is_a_row_with_its_reason(case_folder):
     table = simulate_suite(load_case(case_folder))
     bad = table.iloc[2]
     assert "line 3" in bad["failed"]
@@ -99,7 +97,7 @@ def test_a_bad_file_is_a_row_with_its_reason(case_folder: Path) -> None:
     assert (table["failed"].drop(index=2) == "").all()
 
 
-def test_progress_and_kept_responses(case_folder: Path) -> None:
+def test_progress_and_kept_responses(case_folder):
     kept, counts = {}, []
     simulate_suite(
         load_case(case_folder),
@@ -113,7 +111,7 @@ def test_progress_and_kept_responses(case_folder: Path) -> None:
     assert case.record is not None
 
 
-def test_error_estimate_bounds_the_difference_from_another_solver(case_folder: Path) -> None:
+def test_error_estimate_bounds_the_difference_from_another_solver(case_folder):
     case = load_case(case_folder)
     table = simulate_suite(case, rtol=1e-5, error_estimate=True)
     assert case.suite is not None
@@ -127,7 +125,7 @@ def test_error_estimate_bounds_the_difference_from_another_solver(case_folder: P
         assert error <= row["error_estimate"] + 1e-7 + 1e-9
 
 
-def test_an_error_estimate_is_never_of_a_run_beside_itself(case_folder: Path) -> None:
+def test_an_error_estimate_is_never_of_a_run_beside_itself(case_folder):
     """At the smallest tolerance, and where the case asks for it."""
     # As it is, d has two runs that are the same to the last digit.
     (case_folder / "d.txt").write_text(time_series(0.9))
@@ -142,9 +140,7 @@ def test_an_error_estimate_is_never_of_a_run_beside_itself(case_folder: Path) ->
         simulate_suite(asking, solver="moreau")
 
 
-def test_command_writes_a_table_a_manifest_and_a_figure(
-    case_folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_command_writes_a_table_a_manifest_and_a_figure(case_folder, capsys):
     assert main(["run", str(case_folder), "--histories"]) == 0
     out, err = capsys.readouterr()
     assert "records   3 of 4" in out
@@ -162,7 +158,7 @@ def test_command_writes_a_table_a_manifest_and_a_figure(
     assert repr(stored["peaks"]["deck"]["max"]) == rows[1]["peaks.deck.max"]
 
 
-def test_measures_of_intensity(case_folder: Path) -> None:
+def test_measures_of_intensity(case_folder):
     case = load_case(case_folder)
     plain, table = simulate_suite(case), simulate_suite(case, intensities=True)
     assert [c for c in table if c not in plain] == ["PGV", "Sa_T1"]
@@ -179,7 +175,7 @@ def test_measures_of_intensity(case_folder: Path) -> None:
         assert row["Sa_T1"] == pytest.approx(spectrum["PSA"][0], rel=1e-7)
 
 
-def test_command_writes_measures_of_intensity(case_folder: Path) -> None:
+def test_command_writes_measures_of_intensity(case_folder):
     assert main(["run", str(case_folder), "--no-figures"]) == 0
     found = pd.read_csv(case_folder / "results" / "intensity.csv")
     assert found["measure"].tolist() == ["L_e", "PGA", "PGV", "Sa_T1"]
@@ -191,7 +187,7 @@ def test_command_writes_measures_of_intensity(case_folder: Path) -> None:
     assert set(manifest["files"]) == {"suite.csv", "intensity.csv"}
 
 
-def test_plot_draws_the_figure_again(case_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_plot_draws_the_figure_again(case_folder, capsys):
     assert main(["run", str(case_folder), "--no-figures"]) == 0
     picture = case_folder / "results" / "suite-spectrum.png"
     assert not picture.exists()
@@ -211,9 +207,7 @@ def test_plot_draws_the_figure_again(case_folder: Path, capsys: pytest.CaptureFi
     assert "run the case again" in capsys.readouterr().err
 
 
-def test_a_suite_of_nothing_readable_still_ends_well(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_suite_of_nothing_readable_still_ends_well(tmp_path, capsys):
     (tmp_path / "a.txt").write_text("no numbers here\nat all\n")
     (tmp_path / "case.toml").write_text(CASE.format('suite = "a.txt"'))
     assert main(["run", str(tmp_path)]) == 0
@@ -222,9 +216,7 @@ def test_a_suite_of_nothing_readable_still_ends_well(
     assert "a.txt" in err
 
 
-def test_options_of_suites_are_for_suites(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_options_of_suites_are_for_suites(tmp_path, capsys):
     main(["new", str(tmp_path)])
     assert main(["run", str(tmp_path), "--histories"]) == 2
     assert main(["run", str(tmp_path), "--suite", "x"]) == 2
@@ -232,7 +224,7 @@ def test_options_of_suites_are_for_suites(
     assert not (tmp_path / "results").exists()
 
 
-def test_a_scale_of_the_case_is_said(case_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_scale_of_the_case_is_said(case_folder, capsys):
     file = case_folder / "case.toml"
     for old, new, said in (
         ("[[body]]", "scale = 1.5\n[[body]]", "every record times 1.5 (scale in [excitation])"),
@@ -270,7 +262,7 @@ stiffness = "20000 kN/m"
 
 
 @pytest.fixture
-def on_piers(case_folder: Path) -> Path:
+def on_piers(case_folder):
     (case_folder / "c.txt").write_text(time_series(0.3))
     (case_folder / "piers").mkdir()
     for i, amplitude in enumerate((0.1, 0.6, 0.7, 0.4)):
@@ -281,9 +273,7 @@ def on_piers(case_folder: Path) -> Path:
     return case_folder
 
 
-def test_records_of_a_support_go_with_those_of_the_ground(
-    on_piers: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_records_of_a_support_go_with_those_of_the_ground(on_piers, capsys):
     case = load_case(on_piers)
     table = simulate_suite(case, workers=2)
     assert list(table["file.pier"].map(lambda f: Path(f).name)) == [f"{i}.txt" for i in range(4)]
@@ -319,14 +309,14 @@ def test_records_of_a_support_go_with_those_of_the_ground(
     )
 
 
-def test_unequal_numbers_are_one_message(on_piers: Path) -> None:
+def test_unequal_numbers_are_one_message(on_piers):
     (on_piers / "piers" / "4.txt").write_text(time_series(0.2))
     with pytest.raises(InputError, match=r"support 'pier': found 5 records for the 4 of") as raised:
         load_case(on_piers)
     assert len(raised.value.problems) == 1
 
 
-def test_no_records_of_a_support(on_piers: Path) -> None:
+def test_no_records_of_a_support(on_piers):
     text = (on_piers / "case.toml").read_text()
     (on_piers / "case.toml").write_text(text.replace("piers/*", "pears/*"))
     with pytest.raises(InputError, match=r"\[\[support\]\] 1 \(pier\).*pears") as raised:
@@ -334,7 +324,7 @@ def test_no_records_of_a_support(on_piers: Path) -> None:
     assert len(raised.value.problems) == 1
 
 
-def test_an_axis_under_records_of_supports(on_piers: Path) -> None:
+def test_an_axis_under_records_of_supports(on_piers):
     """Rows of a study are those of the suites of the single values."""
     case = load_case(on_piers)
     delays = [0.0, 0.1]
@@ -353,7 +343,7 @@ def test_an_axis_under_records_of_supports(on_piers: Path) -> None:
     assert (other[[0, 1, 3]] != expected[[0, 1, 3]]).all()
 
 
-def test_a_study_knows_its_supports(on_piers: Path) -> None:
+def test_a_study_knows_its_supports(on_piers):
     """A study goes on where it stopped only if the supports move as they did."""
     scene = replace(load_case(on_piers).scene, motion=Ricker(1.0, 0.5))
     axis = {"body.deck.mass": [1.0e6, 1.2e6]}

@@ -1,7 +1,5 @@
 """Rank correlation, groups and scatter, against SciPy and data made to measure."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -17,7 +15,7 @@ from eventpound.study.suite_statistics import (
 )
 
 
-def test_rank_correlation_is_spearmans() -> None:
+def test_rank_correlation_is_spearmans():
     random = np.random.default_rng(1)
     x, y = random.normal(size=40), random.normal(size=40)
     y[:5] = y[0]
@@ -27,7 +25,7 @@ def test_rank_correlation_is_spearmans() -> None:
     assert math.isnan(rank_correlation(np.ones(9), y[:9]))
 
 
-def test_groups_have_equal_numbers_in_order_of_period() -> None:
+def test_groups_have_equal_numbers_in_order_of_period():
     periods = np.array([0.9, 0.1, 0.5, 0.3, 0.7, 0.2, 0.4])
     groups = groups_of(periods, 4)
     assert sorted(np.bincount(groups)) == [1, 2, 2, 2]
@@ -35,7 +33,7 @@ def test_groups_have_equal_numbers_in_order_of_period() -> None:
     assert np.all(np.diff(groups[order]) >= 0)
 
 
-def test_line_and_scatter() -> None:
+def test_line_and_scatter():
     """Residuals orthogonal to the line's two columns leave it where it is."""
     x = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
     rest = 0.1 * np.array([1.0, -2.0, 2.0, -2.0, 1.0])
@@ -56,7 +54,7 @@ def test_line_and_scatter() -> None:
     assert order.scatter == pytest.approx(math.sqrt(float(rest @ rest) / 3.0), rel=1e-10)
 
 
-def test_table_of_measures() -> None:
+def test_table_of_measures():
     """Rank correlations of SciPy, dispersions of data made to measure, intervals by simulation."""
     random = np.random.default_rng(3)
     length = np.exp(random.normal(size=4000))
@@ -84,7 +82,7 @@ def test_table_of_measures() -> None:
     assert low < found.loc["L_e", "rank_correlation"] < high
 
 
-def test_intervals_hold_what_they_say() -> None:
+def test_intervals_hold_what_they_say():
     """Of 95 % intervals of samples of 30, about 95 in 100 hold the correlation of all."""
     random = np.random.default_rng(4)
     # Of two normal numbers of correlation r, Spearman's is 6/pi arcsin(r/2).
@@ -100,7 +98,7 @@ def test_intervals_hold_what_they_say() -> None:
     assert 0.90 < inside / count < 0.985
 
 
-def test_five_records_in_one_order_are_not_certain() -> None:
+def test_five_records_in_one_order_are_not_certain():
     """By chance 5 of 5 are in order once in 60: the interval begins near the rank that is then."""
     table = pd.DataFrame({"failed": "", "L_e": [1.0, 2.0, 3.0, 4.0, 5.0]})
     table["peaks.deck.abs_max"] = table["L_e"] ** 2
@@ -111,7 +109,7 @@ def test_five_records_in_one_order_are_not_certain() -> None:
     assert row["rank_high"] == pytest.approx(1.0, abs=1e-12)
 
 
-def test_records_without_a_mean_period_are_left_out_of_what_needs_it() -> None:
+def test_records_without_a_mean_period_are_left_out_of_what_needs_it():
     table = pd.DataFrame(
         {
             "failed": [""] * 5,
@@ -127,7 +125,7 @@ def test_records_without_a_mean_period_are_left_out_of_what_needs_it() -> None:
     assert measures["records"].to_dict() == {"L_e": 4, "PGA": 5}
 
 
-def test_what_is_the_same_for_all_records_orders_nothing(recwarn: pytest.WarningsRecorder) -> None:
+def test_what_is_the_same_for_all_records_orders_nothing(recwarn):
     """Records scaled to one PGA have it but for rounding, which is no intensity."""
     u = np.array([0.01, 0.02, 0.04, 0.03, 0.05])
     rounded = 2.94 * (1.0 + np.finfo(float).eps * np.array([0.0, 1.0, -1.0, 2.0, 0.0]))

@@ -1,7 +1,5 @@
 """Workers, chunks and room for events change no number of a sweep."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

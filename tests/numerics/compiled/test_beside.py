@@ -17,8 +17,6 @@ pytestmark = pytest.mark.skipif(
 )
 
 KERNELS = """\
-from __future__ import annotations
-
 from eventpound.numerics.compiled import deferred_kernel, kernel
 
 

@@ -1,7 +1,5 @@
 """Kernels that an installation came with: used where they fit, and each reason why not."""
 
-from __future__ import annotations
-
 import json
 import platform
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Compiled code is used as long as no source of it has changed, and no longer."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

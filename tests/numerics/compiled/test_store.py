@@ -1,7 +1,5 @@
 """Kept kernels: damaged, out of date, in folders that cannot be written, made at once."""
 
-from __future__ import annotations
-
 import random
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path

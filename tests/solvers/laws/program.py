@@ -4,8 +4,6 @@ Written from the formulas alone, for scenes without Newton contacts. Each closin
 a piece, and so does the end of an approach, so that the integrator never crosses a kink.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

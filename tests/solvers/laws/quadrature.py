@@ -10,8 +10,6 @@ With w = d'/d'_0 and the law ``m d'' = -F(d, d')``:
 Nothing is taken from the program.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

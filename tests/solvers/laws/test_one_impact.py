@@ -1,7 +1,5 @@
 """One impact under each law against quadrature: energy lost, time in contact, forces, depth."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -53,7 +51,7 @@ def expected(word: str, restitution: float, mass: float) -> Impact:
 @pytest.mark.parametrize("barrier", [False, True])
 @pytest.mark.parametrize("restitution", [0.3, 0.65, 0.95])
 @pytest.mark.parametrize("word", list(BY_WORD))
-def test_against_quadrature(word: str, restitution: float, barrier: bool) -> None:
+def test_against_quadrature(word, restitution, barrier):
     mass = 2.0 if barrier else 1.2
     found, true = (
         run_of(word, restitution, barrier=barrier),
@@ -77,7 +75,7 @@ def test_against_quadrature(word: str, restitution: float, barrier: bool) -> Non
     assert abs(found.energy.closure) < ALLOWED
 
 
-def test_the_limit_at_closing_is_the_largest_force() -> None:
+def test_the_limit_at_closing_is_the_largest_force():
     # ζ > 1/2: the dashpot falls faster than the spring grows.
     scene = Scene(
         (Body("a", 2.0, 0.0, SPEED),),
@@ -90,7 +88,7 @@ def test_the_limit_at_closing_is_the_largest_force() -> None:
     assert found.max_force[0] == pytest.approx(c * SPEED, rel=1e-9)
 
 
-def test_a_force_that_is_cut_against_its_closed_form() -> None:
+def test_a_force_that_is_cut_against_its_closed_form():
     """kelvin-voigt up to k d + c d' = 0, free after: the cut ends a step, so few are needed."""
     law = ContactLaw("kelvin-voigt", STIFFNESS, None, False)
     scene = Scene(

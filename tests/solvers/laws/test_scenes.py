@@ -1,7 +1,5 @@
 """Rows of bodies with contact laws against an independent program; what their records say."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -67,7 +65,7 @@ def run(
 
 
 @pytest.mark.parametrize("word", WORDS)
-def test_against_another_program(word: str) -> None:
+def test_against_another_program(word):
     scene, end = pair(word), 2.5
     found = run(scene, end)
     assert sum(e.kind is EventKind.IMPACT for e in found.events) >= 6
@@ -82,12 +80,12 @@ def test_against_another_program(word: str) -> None:
 
 @pytest.mark.parametrize("settings", [{"events": "sundials"}, {"method": "BDF"}], ids=str)
 @pytest.mark.parametrize("word", ["kelvin-voigt", "jankowski"])
-def test_ways_of_cvode_agree(word: str, settings: dict[str, object]) -> None:
+def test_ways_of_cvode_agree(word, settings):
     _agree(pair(word), **settings)
 
 
 @pytest.mark.sweep
-def test_cvode_through_python_agrees(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cvode_through_python_agrees(monkeypatch):
     found = run(pair("jankowski"), 2.5)
     monkeypatch.setattr(library, "library", lambda: None)
     _agree(pair("jankowski"), found)
@@ -100,7 +98,7 @@ def _agree(scene: Scene, found: Recording | None = None, **settings: object) -> 
     np.testing.assert_allclose(found.u, other.u, rtol=0, atol=1e-9)
 
 
-def test_history_has_the_forces() -> None:
+def test_history_has_the_forces():
     scene = pair("hertz")
     found = run(scene, 2.5)
     gap, force = found.history.gap, found.history.contact_force
@@ -119,7 +117,7 @@ def test_history_has_the_forces() -> None:
 
 @pytest.mark.parametrize("solver", ["cvode", "penalty"])
 @pytest.mark.parametrize("word", WORDS)
-def test_pressed_shut_from_the_start_to_the_end(solver: str, word: str) -> None:
+def test_pressed_shut_from_the_start_to_the_end(solver, word):
     # k = 300 and 1000 in parallel beside the wall, overlap 1 cm at rest: a time in contact that
     # is cut by the end of the run.
     scene = Scene(
@@ -148,7 +146,7 @@ def test_pressed_shut_from_the_start_to_the_end(solver: str, word: str) -> None:
     assert abs(found.energy.closure) < (1e-3 if solver == "penalty" else 1e-8)
 
 
-def test_newton_and_law_in_one_scene() -> None:
+def test_newton_and_law_in_one_scene():
     # b rests on a stop by Newton's law while a presses on it by a spring contact.
     scene = Scene(
         (Body("a", 2.0, 0.0, 1.0), Body("b", 3.0)),
@@ -173,7 +171,7 @@ def test_newton_and_law_in_one_scene() -> None:
     assert abs(found.energy.closure) < 1e-9
 
 
-def test_many_variants_are_the_same_runs() -> None:
+def test_many_variants_are_the_same_runs():
     scene, stiffness = pair("hertz-damp"), [2e4, 8e4]
     many = simulate_many(scene, {"contact.joint.stiffness": stiffness}, rtol=1e-8, duration=1.5)
     for i, k in enumerate(stiffness):
@@ -183,7 +181,7 @@ def test_many_variants_are_the_same_runs() -> None:
     assert many.u[0, 0] != many.u[1, 0]
 
 
-def test_the_error_of_a_stepper_falls_to_that_of_its_own_model() -> None:
+def test_the_error_of_a_stepper_falls_to_that_of_its_own_model():
     scene, end = pair("kelvin-voigt"), 1.2
     true = run(scene, end).u
     errors = [
@@ -194,7 +192,7 @@ def test_the_error_of_a_stepper_falls_to_that_of_its_own_model() -> None:
     assert errors[2] < 0.3 * errors[0] < 1e-4
 
 
-def test_stiffness_to_infinity_is_newtons_law() -> None:
+def test_stiffness_to_infinity_is_newtons_law():
     """The time in contact is what a law adds, and falls with 1/sqrt(k)."""
     end = 0.9
     rigid = replace(
@@ -209,7 +207,7 @@ def test_stiffness_to_infinity_is_newtons_law() -> None:
     assert math.log(errors[2] / errors[1]) / math.log(100.0) == pytest.approx(-0.5, abs=0.02)
 
 
-def test_what_is_pressed_shut_closes_what_only_touches() -> None:
+def test_what_is_pressed_shut_closes_what_only_touches():
     """b touches a, and a wall pushes it there: a time in contact from the start, without a blow.
 
     A blow of no speed would give hertz-damp a dashpot without a bound.
@@ -234,7 +232,7 @@ def test_what_is_pressed_shut_closes_what_only_touches() -> None:
 
 
 @pytest.mark.parametrize("word", ["hertz", "hertz-damp"])
-def test_a_contact_that_closes_as_another_opens(word: str) -> None:
+def test_a_contact_that_closes_as_another_opens(word):
     """Both at one place, where either gap is zero by rounding of either sign."""
     mass, spring, left, right, end = 0.37, 80.0, 1.5e5, 1.3e6, 0.03
     e, law = law_of(word, right)
@@ -273,7 +271,7 @@ def test_a_contact_that_closes_as_another_opens(word: str) -> None:
 
 
 @pytest.mark.parametrize("speed", [1e-6, 1e-9, 1e-12])
-def test_a_wall_lets_go_beside_an_element_that_was_hardly_struck(speed: float) -> None:
+def test_a_wall_lets_go_beside_an_element_that_was_hardly_struck(speed):
     """Its damping, over that speed, is beyond all numbers of the scene; the force is not."""
     push, period, end = 5.0, 1.0, 0.6
     history = PhasedSine(push, period, phase=0.5 * math.pi)

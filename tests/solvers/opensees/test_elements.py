@@ -1,7 +1,5 @@
 """A scene as OpenSees's elements, and what is refused; OpenSees itself is not needed."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """OpenSees against the fast solver, where it is installed and imports."""
 
-from __future__ import annotations
-
 import importlib
 from dataclasses import replace
 

@@ -11,8 +11,6 @@ With the effective mass m and the approach speed v_0,
     jankowski       by quadrature of m δ'' = -F here
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The contact elements: their published numbers, and the restitution each really gives."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

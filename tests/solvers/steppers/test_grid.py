@@ -1,7 +1,5 @@
 """Where steps end: at breakpoints of the ground motion and at samples."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

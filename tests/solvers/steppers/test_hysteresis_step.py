@@ -1,7 +1,5 @@
 """z over a step: against the law's own inverse, its order, its bound, its derivative."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

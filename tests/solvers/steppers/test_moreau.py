@@ -1,7 +1,5 @@
 """Moreau–Jean: what the rule gives in closed form, and what its answers come to."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """The orders stated in docs/steppers.md, measured."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.benchmarks.orders import applies, errors_by_step, methods, order, problems

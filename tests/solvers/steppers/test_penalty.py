@@ -1,7 +1,5 @@
 """Newmark with contact elements: the chain it gets wrong, records, the solved problems."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

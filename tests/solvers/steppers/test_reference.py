@@ -1,7 +1,5 @@
 """Moreau–Jean against the solved problems, at a coarse and at a fine step."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

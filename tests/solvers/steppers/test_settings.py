@@ -1,7 +1,5 @@
 """What ``[solver]`` may say to a stepper, and what it does where nothing is said."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
