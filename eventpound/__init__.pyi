@@ -30,8 +30,10 @@ from eventpound.scene import BoucWen as BoucWen
 from eventpound.scene import Contact as Contact
 from eventpound.scene import ContactLaw as ContactLaw
 from eventpound.scene import Dashpot as Dashpot
+from eventpound.scene import Deck as Deck
 from eventpound.scene import DegradingBoucWen as DegradingBoucWen
 from eventpound.scene import Force as Force
+from eventpound.scene import Joint as Joint
 from eventpound.scene import Linear as Linear
 from eventpound.scene import Point as Point
 from eventpound.scene import Scene as Scene

@@ -22,6 +22,7 @@ from eventpound.quantities.apart import avoiding_gaps
 from eventpound.quantities.base import SIX, TakenFrom, pi_unit
 from eventpound.quantities.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.quantities.between import Between
+from eventpound.quantities.decks import turned_far
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_of
 from eventpound.quantities.owners import owners_of
@@ -94,6 +95,11 @@ class Response:
     def message(self) -> str:
         """One sentence on how the run ended."""
         return self.recording.message
+
+    @property
+    def warnings(self) -> list[str]:
+        """Sentences on what of the run is beyond what its model is good for."""
+        return turned_far(self.runs) if self.scene.decks else []
 
     @property
     def work(self) -> Work:

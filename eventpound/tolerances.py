@@ -240,3 +240,17 @@ COMPARED = (1e-4, 1e-6, 1e-8, 1e-10)
 """Relative tolerances at which each solver runs."""
 REPEATS = 5
 """Runs whose median time counts."""
+
+# Of decks in plan, whose geometry is that of rest.
+TURNED = 0.05
+"""Rotation (rad) beyond which is warned: its cosine is off by 1e-3, and places by that part."""
+TURNED_TOO_FAR = 0.2
+"""Rotation (rad) at which a run ends: 2 % off, beyond what counts as small."""
+MOST_SKEW = 1.4
+"""Largest skew of a deck (rad), 80 degrees: the edge of another is no end of it any more."""
+PARALLEL = 1e-6
+"""Difference of two skews (rad) up to which edges are parallel: no gap along them changes by more
+than that part of their width."""
+OUT_OF_PLACE = 0.01
+"""Part of the length of a deck by which its centre may be elsewhere than a joint has it: an error
+of the arms, and of what turns it, of that part."""

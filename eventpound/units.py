@@ -31,6 +31,7 @@ class Dimension(Enum):
     VELOCITY = ("velocity", "m/s", "15 cm/s")
     ACCELERATION = ("acceleration", "m/s^2", "0.4 g")
     MASS = ("mass", "kg", "1301 t")
+    INERTIA = ("moment of inertia", "kg m^2", "2e5 t m^2")
     FORCE = ("force", "N", "3440 kN")
     IMPULSE = ("impulse", "N s", "120 kN s")
     ENERGY = ("energy", "J", "35 kJ")
@@ -64,6 +65,7 @@ USUAL = {
     Dimension.VELOCITY: {"m/s": 1.0, "cm/s": 0.01},
     Dimension.ACCELERATION: {"m/s^2": 1.0, "g": STANDARD_GRAVITY},
     Dimension.MASS: {"kg": 1.0, "t": 1e3},
+    Dimension.ANGLE: {"rad": 1.0, "deg": math.pi / 180.0},
     Dimension.FORCE: {"N": 1.0, "kN": 1e3, "MN": 1e6, "kip": 4448.2216152605},
     Dimension.STIFFNESS: {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6},
     Dimension.DAMPING: {"N s/m": 1.0, "kN s/m": 1e3},

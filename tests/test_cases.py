@@ -70,7 +70,10 @@ def mirror_response(name: str) -> Response:
 
 
 def mirrored(scene: Scene) -> Scene:
-    """The scene seen from behind: left is right, and the ground moves the other way."""
+    """The scene seen from behind: left is right, and the ground moves the other way.
+
+    In plan all coordinates change their sign, which is half a turn.
+    """
     return Scene(
         tuple(replace(b, displacement=-b.displacement, velocity=-b.velocity) for b in scene.bodies),
         tuple(replace(s, between=s.between[::-1]) for s in scene.springs),
@@ -79,6 +82,9 @@ def mirrored(scene: Scene) -> Scene:
         turned(scene.motion),
         tuple(replace(s, motion=s.motion and turned(s.motion)) for s in scene.supports),
         tuple(replace(f, history=turned(f.history)) for f in scene.forces),
+        decks=scene.decks,
+        across=turned(scene.across),
+        attack=scene.attack,
     )
 
 

@@ -119,7 +119,7 @@ def simulate(
     )
     asked = case.run.error_estimate if error_estimate is None else error_estimate
     estimate = estimate_of(response, asked=asked)
-    for text in (estimate or {}).get("warnings", ()):
+    for text in (*response.warnings, *(estimate or {}).get("warnings", ())):
         warn_caller(text, AccuracyWarning)
     if progress is True:
         print(f"\r{response.recording.t:.6g} s", file=sys.stderr)

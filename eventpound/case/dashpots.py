@@ -18,6 +18,7 @@ from eventpound.errors import InputError
 from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.damping import ratio_coefficient
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.deck import Deck
 from eventpound.scene.ends import End
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import Spring
@@ -34,6 +35,7 @@ def read_dashpot(
     masses: Mapping[str, float],
     springs: Iterable[Spring],
     supports: Sequence[str] = (),
+    decks: Sequence[Deck] = (),
 ) -> Dashpot:
     """A dashpot from its ``[[dashpot]]`` table.
 
@@ -47,13 +49,15 @@ def read_dashpot(
         Springs of the scene at rest.
     supports : sequence of str
         Names of supports, which count as the ground.
+    decks : sequence of Deck
+        Whose places may be ends.
 
     Returns
     -------
     Dashpot
         Its coefficient is NaN where it could not be read.
     """
-    between = ends_of(table, OF_LINK)
+    between = ends_of(table, OF_LINK, {deck.name: deck for deck in decks})
     coefficient = table.optional_quantity("coefficient", Dimension.DAMPING)
     if table.has("ratio"):
         mass = held_mass(ends_on_ground(between, supports), masses)

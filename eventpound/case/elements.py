@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
+from eventpound.case.decks import PLACE_OF_DECK, place_of_deck
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw
-from eventpound.scene.ends import End, label_of
-from eventpound.scene.point import Point
+from eventpound.scene.deck import Deck
+from eventpound.scene.ends import End, label_of, point_of
+from eventpound.scene.plan_point import ALONG, DIRECTIONS
 from eventpound.scene.seat import Seat
 from eventpound.units import Dimension
 
-_POINT = "a point between bodies, { B2 = 0.4, B3 = 0.6 }"
+_POINT = f"a point between bodies, {{ B2 = 0.4, B3 = 0.6 }}, or of a deck, {PLACE_OF_DECK}"
 _OF_CONTACT = f'the left and the right body; "barrier" may be one of them, or {_POINT}'
 """What a contact is between."""
 OF_LINK = f'two bodies, or a body and "ground"; or {_POINT}'
@@ -35,15 +38,17 @@ def read_body(table: Table) -> Body:
         initial.quantity("displacement", Dimension.LENGTH, 0.0),
         initial.quantity("velocity", Dimension.VELOCITY, 0.0),
         table.text("structure", "what its structure is called", ""),
+        table.choice("direction", DIRECTIONS) if table.has("direction") else ALONG,
     )
     initial.close()
     table.close()
     return body
 
 
-def read_contacts(tables: Sequence[Table]) -> tuple[Contact, ...]:
+def read_contacts(tables: Sequence[Table], decks: Sequence[Deck] = ()) -> tuple[Contact, ...]:
     """Contacts from the ``[[contact]]`` tables, those without a name named after their bodies."""
-    ends = [ends_of(table, _OF_CONTACT) for table in tables]
+    known = {deck.name: deck for deck in decks}
+    ends = [ends_of(table, _OF_CONTACT, known) for table in tables]
     names = read_names(tables, ends)
     contacts = []
     for table, (left, right), name in zip(tables, ends, names, strict=True):
@@ -63,7 +68,9 @@ def read_seats(tables: Sequence[Table]) -> tuple[Seat, ...]:
     return tuple(map(Seat, names, ends))
 
 
-def ends_of(table: Table, accepted: str) -> tuple[End, End]:
+def ends_of(
+    table: Table, accepted: str, decks: Mapping[str, Deck] = MappingProxyType({})
+) -> tuple[End, End]:
     """Both ends of what is between them; empty names where they are missing or wrong."""
     given = table.data["between"] if table.has("between") else None
     if not (isinstance(given, list) and any(isinstance(end, dict) for end in given)):
@@ -71,7 +78,10 @@ def ends_of(table: Table, accepted: str) -> tuple[End, End]:
     ends: list[End] = []
     for end in given:
         try:
-            ends.append(Point(end) if isinstance(end, dict) else str(end))
+            if isinstance(end, dict) and "deck" in end:
+                ends.append(place_of_deck(end, decks))
+            else:
+                ends.append(point_of(end) if isinstance(end, dict) else str(end))
         except InputError as error:
             table.report("between", str(error))
             return "", ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,14 @@ from eventpound.units import Dimension
 _FORMULAS: Mapping[str, Any] = {**PULSES, "harmonic": Harmonic}
 _KINDS = (*_FORMULAS, "record", "none")
 
+ACROSS, ATTACK = "across", "attack"
+"""Keys of the second component, a table, and of the direction of the first."""
+_OF_BOTH = (
+    "format", "units", "time_step", "response", "processing", "start", "reverse", "largest_scale"
+)  # fmt: skip
+_SIZES = ("scale", "pga", "psa")
+"""Keys by which records are read, which hold for both components, and by which they are scaled."""
+
 
 @dataclass(frozen=True, slots=True)
 class Excitation:
@@ -58,6 +66,10 @@ class Excitation:
     largest_scale: float = LARGEST_SCALE
     options: RecordOptions | None = None
     """How the records of a sequence are scaled, each for itself."""
+    across: GroundMotion = field(default_factory=NoMotion)
+    """The second component."""
+    attack: float = 0.0
+    """Angle from x to the first component (rad)."""
 
 
 def read_excitation(table: Table, directory: Path) -> Excitation | None:
@@ -87,8 +99,38 @@ def read_excitation(table: Table, directory: Path) -> Excitation | None:
                 excitation = _read_record(table, directory)
             case _:
                 excitation = _read_formula(table, kind)
+    if excitation is not None:
+        excitation = _in_plan(table, excitation, directory)
     table.close()
     return excitation
+
+
+def _in_plan(table: Table, excitation: Excitation, directory: Path) -> Excitation:
+    """The same with a second component and an angle of attack, where the table has them."""
+    said = dict(excitation.table)
+    attack = table.quantity(ATTACK, Dimension.ANGLE, 0.0)
+    if table.has(ATTACK):
+        said[ATTACK] = attack
+    if not table.has(ACROSS):
+        return replace(excitation, attack=attack, table=said)
+    own, first = table.table(ACROSS), excitation.motion
+    if excitation.suite is not None or isinstance(said.get("file"), list):
+        own.reject("", "none beside a suite or a list of records")
+        return excitation
+    if isinstance(first, Record) and first.psa_at:
+        own.reject("", "none beside a period of the scene in psa_period; give it in s")
+        return excitation
+    given = {"kind": table.data["kind"]} | dict(own.data)
+    if isinstance(first, Record) and given["kind"] == "record":
+        # One factor for both components, unless the second has its own.
+        shared = {key: value for key, value in table.data.items() if key in _OF_BOTH}
+        sized = any(key in own.data for key in _SIZES)
+        given = shared | ({} if sized else {"scale": abs(first.factor)}) | given
+    second = read_excitation(own.with_data(given), directory)
+    if second is None:
+        return excitation
+    said[ACROSS] = dict(second.table)
+    return replace(excitation, across=second.motion, attack=attack, table=said)
 
 
 def for_scene(excitation: Excitation, scene: Scene) -> Excitation:

@@ -24,7 +24,7 @@ from eventpound.units import Dimension
 _UNIT_SCALES = {"amplitude": 1.0, "period": 2.0 * math.pi}
 OF_SCENE = (
     "body", "spring", "dashpot", "rayleigh", "modal_damping", "contact", "support", "force",
-    "seat",
+    "seat", "deck", "joint", "pier", "bearing",
 )  # fmt: skip
 """Tables of a scene in a case."""
 _OF_NEIGHBOURS = ("m", "omega_s", "uy", "Q")

@@ -9,8 +9,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from eventpound.basics.input_files import read_bytes
+from eventpound.case.bearings import read_bearings
 from eventpound.case.damping import read_group_damping
 from eventpound.case.dashpots import read_dashpot
+from eventpound.case.decks import read_decks
 from eventpound.case.elements import read_body, read_contacts, read_seats
 from eventpound.case.excitation import Excitation
 from eventpound.case.pi import OF_SCENE
@@ -25,6 +27,8 @@ from eventpound.motion.free import NoMotion
 from eventpound.scene.at_rest import at_rest
 from eventpound.scene.check import Problem, scene_problems, scene_warnings
 from eventpound.scene.continuation import continued
+from eventpound.scene.joint import ENDS
+from eventpound.scene.plan_point import DIRECTIONS
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Linear
 from eventpound.units import Dimension, quantity
@@ -84,42 +88,57 @@ def read_scene(
     tables = {kind: top.tables(kind) for kind in OF_SCENE}
     said = "where its numbers are from"
     sources = {kind: [t.text("source", said, "") for t in tables[kind]] for kind in SOURCED}
-    bodies = [read_body(table) for table in tables["body"]]
+    in_plan = read_decks(tables["deck"], tables["joint"])
+    carrying = read_bearings(tables["pier"], tables["bearing"], in_plan)
+    piers = [body for body, _ in carrying.bodies]
+    bodies = [*(read_body(table) for table in tables["body"]), *piers, *in_plan.bodies]
     masses = {body.name: body.mass for body in bodies}
     in_suite = excitation is not None and excitation.suite is not None
     given = tables["support"], tables["force"]
     driven = read_driven(*given, masses, directory, in_suite=in_suite)
     supports = [support.name for support in driven.supports]
-    springs = read_springs(tables["spring"], masses, supports)
+    springs = read_springs(tables["spring"], masses, supports, in_plan.decks)
     scene = Scene(
         tuple(bodies),
-        springs,
-        contacts=read_contacts(tables["contact"]),
+        (*springs, *(spring for spring, _ in carrying.springs)),
+        contacts=(*read_contacts(tables["contact"], in_plan.decks), *in_plan.contacts),
         motion=NoMotion() if excitation is None else excitation.motion,
         supports=driven.supports,
         forces=driven.forces,
         seats=read_seats(tables["seat"]),
+        decks=in_plan.decks,
+        across=NoMotion() if excitation is None else excitation.across,
+        attack=0.0 if excitation is None else excitation.attack,
     )
+    # Where the problems of what they stand for are noted.
+    own = tables["spring"].copy()
+    tables["body"] += [table for _, table in carrying.bodies]
+    tables["body"] += [table for table in tables["deck"] for _ in DIRECTIONS]
+    tables["spring"] += [table for _, table in carrying.springs]
+    tables["contact"] += [table for table in tables["joint"] for _ in ENDS]
     start = start_time(top)
     wrong = scene_problems(scene, None)
     if run.has("start") and not (problems or wrong):
         scene = at_start(run, scene, start, directory)
     resting = at_rest(_without(scene, wrong) if wrong else scene, start)
     dashpots = [
-        read_dashpot(table, masses, resting.springs, supports) for table in tables["dashpot"]
+        read_dashpot(table, masses, resting.springs, supports, in_plan.decks)
+        for table in tables["dashpot"]
     ]
+    dashpots += [dashpot for dashpot, _ in carrying.dashpots]
+    tables["dashpot"] += [table for _, table in carrying.dashpots]
     groups = tables["rayleigh"], tables["modal_damping"]
     of_groups = read_group_damping(*groups, bodies, resting.springs, supports)
     scene = replace(scene, dashpots=(*dashpots, *of_groups))
     if not bodies and needed:
-        top.report("[[body]]", "missing; accepted: at least one body")
+        top.report("[[body]]", "missing; accepted: at least one body, or a deck")
     elif bodies:
         # Where bodies are to be placed or go on, they need not be where they can be.
         elsewhere = _starts_elsewhere(top.data.get("run"))
         _add_scene_problems(scene, tables, problems, None if elsewhere else start)
     warnings = list(scene_warnings(scene)) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
-    carried = {} if problems else masses_carried(tables["spring"], springs, masses, supports)
+    carried = {} if problems else masses_carried(own, springs, masses, supports)
     return SceneRead(scene, warnings, carried, driven, sources)
 
 

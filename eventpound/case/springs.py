@@ -14,6 +14,7 @@ from eventpound.case.spring_stiffness import Stiffnesses
 from eventpound.case.table import Table, read_numbers
 from eventpound.errors import InputError
 from eventpound.scene.bouc_wen_parameters import OF_LAW, Parameter, bouc_wen_parameters
+from eventpound.scene.deck import Deck
 from eventpound.scene.ends import End
 from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import (
@@ -83,7 +84,10 @@ _CALLED_IN_SERIES = _answers(
 
 
 def read_springs(
-    tables: Sequence[Table], masses: Mapping[str, float], supports: Sequence[str] = ()
+    tables: Sequence[Table],
+    masses: Mapping[str, float],
+    supports: Sequence[str] = (),
+    decks: Sequence[Deck] = (),
 ) -> tuple[Spring, ...]:
     """Springs from the ``[[spring]]`` tables.
 
@@ -95,13 +99,16 @@ def read_springs(
         Masses of the bodies (kg), for stiffnesses given as frequencies.
     supports : sequence of str
         Names of supports, which count as the ground.
+    decks : sequence of Deck
+        Whose places may be ends.
 
     Returns
     -------
     tuple of Spring
         One a table; those without a name are named after their ends.
     """
-    ends = [ends_of(table, OF_LINK) for table in tables]
+    known = {deck.name: deck for deck in decks}
+    ends = [ends_of(table, OF_LINK, known) for table in tables]
     names = read_names(tables, ends)
     return tuple(
         _read_spring(table, name, between, masses, supports)

@@ -253,6 +253,10 @@ class Table:
             data = {}
         return Table(data, where, self._problems, prefix)
 
+    def with_data(self, data: Mapping[str, object]) -> Table:
+        """The same table with other values, of which nothing was asked yet."""
+        return Table(data, self.where, self._problems, self._prefix)
+
     def tables(self, key: str) -> list[Table]:
         """A list of tables within this one, empty where it is not given."""
         data = self.data[key] if self.has(key) else []

@@ -7,11 +7,13 @@ from dataclasses import asdict
 from types import MappingProxyType
 from typing import Any
 
+from eventpound.case.decks import deck_tables, is_of_deck
 from eventpound.case.run_options import DEFAULTS, RunOptions
 from eventpound.case.solver_options import SolverOptions
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.plan_point import ALONG
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Spring, law_keys, storey_keys
 
@@ -52,7 +54,11 @@ def understood_case(
     found: dict[str, Any] = {
         "title": title,
         "excitation": dict(excitation),
-        **parts_written(scene.bodies, scene.springs, scene.dashpots),
+        **parts_written(
+            [body for body in scene.bodies if not is_of_deck(body.name, scene.decks)],
+            scene.springs,
+            scene.dashpots,
+        ),
         "contact": [
             {
                 "between": contact.written,
@@ -70,12 +76,15 @@ def understood_case(
             **solver.settings,
         },
     }
+    if scene.decks:
+        found["deck"] = deck_tables(scene.decks, {body.name: body for body in scene.bodies})
     if scene.seats:
         found["seat"] = [{"name": s.name, "between": list(s.between)} for s in scene.seats]
     if run.stated.capacities:
         found["capacity"] = {"fractile": run.stated.fractile, **dict(run.stated.capacities)}
     for kind, said in sources.items():
-        for row, source in zip(found[kind], said, strict=True):
+        # What joints, bearings and piers stand for comes last, and has none of its own.
+        for row, source in zip(found[kind], said, strict=False):
             row |= {"source": source} if source else {}
     return found
 
@@ -91,6 +100,7 @@ def parts_written(
                 "mass": body.mass,
                 "initial": {"displacement": body.displacement, "velocity": body.velocity},
                 **({"structure": body.structure} if body.structure else {}),
+                **({} if body.direction == ALONG else {"direction": body.direction}),
             }
             for body in bodies
         ],

@@ -160,6 +160,7 @@ def _compute(case: Case, options: Options, out: Path) -> tuple[Response, dict[st
         raise
     tell_step(f"write results to {out}")
     results.write(response, out, case=case, error_estimate=estimate, started=started)
+    arguments.show_warnings(response.warnings)
     return response, estimate
 
 

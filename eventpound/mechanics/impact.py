@@ -61,17 +61,24 @@ def impact_law(
     # Changes of velocities stand by themselves. Rates of gaps are variables of their own and take
     # these alone: so one far below the rounding of velocities keeps its digits.
     change, left, right = np.zeros(v.size), joints.left, joints.right
+    size = np.zeros(v.size if joints.compliance.size > 0 else 0)
     for i in range(members.size):
         j = members[i]
         impulse[j] = x[i]
         if joints.compliance.size > 0:
             for b in range(v.size):
-                change[b] += answer(joints, b, left[j], right[j]) * x[i]
+                own = answer(joints, b, left[j], right[j]) * x[i]
+                change[b] += own
+                size[b] += abs(own)
             continue
         if left[j] >= 0:
             change[left[j]] -= x[i] / mass[left[j]]
         if right[j] >= 0:
             change[right[j]] += x[i] / mass[right[j]]
+    for b in range(size.size):
+        # Both ends of an edge that strike alike turn no deck, to the last bit.
+        if abs(change[b]) <= CANCELLED * size[b]:
+            change[b] = 0.0
     v += change
     rounding = np.zeros(gap_rate.size)
     for j in range(gap_rate.size):

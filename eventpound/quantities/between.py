@@ -22,6 +22,7 @@ from eventpound.mechanics.link_law import link_law, yielding
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.quantities.loops import z_by_x
 from eventpound.quantities.owners import owners_of
+from eventpound.quantities.plan_signals import signals_in_plan
 from eventpound.quantities.rows import Rerun, close_times, first_step, settled, warn_unsettled
 from eventpound.scene.ends import Joining, opening
 from eventpound.scene.scene import Scene
@@ -151,6 +152,8 @@ def signals_of(scene: Scene, run: Recording) -> dict[str, Floats]:
     for group in structures_of(scene):
         shear = link_force_on(ground, scene, h.force, rate, group)
         found[f"structures.{group[0]}.*_base_shear"] = shear
+    if scene.in_plan:
+        found |= dict(signals_in_plan(scene, h, rate))
     for support in scene.supports:
         shear = link_force_on({support.name}, scene, h.force, rate)
         found[f"supports.{support.name}.*_shear"] = shear

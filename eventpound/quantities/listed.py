@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.quantities import storeys
+from eventpound.quantities import decks, storeys
 from eventpound.quantities import values as v
 from eventpound.quantities.base import Quantity, TakenFrom, column, of_contact, six_of, sum_of
 from eventpound.scene.separation import is_between_bodies, is_between_structures
@@ -29,7 +29,17 @@ LISTED: tuple[Quantity, ...] = (
              column("u")),
     *six_of("acceleration.<body>.*", "absolute acceleration", D.ACCELERATION,
             " between impacts (in an impact it is not finite)",
-            "acceleration", TakenFrom.ACCELERATIONS),
+            "acceleration", TakenFrom.ACCELERATIONS, decks.on_a_line),
+    *six_of("acceleration.<body>.*", "absolute acceleration", D.ACCELERATION,
+            " between impacts, in plan", only=decks.in_plan),
+    *six_of("decks.<deck>.*_rotation", "rotation", D.ANGLE,
+            " of a deck in plan, counter-clockwise", decks.rotation_of, TakenFrom.EXTREMES),
+    Quantity("decks.<deck>.residual_rotation", "residual rotation", D.ANGLE,
+             "Rotation of a deck when the run ends.", decks.residual_rotation),
+    *six_of("corners.<corner>.*_along", "displacement along the bridge", D.LENGTH,
+            " of a corner, relative to the ground"),
+    *six_of("corners.<corner>.*_across", "displacement across the bridge", D.LENGTH,
+            " of a corner, relative to the ground"),
     *six_of(_SPRING + "*_elongation", "elongation", D.LENGTH, ": of a storey, its drift",
             "elongation", TakenFrom.EXTREMES),
     *six_of(_SPRING + "*_force", "force", D.FORCE,
@@ -108,7 +118,11 @@ LISTED: tuple[Quantity, ...] = (
             ": how far the right end of a seat has moved away from the left one"),
     *six_of("base_shear.*", "base shear", D.FORCE,
             ": sum of the forces of springs and dashpots on the ground, positive to the right",
-            "base_shear", TakenFrom.ACCELERATIONS),
+            "base_shear", TakenFrom.ACCELERATIONS, decks.on_a_line),
+    *six_of("base_shear.*", "base shear", D.FORCE,
+            ": sum of the forces along the bridge on the ground, in plan", only=decks.in_plan),
+    *six_of("base_shear_across.*", "base shear across", D.FORCE,
+            ": sum of the forces across the bridge on the ground", only=decks.in_plan),
     Quantity("impacts", "impacts", D.NUMBER,
              "Impacts of all contacts, with those that accumulations stand for.",
              sum_of("impacts"), kind=int),

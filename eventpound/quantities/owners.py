@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from eventpound.scene.deck import CORNERS
 from eventpound.scene.parameters import number_places
 from eventpound.scene.scene import Scene
 from eventpound.scene.structures import structure_names
@@ -17,10 +18,13 @@ def owners_of(scene: Scene, kind: str) -> Sequence[str]:
         "spring": scene.springs,
         "contact": scene.contacts,
         "seat": scene.seats,
+        "deck": scene.decks,
     }
     named: Sequence[Any] | None = (parts | {"support": scene.supports}).get(kind)
     if named is not None:
         return [part.name for part in named]
+    if kind == "corner":
+        return [f"{deck.name}.{corner}" for deck in scene.decks for corner in CORNERS]
     if kind == "dashpot":
         return _dashpots(scene)
     return structure_names(scene) if kind == "structure" else [""]

@@ -152,6 +152,7 @@ def close_times(task: Task, step: float) -> Floats:
     scene = task.scene
     moving: list[GroundMotion] = [
         scene.motion,
+        scene.across,
         *(support.moved_by(scene.motion) for support in scene.supports),
         *(force.history for force in scene.forces),
     ]

@@ -26,6 +26,7 @@ from eventpound.report.design_tables import (
 )
 from eventpound.report.html import Section, table_of, text_part
 from eventpound.report.model_figure import model_figure
+from eventpound.report.plan_view import worst_plan_figure
 from eventpound.report.record_tables import record_cells, record_names, scaling_words
 from eventpound.report.sheets import WIDTH, Block, Columns, Head, Picture, Sheet, Words, share_of
 from eventpound.report.view import View
@@ -262,6 +263,9 @@ def _second(told: Told) -> Iterator[Block]:
     yield Head(" under ".join(filter(None, ["Motion", what_governs(told)])))
     motion = governing_figure(view, worst, str(peaks.idxmax()), told.trade)
     yield Picture(motion, _MOTION)
+    if (plan := worst_plan_figure(view)) is not None:
+        wide, high = plan.get_size_inches()
+        yield Picture(plan, min(_MOTION, WIDTH * high / wide))
     if shocks := told.response.shock_rows:
         yield Head("Demands by shock")
         yield shock_cells(shocks, told.design, told.trade, most=_MOST_OF_SHOCKS)

@@ -30,6 +30,7 @@ from eventpound.report.model_layout import (
     without_couplings,
 )
 from eventpound.report.model_links import WALL, LinkPath, links_drawn
+from eventpound.report.plan_view import plan_figure
 from eventpound.report.style import PALETTE, arrow, literal, new_figure, say, styled
 from eventpound.results.trade import Trade
 from eventpound.scene.body import Body
@@ -37,6 +38,7 @@ from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.ends import End
 from eventpound.scene.grounded import grounded
+from eventpound.scene.plan_point import PlanPoint
 from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, LawName, Slider, Spring
@@ -132,6 +134,8 @@ def model_figure(
     within : tuple of float
         Width and height that the scene has at most (in).
     """
+    if scene.decks:
+        return plan_figure(scene, title, trade=trade, within=within)
     standing = without_couplings(grounded(scene))
     layout = layout_of(standing)
     routes = links_drawn(standing, layout)
@@ -372,10 +376,12 @@ def _faces(layout: Layout, contact: Contact) -> tuple[tuple[float, float], tuple
     return first, face_of(layout, contact.right, -1.0)
 
 
-def _column_at(axes: Axes, layout: Layout, point: Point, place: tuple[float, float]) -> None:
+def _column_at(
+    axes: Axes, layout: Layout, point: Point | PlanPoint, place: tuple[float, float]
+) -> None:
     """The column that a point is on, along the side of its bodies, and the point."""
-    heights = [layout.boxes[name].y for name, _ in point.weights if name in layout.boxes]
-    lowest = min(heights) if len(heights) == len(point.weights) else 0.0
+    heights = [layout.boxes[name].y for name, _ in point.parts if name in layout.boxes]
+    lowest = min(heights) if len(heights) == len(point.parts) else 0.0
     axes.plot([place[0]] * 2, [lowest, max(heights)], color=_INK, linewidth=1.0, zorder=2)
     axes.plot(*place, "o", color=PALETTE[2], markersize=3.5, zorder=5)
 

@@ -30,7 +30,10 @@ _CAPTIONS = {
     "profiles.png": "Extremes of displacements and storey drifts over the height.",
 }
 _MOST_EVENTS = 200
-_KINDS = ("peaks", "velocity", "acceleration", "springs", "contacts", "structures", "supports")
+_KINDS = (
+    "peaks", "velocity", "acceleration", "decks", "corners", "springs", "contacts", "structures",
+    "supports",
+)  # fmt: skip
 """Tables of the summary that have a row a part of the scene."""
 _MOST_OWNERS = 8
 """Bodies, springs or contacts beside one another in a table."""
@@ -119,7 +122,7 @@ def _quantities(summary: Mapping[str, Any]) -> Iterator[html.Part]:
     for kind in _KINDS:
         if rows := summary.get(kind):
             yield html.table_of(_by_owner(kind, rows))
-    single = {"residual": summary["residual"], "base shear": summary["base_shear"]}
+    single = {"residual": summary["residual"], "base shear": summary.get("base_shear", {})}
     single |= {key: summary[key] for key in ("amplification", "pi") if key in summary}
     if energy := dict(summary.get("energy") or {}):
         works = energy.pop("supports", {})

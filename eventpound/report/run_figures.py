@@ -13,6 +13,7 @@ from eventpound.case import read_case
 from eventpound.errors import InputError
 from eventpound.report.displacements import displacement_figure
 from eventpound.report.loops import loop_figure, nonlinear_springs
+from eventpound.report.plan_view import worst_plan_figure
 from eventpound.report.profile import profile_figure
 from eventpound.report.style import Paper, on_paper
 from eventpound.report.towers import towers_of
@@ -47,7 +48,8 @@ def figures(
     -------
     dict
         Figures by the names of their files: ``displacements.png``; where a spring is not
-        linear, ``loops.png``; where storeys stand on one another, ``profiles.png``.
+        linear, ``loops.png``; where storeys stand on one another, ``profiles.png``; of decks in
+        plan ``plan.png``.
 
     Raises
     ------
@@ -64,6 +66,8 @@ def figures(
     drawn = {"displacements.png": displacement_figure(view, other)}
     if nonlinear_springs(view):
         drawn["loops.png"] = loop_figure(view, other)
+    if (plan := worst_plan_figure(view)) is not None:
+        drawn["plan.png"] = plan
     if towers_of(view):
         drawn["profiles.png"] = profile_figure(view, other)
     return drawn

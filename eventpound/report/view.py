@@ -17,8 +17,7 @@ from eventpound.results import StoredResults
 from eventpound.results.trade import Unit, unit_by_size
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import ContactLaw
-from eventpound.scene.ends import End, Joining, direction_of
-from eventpound.scene.point import Point
+from eventpound.scene.ends import End, Joining, direction_of, point_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, LawName
 from eventpound.scene.structures import joined_groups
@@ -238,7 +237,7 @@ class View:
 
 def _sides(entry: Mapping[str, Any]) -> tuple[End, End]:
     """Ends of a spring or a dashpot from its lines in a summary."""
-    first, second = (end if isinstance(end, str) else Point(end) for end in entry["between"])
+    first, second = (end if isinstance(end, str) else point_of(end) for end in entry["between"])
     return first, second
 
 

@@ -40,6 +40,11 @@ def _columns(text: str) -> tuple[_Column, ...]:
 _TABLES: dict[str, tuple[_Column, ...]] = {
     kind: _columns(text)
     for kind, text in (
+        (
+            "decks",
+            "name=deck; mass:mass; weight:force; long=length (m); wide=width (m); "
+            "skew=skew (degrees); x=x (m); y=y (m); inertia=J (kg m^2); radius=r (m)",
+        ),
         ("bodies", "name=body; mass:mass; weight:force; source"),
         (
             "springs",
@@ -81,7 +86,8 @@ def input_tables(inputs: Mapping[str, Any], chosen: tuple[str, ...] = ()) -> Ite
     chosen : tuple of str
         Units of a `Trade`.
     """
-    heavy = max((row["mass"] for row in inputs["bodies"]), default=0.0) >= HEAVY
+    massive = [*inputs["bodies"], *inputs.get("decks", [])]
+    heavy = max((row["mass"] for row in massive), default=0.0) >= HEAVY
     units = _units(Trade(heavy, chosen))
     for kind, columns in _TABLES.items():
         given = inputs.get(kind, [])
@@ -147,8 +153,18 @@ def _cell(value: object, size: float) -> str:
     if value is None:
         return ""
     if isinstance(value, list):
-        return " - ".join(f"({Point(end)})" if isinstance(end, dict) else str(end) for end in value)
+        return " - ".join(map(_end, value))
     return f"{value / size:.5g}" if isinstance(value, float | int) else str(value)
+
+
+def _end(end: object) -> str:
+    """An end, as `eventpound.scene.ends.written` has it."""
+    if not isinstance(end, dict):
+        return str(end)
+    if "deck" not in end:
+        return f"({Point(end)})"
+    x, y = end["at"]
+    return f"{end['deck']} at ({x:.5g}, {y:.5g}) m"
 
 
 def _modes(structure: Mapping[str, Any]) -> Cells:

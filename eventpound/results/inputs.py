@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.case.case import Case
+from eventpound.case.decks import is_of_deck
 from eventpound.case.run_options import RunOptions
 from eventpound.case.understood import contact_law_keys, sources_of
 from eventpound.errors import InputError
@@ -25,6 +26,7 @@ from eventpound.motion.record import Record
 from eventpound.scene.at_rest import at_rest, stiffness_of, theta_at_rest, told_at_rest
 from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import Element
+from eventpound.scene.deck import Deck
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.modes import modes_of
 from eventpound.scene.periods import period_of
@@ -59,8 +61,8 @@ def inputs_of(case: Case) -> dict[str, Any]:
     -------
     dict
         ``title``, ``bodies``, ``springs``, ``dashpots``, ``contacts`` (a row each), ``at_rest``
-        (names of springs, as `eventpound.scene.at_rest.told_at_rest`), ``frames``, ``supports``
-        and ``forces`` where there are some, ``structures``
+        (names of springs, as `eventpound.scene.at_rest.told_at_rest`), ``decks``, ``frames``,
+        ``supports`` and ``forces`` where there are some, ``structures``
         with their ``initial`` and ``post_yield`` modes, ``motion``, ``run``, ``solver`` and
         ``pi``. What a part does not have is left out of its row.
     """
@@ -69,9 +71,11 @@ def inputs_of(case: Case) -> dict[str, Any]:
     carried = {spring.name: _mass_on(case, spring) for spring in scene.springs}
     found: dict[str, Any] = {
         "title": case.title,
+        **({"decks": [_deck(deck) for deck in scene.decks]} if scene.decks else {}),
         "bodies": [
             {"name": b.name, "mass": b.mass, "weight": b.mass * STANDARD_GRAVITY}
             for b in scene.bodies
+            if not is_of_deck(b.name, scene.decks)
         ],
         "springs": [
             _spring(spring, stiffness_of(still), carried[spring.name])
@@ -95,6 +99,23 @@ def inputs_of(case: Case) -> dict[str, Any]:
         for row, source in zip(rows, sources, strict=False):
             row |= {"source": source} if source else {}
     return found
+
+
+def _deck(deck: Deck) -> Row:
+    """A deck in plan; ``r`` makes a displacement of its turn."""
+    (x, y), mass = deck.centre, deck.mass
+    return {
+        "name": deck.name,
+        "mass": mass,
+        "weight": mass * STANDARD_GRAVITY,
+        "long": deck.length,
+        "wide": deck.width,
+        "skew": math.degrees(deck.skew),
+        "x": x,
+        "y": y,
+        "inertia": deck.inertia_about_centre,
+        "radius": deck.radius,
+    }
 
 
 def _frames(scene: Scene) -> dict[str, list[Row]]:

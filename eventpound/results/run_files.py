@@ -76,6 +76,7 @@ def summarise(
         "solver": response.solver,
         "success": response.success,
         "message": response.message,
+        **({"warnings": response.warnings} if response.warnings else {}),
     }
     for named in tabled(runs):
         _put(summary, named, named.of_one(runs))

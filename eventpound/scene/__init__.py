@@ -5,7 +5,10 @@ from eventpound.scene.contact import BARRIER as BARRIER
 from eventpound.scene.contact import Contact as Contact
 from eventpound.scene.contact_law import ContactLaw as ContactLaw
 from eventpound.scene.dashpot import Dashpot as Dashpot
+from eventpound.scene.deck import Deck as Deck
 from eventpound.scene.force import Force as Force
+from eventpound.scene.joint import Joint as Joint
+from eventpound.scene.plan_point import PlanPoint as PlanPoint
 from eventpound.scene.point import Point as Point
 from eventpound.scene.scene import Scene as Scene
 from eventpound.scene.seat import Seat as Seat

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from eventpound.basics.given import Accepted, Number, above_zero, converting, default
+from eventpound.scene.plan_point import ALONG
 from eventpound.units import Dimension
 
 
@@ -23,6 +24,9 @@ class Body:
         positive to the right.
     structure : str
         What the structure that it belongs to is called; by default as its first body.
+    direction : str
+        ``"x"``, the line of the scene and of its ground motion; ``"y"``, across it; or ``"turn"``
+        of a deck in plan (`eventpound.scene.deck`), which no ground motion turns.
 
     Examples
     --------
@@ -35,3 +39,4 @@ class Body:
     displacement: Annotated[Number, Dimension.LENGTH, Accepted("a number (m)")] = default(0.0)
     velocity: Annotated[Number, Dimension.VELOCITY, Accepted("a number (m/s)")] = default(0.0)
     structure: str = ""
+    direction: str = ALONG

@@ -20,6 +20,8 @@ from eventpound.scene.ends import End, opening, weights_of
 from eventpound.scene.grounded import grounded
 from eventpound.scene.linkage import starts_of_supports
 from eventpound.scene.periods import joined
+from eventpound.scene.plan_check import place_problems, plan_problems
+from eventpound.scene.plan_point import PlanPoint
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import (
@@ -75,7 +77,7 @@ class Problem(_Element):
     ----------
     kind : str
         ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"``, ``"excitation"``,
-        ``"support"``, ``"force"`` or ``"seat"``.
+        ``"support"``, ``"force"``, ``"seat"`` or ``"deck"``.
     position : int
         Which of its kind, from 1.
     name : str
@@ -124,14 +126,16 @@ def check_scene(scene: Scene, start: float | None = 0.0) -> None:
 
 
 def scene_problems(scene: Scene, start: float | None = 0.0) -> list[Problem]:
-    """All problems: of bodies, springs, dashpots, contacts, motion, supports, forces, seats."""
+    """All problems, of bodies, decks, springs and whatever else a scene has."""
     springs = [*_spring_problems(scene)]
     return [
         *_body_problems(scene),
+        *_deck_problems(scene),
         *(springs or _stability_problems(scene, start or 0.0)),
         *_dashpot_problems(scene),
         *_contact_problems(scene, start),
         *motion_problems(scene.motion),
+        *motion_problems(scene.across),
         *_support_problems(scene),
         *_force_problems(scene),
         *_seat_problems(scene),
@@ -176,6 +180,14 @@ def _body_problems(scene: Scene) -> Iterator[Problem]:
         yield from element.numbers(body)
 
 
+def _deck_problems(scene: Scene) -> Iterator[Problem]:
+    elements = [_Element("deck", i, deck.name) for i, deck in enumerate(scene.decks, 1)]
+    yield from _name_problems(elements)
+    for element, deck in zip(elements, scene.decks, strict=True):
+        yield from element.numbers(deck)
+    yield from (Problem(*wrong) for wrong in plan_problems(scene))
+
+
 def _some(names: Sequence[str], others: Sequence[str] = ()) -> str:
     """Names as a message lists them: the first ones, and all others."""
     return ", ".join([*names[:8], *["..."] * (len(names) > 8), *others])
@@ -218,6 +230,10 @@ def _point_problems(
             if end not in (known | {fixed, *held}):
                 some = _some(names, [fixed, *held])
                 yield element.problem("between", end, f"one of {some}, or a point")
+            continue
+        if isinstance(end, PlanPoint):
+            for found, accepted in place_problems(end, scene):
+                yield element.problem("between", found, accepted)
             continue
         for name, weight in end.weights:
             if name not in (known | {GROUND, *held}):

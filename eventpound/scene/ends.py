@@ -9,13 +9,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from eventpound.errors import told_of
+from eventpound.errors import InputError, told_of
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.plan_point import PlanPoint
 from eventpound.scene.point import Point, Weights
 
-End = str | Point
-"""The name of a body or support, ``"ground"``, ``"barrier"``, or a point between bodies."""
-GivenEnd = End | Mapping[str, float | str]
+End = str | Point | PlanPoint
+"""A body's or support's name, ``"ground"``, ``"barrier"``, a point between bodies or of a deck."""
+GivenEnd = End | Mapping[str, Any]
 """An end as it may be given: a mapping of names to weights is a point."""
 Direction = tuple[tuple[str, float], ...]
 """By how much each of some names opens what is between two ends."""
@@ -33,7 +34,7 @@ class Joining:
 
     @property
     def at_point(self) -> bool:
-        """Whether an end of it is a point between bodies."""
+        """Whether an end of it is a point between bodies, or of a deck."""
         return any(not isinstance(end, str) for end in self.sides)
 
     @property
@@ -47,7 +48,7 @@ class Joining:
         return direction_of(self.sides)
 
     @property
-    def written(self) -> list[str | dict[str, float]]:
+    def written(self) -> list[str | Mapping[str, object]]:
         """Its two ends as a case writes them."""
         return [written(end) for end in self.sides]
 
@@ -76,7 +77,7 @@ def label_of(end: End) -> str:
     return end if isinstance(end, str) else end.label
 
 
-def written(end: End) -> str | dict[str, float]:
+def written(end: End) -> str | Mapping[str, object]:
     """An end as a case writes it."""
     return end if isinstance(end, str) else end.written
 
@@ -93,8 +94,24 @@ def read_ends(owner: Any, key: str) -> None:
     if not any(isinstance(end, Mapping) for end in ends):
         return
     with told_of(f"{type(owner).__name__}: {key}: "):
-        read = tuple(Point(end) if isinstance(end, Mapping) else end for end in ends)
+        read = tuple(point_of(end) if isinstance(end, Mapping) else end for end in ends)
     object.__setattr__(owner, key, read[0] if ends is not given else read)
+
+
+def point_of(given: Mapping[str, Any]) -> Point | PlanPoint:
+    """A point as it is written: of a deck where it says so.
+
+    Raises
+    ------
+    InputError
+        Where it is none.
+    """
+    if "deck" not in given:
+        return Point(given)
+    keys = "deck", "at", "normal", "radius"
+    if given.keys() != {*keys}:
+        raise InputError(f"found {dict(given)!r}; accepted: a place with {', '.join(keys)}")
+    return PlanPoint(*(given[key] for key in keys))
 
 
 def opening(

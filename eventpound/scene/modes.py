@@ -34,6 +34,7 @@ from eventpound.scene.damping import dashpots_beside, rayleigh_coefficients, ray
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import RIGID, joined, over_mass
+from eventpound.scene.plan_point import ALONG
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
 from eventpound.scene.structures import joined_groups
@@ -83,7 +84,8 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
         Where a stiffness over a mass is no double.
     """
     scene = grounded(at_rest(scene))
-    mass = np.array([b.mass for name in bodies for b in scene.bodies if b.name == name])
+    own = [b for name in bodies for b in scene.bodies if b.name == name]
+    mass = np.array([b.mass for b in own])
     ends = {GROUND, *bodies}
     springs = [s for s in scene.springs if ends.issuperset(s.ends)]
     dashpots = [d for d in scene.dashpots if ends.issuperset(d.ends)]
@@ -101,7 +103,9 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
         period = 2.0 * np.pi / omega
     # Relative to the largest, because the sum of masses may be no double.
     relative = mass / mass.max()
-    share = (relative @ (shape * root.max())) ** 2 / relative.sum()
+    # In plan what moves along the ground motion takes part alone.
+    moved = relative * np.array([b.direction == ALONG for b in own])
+    share = (moved @ (shape * root.max())) ** 2 / (moved.sum() or 1.0)
     return Modes(
         tuple(bodies),
         period,

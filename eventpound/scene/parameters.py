@@ -5,7 +5,8 @@ spring.<name>.<number of its law>; of a series spring .parts.<1, 2, ...>.<number
 dashpot.<first>-<second>.coefficient; .2 ahead of the last dot for the second of a pair
 contact.<name>.gap, .restitution; of one with a law .stiffness, .damping
 support.<name>.delay, of one that has a delay
-excitation.<number of the motion>: amplitude, period, start, scale, ...
+excitation.<number of the motion>: amplitude, period, start, scale, ...; in plan .attack
+excitation.across.<number>: of the second component; the factor on a record is one for both
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ _DIMENSIONS = {
     for kind, classes in _MADE.items()
     for made in classes
     for name, dimension in numbers_of(made).items()
-}
+} | {("excitation", "attack"): Dimension.ANGLE}
 
 
 def dimension_of_number(key: str) -> Dimension | None:
@@ -67,8 +68,8 @@ class Place:
     Parameters
     ----------
     kind : str
-        ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"``, ``"support"`` or
-        ``"excitation"``.
+        ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"``, ``"support"``,
+        ``"excitation"``, ``"across"`` or, of the scene itself, ``"plan"``.
     index : int
         Position among its kind, from 0.
     field : str
@@ -119,13 +120,16 @@ def number_places(scene: Scene) -> dict[str, Place]:
         if support.delay is not None:
             add(f"support.{support.name}", "support", i, support)
     add("excitation", "excitation", 0, scene.motion)
+    if scene.in_plan:
+        places["excitation.attack"] = Place("plan", 0, "attack")
+        add("excitation.across", "across", 0, scene.across)
     return places
 
 
 def value_at(scene: Scene, place: Place) -> Any:
     """The number at a place."""
-    if place.kind == "excitation":
-        return getattr(scene.motion, place.field)
+    if place.kind in _ALONE:
+        return getattr(_ALONE[place.kind](scene), place.field)
     owner: Any = getattr(scene, _COLLECTION[place.kind])[place.index]
     if place.kind == "spring" and place.field != WEIGHT:
         owner = owner.law if place.part < 0 else owner.law.parts[place.part]
@@ -134,6 +138,12 @@ def value_at(scene: Scene, place: Place) -> Any:
     return getattr(owner, place.field)
 
 
+_ALONE: Mapping[str, Callable[[Scene], Any]] = {
+    "excitation": lambda scene: scene.motion,
+    "across": lambda scene: scene.across,
+    "plan": lambda scene: scene,
+}
+"""What has numbers and is one in a scene."""
 _COLLECTION = {
     "body": "bodies",
     "spring": "springs",
@@ -160,16 +170,28 @@ def with_values(scene: Scene, values: Mapping[Place, float]) -> Scene:
     """
     changes: dict[str, Any] = {}
     for place, value in values.items():
-        if place.kind == "excitation":
+        if place.kind == "plan":
+            changes[place.field] = float(value)
+        if place.kind in _ALONE:
             continue
         collection = _COLLECTION[place.kind]
         owners = changes.setdefault(collection, list(getattr(scene, collection)))
         owners[place.index] = _changed(owners[place.index], place, float(value))
-    return replace(
-        scene,
-        motion=motion_with(scene.motion, values),
-        **{collection: tuple(owners) for collection, owners in changes.items()},
-    )
+    motion = motion_with(scene.motion, values)
+    if scene.in_plan:
+        changes["across"] = _across_with(scene, motion, values)
+    return replace(scene, motion=motion, **changes)
+
+
+def _across_with(scene: Scene, motion: GroundMotion, values: Mapping[Place, float]) -> GroundMotion:
+    """The second component beside the first as it has become; of records the factors keep pace."""
+    own, before = scene.across, scene.motion
+    if isinstance(own, Record) and isinstance(before, Record) and isinstance(motion, Record):
+        ratio = motion.factor / before.factor
+        if ratio != 1.0:
+            sized: dict[str, Any] = {"scale": abs(own.factor * ratio), "pga": None, "psa": None}
+            own = own.like(**sized)
+    return motion_with(own, values, "across")
 
 
 def told_of_variants(
@@ -181,8 +203,10 @@ def told_of_variants(
     return np.array([tell(with_values(scene, each)) for each in at])[which]
 
 
-def motion_with(motion: GroundMotion, values: Mapping[Place, float]) -> GroundMotion:
-    """The motion with other numbers; what is no number of a motion is passed over.
+def motion_with(
+    motion: GroundMotion, values: Mapping[Place, float], kind: str = "excitation"
+) -> GroundMotion:
+    """The motion with other numbers; what is no number of it is passed over.
 
     Raises
     ------
@@ -190,7 +214,7 @@ def motion_with(motion: GroundMotion, values: Mapping[Place, float]) -> GroundMo
         Where the motion refuses them.
     """
     changes: dict[str, Any] = {
-        place.field: float(value) for place, value in values.items() if place.kind == "excitation"
+        place.field: float(value) for place, value in values.items() if place.kind == kind
     }
     if not changes:
         return motion

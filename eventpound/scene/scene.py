@@ -4,22 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import field
+from typing import Annotated
 
-from eventpound.basics.given import Given, converting, default
+from eventpound.basics.given import Given, Number, converting, default
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.free import NoMotion
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.deck import Deck
 from eventpound.scene.force import Force
+from eventpound.scene.plan_point import ALONG
 from eventpound.scene.seat import Seat
 from eventpound.scene.spring import Hysteretic, LawName, Spring
 from eventpound.scene.support import Support
+from eventpound.units import Dimension
 
 
 @converting
 class Scene:
-    """Bodies on a line, what joins and parts them, and the motion of the ground.
+    """Bodies on a line or in plan, what joins and parts them, and the motion of the ground.
 
     Parameters
     ----------
@@ -35,6 +39,12 @@ class Scene:
         What acts on bodies.
     seats : sequence of Seat
         What carries ends of decks; they move nothing.
+    decks : sequence of Deck
+        Shapes of the decks in plan, whose coordinates are among the bodies.
+    across : GroundMotion
+        The second component of the ground motion, a quarter turn to the left of `motion`.
+    attack : float
+        Angle (rad) from x to the direction of `motion`, to the left; or a string, ``"30 deg"``.
 
     Examples
     --------
@@ -56,6 +66,20 @@ class Scene:
     supports: Given[tuple[Support, ...], Iterable[Support]] = default(())
     forces: Given[tuple[Force, ...], Iterable[Force]] = default(())
     seats: Given[tuple[Seat, ...], Iterable[Seat]] = default(())
+    decks: Given[tuple[Deck, ...], Iterable[Deck]] = default(())
+    across: GroundMotion = field(default_factory=NoMotion)
+    attack: Annotated[Number, Dimension.ANGLE] = default(0.0)
+
+    @property
+    def in_plan(self) -> bool:
+        """Whether bodies move otherwise than along the line of the ground motion."""
+        turned = self.attack != 0.0 or not isinstance(self.across, NoMotion)
+        return turned or any(body.direction != ALONG for body in self.bodies)
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether the engine has it otherwise than it is: with supports, forces, or in plan."""
+        return bool(self.supports or self.forces or self.in_plan)
 
     @property
     def hysteretic_springs(self) -> list[str]:

@@ -38,8 +38,8 @@ def plugins() -> Plugins[Solver]:
 
 
 def takes_loads(solver: Solver, scene: Scene) -> bool:
-    """Whether a solver takes the supports and forces of a scene, if there are any."""
-    return not (scene.supports or scene.forces) or getattr(solver, "takes_supports", False)
+    """Whether a solver takes the supports and forces of a scene, or its decks in plan."""
+    return not scene.is_driven or getattr(solver, "takes_supports", False)
 
 
 def knows_laws(solver: Solver, scene: Scene) -> bool:

@@ -12,14 +12,20 @@ from dataclasses import replace
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.supported import lowered, moving_supports, support_motion
+from eventpound.mechanics.supported import (
+    components,
+    lowered,
+    moving_supports,
+    support_motion,
+)
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.ends import Joining, opening
+from eventpound.scene.plan_point import ALONG, TURN, coordinate_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Energy, History, Recording, SupportHistory, Task
-from eventpound.tolerances import OF_ROWS, OF_SUPPORT, SOON
+from eventpound.tolerances import OF_ROWS, OF_SUPPORT, SOON, TURNED_TOO_FAR
 
 LINES = 5
 """Lines of the history before that instant at which contacts are looked at."""
@@ -41,7 +47,7 @@ def with_supports(task: Task, solve: Callable[[Task], Recording]) -> Recording:
         As of the solver; where supports close in on a body between them.
     """
     scene = task.scene
-    if not (scene.supports or scene.forces):
+    if not scene.is_driven:
         return solve(task)
     try:
         recording = solve(replace(task, scene=lowered(scene, task.start)))
@@ -56,13 +62,48 @@ def with_supports(task: Task, solve: Callable[[Task], Recording]) -> Recording:
     closed = _closed_in(recording, task)
     if closed is not None:
         raise closed
+    turned = first_turned_too_far(recording, scene)
+    if turned is not None:
+        deck, t = turned
+        text = (
+            f"deck {deck!r} has turned by more than {TURNED_TOO_FAR} rad, which is not small; hold "
+            "it by springs, or end the run before"
+        )
+        until = own_part(solve(replace(task, scene=lowered(scene, task.start), end=t)), scene)
+        raise ComputationError(text, t, replace(until, success=False, message=text))
     return own_part(recording, scene)
+
+
+def first_turned_too_far(recording: Recording, scene: Scene) -> tuple[str, float] | None:
+    """The deck that has turned too far for the geometry of rest, and a time at which it has (s)."""
+    found = list[tuple[float, str]]()
+    names, h, peaks = (
+        [body.name for body in scene.bodies],
+        recording.history,
+        recording.displacement,
+    )
+    for deck in scene.decks:
+        b, far = names.index(coordinate_of(deck.name, TURN)), TURNED_TOO_FAR * deck.radius
+        found += [(float(t), deck.name) for t in h.t[np.abs(h.u[:, b]) > far][:1]]
+        found += [
+            (float(times[b]), deck.name)
+            for values, times in (
+                (peaks.maximum, peaks.time_of_maximum),
+                (-peaks.minimum, peaks.time_of_minimum),
+            )
+            if values[b] > far
+        ]
+    # What is so from the start has no run before it.
+    later = [(t, name) for t, name in found if t > h.t[0]]
+    return None if not later else (min(later)[1], min(later)[0])
 
 
 def own_part(recording: Recording, scene: Scene) -> Recording:
     """A recording without the bodies that stand for supports in the lowered `scene`."""
     recording = recording.of_bodies(np.s_[len(moving_supports(scene)) :])
     history = recording.history
+    if scene.in_plan:
+        recording = replace(recording, history=_on_moving_ground(history, scene))
     motions = [support_motion(s, scene.motion, history.t) for s in scene.supports]
     shape = history.t.size, len(motions)
     s, sv = (np.reshape([m[i] for m in motions], shape[::-1]).T.copy() for i in range(2))
@@ -71,6 +112,17 @@ def own_part(recording: Recording, scene: Scene) -> Recording:
         supports=SupportHistory(s, sv, forces_on_supports(scene, history, sv)) if motions else None,
         energy=_of_all_supports(recording.energy, scene),
     )
+
+
+def _on_moving_ground(history: History, scene: Scene) -> History:
+    """The history in plan with the ground motion, which the engine has as loads."""
+    a, ground = history.a.copy(), np.zeros(history.t.size)
+    for signal, part in components(scene, ALONG):
+        ground += part * signal.acceleration(history.t)
+    for b, body in enumerate(scene.bodies):
+        for signal, part in components(scene, body.direction):
+            a[:, b] += part * signal.acceleration(history.t)
+    return replace(history, a=a, ground=ground)
 
 
 def forces_on_supports(scene: Scene, history: History, rates: Floats) -> Floats:

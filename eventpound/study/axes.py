@@ -3,6 +3,7 @@
 pi.<term>                        a Π-term, by the keys of `eventpound.scene.pi_terms`
 body.<name>.mass, ...            a number of the scene, by its dotted key
 excitation.kind, run.duration    a key of the case: other words, another scene
+deck.skew, joint.middle.gap      a key of decks in plan, of all or of one: another scene
 """
 
 from __future__ import annotations
@@ -34,7 +35,11 @@ _WORDS = (
 MOST_VALUES = 1_000_000
 """Values of a range; more is a slip."""
 _RUN = "run."
-_ROOTS = ("pi.", "body.", "spring.", "dashpot.", "contact.", "support.", "excitation.", _RUN)
+OF_PLAN = "deck.", "joint.", "pier.", "bearing."
+"""Tables that are more than one number of a scene: of one by its name, or of all, ``deck.skew``."""
+_ROOTS = (
+    "pi.", "body.", "spring.", "dashpot.", "contact.", "support.", "excitation.", *OF_PLAN, _RUN
+)  # fmt: skip
 _SPACINGS = ("linear", "logarithmic")
 
 
@@ -110,7 +115,7 @@ def _read_axis(table: Table, directory: Path) -> NumberAxis | WordAxis | None:
         table.reject("key", accepted)
         key = ""
     together = table.text("zip", "some text") if table.has("zip") else ""
-    words = key in _WORDS or key.startswith(_RUN)
+    words = key in _WORDS or key.startswith((_RUN, *OF_PLAN))
     if table.has("files"):
         values = _files(table, key, directory)
     elif table.has("values"):

@@ -27,7 +27,7 @@ from eventpound.case.suite import RECORDS, with_suite
 from eventpound.case.table import CaseProblem, Table
 from eventpound.errors import InputError
 from eventpound.scene.periods import T_1
-from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
+from eventpound.study.axes import OF_PLAN, PI, NumberAxis, WordAxis, read_axes
 from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities
 from eventpound.study.kinds import has_records
@@ -238,8 +238,27 @@ def _with_words(document: _Document, words: Mapping[str, object]) -> dict[str, o
     changed = dict(document)
     for key, value in words.items():
         table, _, name = key.partition(".")
+        if key.startswith(OF_PLAN):
+            changed[table] = _of_plan(changed.get(table), table, name, value)
+            continue
         changed[table] = _merged(changed.get(table, {}), {name: value})
     return changed
+
+
+def _of_plan(tables: object, kind: str, path: str, value: object) -> list[object]:
+    """Tables of decks and the like with another value of a key, of all or of the one it names.
+
+    Raises
+    ------
+    InputError
+        Where there is no such table.
+    """
+    owner, _, key = path.rpartition(".")
+    given = tables if isinstance(tables, list) else []
+    meant = [isinstance(each, dict) and owner in ("", each.get("name")) for each in given]
+    if not any(meant):
+        raise InputError(f"[[study.axis]] ({kind}.{path}): found no [[{kind}]] of that name")
+    return [{**e, key: value} if m else e for e, m in zip(given, meant, strict=True)]
 
 
 def _with_first_values(document: _Document, axes: Sequence[NumberAxis]) -> _Document:

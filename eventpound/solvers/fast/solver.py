@@ -109,7 +109,7 @@ class Fast:
 
     def ready(self, task: Task) -> Ready | None:
         """The task, to be run with other numbers; see `eventpound.solvers.base.Solver`."""
-        return None if task.scene.supports or task.scene.forces else Ready(task)
+        return None if task.scene.is_driven else Ready(task)
 
 
 class Ready:
@@ -118,7 +118,7 @@ class Ready:
     Parameters
     ----------
     task : Task
-        The run of the scene as it is, which has no supports and forces any more.
+        The run of the scene as it is, which has no supports and forces any more, and is on a line.
     """
 
     def __init__(self, task: Task) -> None:

@@ -1,0 +1,55 @@
+"""The plan of a bridge: what is drawn where."""
+
+import numpy as np
+import pytest
+
+from eventpound.report.model_figure import model_figure
+from eventpound.report.plan_view import plan_figure
+from eventpound.scene import BARRIER, Deck, Joint, Scene
+from eventpound.scene.deck import place_in_a_row
+
+
+def bridge():
+    bare = [Deck("A", "900 t", "36 m", "11 m", 0.5), Deck("B", "700 t", "28 m", "11 m", 0.5)]
+    places = place_in_a_row(bare, [0.04])
+    decks = [
+        Deck(d.name, d.mass, d.length, d.width, d.skew, at)
+        for d, at in zip(bare, places, strict=True)
+    ]
+    known = {deck.name: deck for deck in decks}
+    joints = (
+        Joint("west", (BARRIER, "A"), "6 cm", 0.5),
+        Joint("middle", ("A", "B"), "4 cm", 0.5),
+    )
+    contacts = [contact for joint in joints for contact in joint.contacts(known)]
+    return Scene([b for d in decks for b in d.bodies()], contacts=contacts, decks=decks)
+
+
+def texts(figure):
+    return [text.get_text() for text in figure.axes[0].texts]
+
+
+def test_decks_and_gaps_at_rest():
+    shown = texts(model_figure(bridge(), "two spans"))
+    assert {"A", "B", "west.lower\n60 mm", "middle.upper\n40 mm"} <= set(shown)
+
+
+def test_decks_at_an_instant():
+    scene = bridge()
+    state = dict.fromkeys((b.name for b in scene.bodies), 0.0)
+    state |= {"A.x": -0.03, "B.turn": 1e-3 * scene.decks[1].radius}
+    figure = plan_figure(scene, state=state)
+    shown = texts(figure)
+    assert "A\n0 mrad" in shown
+    assert "B\n1 mrad" in shown
+    opened = 0.06 - 0.03 * np.cos(0.5)
+    assert f"west.lower\n{1e3 * opened:.3g} mm" in shown
+    assert "times larger" in figure.axes[0].get_title()
+
+
+@pytest.mark.parametrize("factor", [1.0, 1e-3])
+def test_a_state_is_drawn_as_large_whatever_its_size(factor):
+    scene = bridge()
+    state = dict.fromkeys((b.name for b in scene.bodies), 0.0) | {"A.x": 0.5 * factor}
+    times = float(plan_figure(scene, state=state).axes[0].get_title().split()[-3])
+    assert times == pytest.approx(min(100.0, 5.0 / factor), rel=0.6)
