@@ -13,10 +13,10 @@ import numpy as np
 from eventpound.contact.cascade import WINDOW, is_endless, is_plastic
 from eventpound.contact.event_rows import EventRow, kind_of_impact, new_group, write_event
 from eventpound.contact.modes import IMPACT, duty
-from eventpound.contact.state import Instant, Now
+from eventpound.contact.state import Instant, Now, between_now
 from eventpound.mechanics.clusters import Clusters, close_one, form_clusters
 from eventpound.mechanics.contact_problem import Joints
-from eventpound.mechanics.followers import answers, is_support
+from eventpound.mechanics.followers import answers, drive, is_support, own_mass
 from eventpound.mechanics.impact import impact_law, inverse_mass, newton, push_apart
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
@@ -109,7 +109,7 @@ def _still_several(at: Instant) -> None:
 @kernel
 def clusters_of(resting: Bools, pressed: Bools, at: Instant) -> Clusters:
     """Clusters with these contacts (K,) at rest."""
-    return form_clusters(at.left, at.right, at.opening, resting, pressed, at.mass, at.weights)
+    return form_clusters(between_now(at), resting, pressed)
 
 
 @kernel
@@ -151,11 +151,9 @@ def _put_followers(clusters: Clusters, offset: Floats, mass: Floats, x: Floats) 
     for b in range(mass.size):
         c = clusters.of_body[b]
         if c >= 0:
-            moment[c] += 0.0 if is_support(b, mass) else mass[b] * (x[b] - offset[b])
+            moment[c] += own_mass(b, mass) * (x[b] - offset[b])
             bodies[c] += 1
-    for b in range(mass.size):
-        if clusters.of_body[b] >= 0 and is_support(b, mass):
-            moment[clusters.of_body[b]] = x[b] - offset[b]
+    drive(clusters.of_body, mass, x - offset, moment)
     answers(compliance, moment, placed)
     for c in range(count):
         for d in range(count):

@@ -14,17 +14,15 @@ import numpy as np
 from eventpound.contact.cascade import end_flight
 from eventpound.contact.event_rows import write_changes
 from eventpound.contact.impacts import DONE, MEANING, NO_FORCES, end_impacts, settle_closed
-from eventpound.contact.kinks import still_rate, turn_at_kinks
+from eventpound.contact.kinks import turn_at_kinks
 from eventpound.contact.modes import ACCELERATION, duty
-from eventpound.contact.rest import Touching, rest_contacts
-from eventpound.contact.state import Instant
-from eventpound.mechanics.elements import memory_on_branches
+from eventpound.contact.rest import rest_contacts, touching_of
+from eventpound.contact.state import Instant, between_now
 from eventpound.mechanics.followers import on_body
-from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import copy_numbers
-from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
+from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
 from eventpound.tolerances import OF_A_FLIGHT, TOGETHER
 
 
@@ -123,45 +121,8 @@ def decide_rests(z: Floats, forcing: Forcing, at: Instant) -> int:
     at : Instant
         The instant, its impacts over.
     """
-    resting, pressed, solved = rest_contacts(touching_of(z, forcing, at))
+    resting, pressed, solved = rest_contacts(touching_of(between_now(at), z, forcing, at))
     return take_rests(resting, pressed, solved, at)
-
-
-@kernel
-def touching_of(z: Floats, forcing: Forcing, at: Instant) -> Touching:
-    """The acceleration problem of an instant; arguments as above."""
-    return touching_between(at.left, at.right, at.opening, z, forcing, at)
-
-
-@kernel
-def touching_between(
-    left: Ints, right: Ints, opening: Floats, z: Floats, forcing: Forcing, at: Instant
-) -> Touching:
-    """`touching_of`, the contacts between these ends and with these openings (K,)."""
-    # Of the present branch; F = k (x - o) = k x + f.
-    stiffness = np.where(at.branch < 0, at.compression, at.extension)
-    return Touching(
-        undecided=(at.gap == 0.0) & (at.gap_rate == 0.0),
-        pressed=np.zeros(at.gap.size, np.bool_),
-        released=at.released,
-        u=at.u,
-        v=at.v,
-        z=z,
-        left=left,
-        right=right,
-        gap=opening,
-        mass=at.mass,
-        weights=at.weights,
-        link_ends=at.ends,
-        law=LinkLaw(at.law.damping, memory_on_branches(at.law.memory, at.branch)),
-        hysteretic=at.hysteretic,
-        stiffness=stiffness,
-        preload=-stiffness * at.offset,
-        forcing=forcing,
-        speed_noise=still_rate(at.length, at.time),
-        acceleration=at.length / at.time**2,
-        time=at.time,
-    )
 
 
 @scalar_kernel

@@ -26,26 +26,25 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.impacts import DONE, clusters_of, put_as_one
-from eventpound.contact.instant import any_may_rest, take_rests, touching_between, touching_of
+from eventpound.contact.instant import any_may_rest, take_rests
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import (
     ORDER,
     Touching,
     accelerations,
-    noise_of,
-    pressed_as_one,
     rest_contacts,
-    round_as_the_scene,
     system_of,
+    touching_of,
 )
-from eventpound.contact.state import Instant
-from eventpound.mechanics.clusters import Clusters, form_clusters
+from eventpound.contact.rounding import noise_of, round_as_the_scene
+from eventpound.contact.state import Instant, between_now
+from eventpound.mechanics.clusters import ContactEnds
 from eventpound.mechanics.followers import is_support, rows_of
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.borrowing import copy_numbers, put_numbers
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.box import BoxJoints, least_in_box, unless_rounding
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.tolerances import TAKEN_OVER
@@ -108,14 +107,14 @@ def decide_sticks(z: Floats, forcing: Forcing, noise: float, sliders: Ints, at: 
     if not any_may_rest(at):
         # A cascade of impacts between what slips needs no more.
         return DONE
-    touching = touching_of(z, forcing, at)
+    touching = touching_of(between_now(at), z, forcing, at)
     members = np.flatnonzero(touching.undecided)
     force, found = _forces(members, touching, sliders, at)
     if not found:
         return take_rests(touching.undecided, at.pressed, False, at)
     pressed = _take_sides(members, force, noise, sliders, at)
     # Who rests beside what is known to be pressed.
-    touching = touching_between(*_directed(sliders, at), z, forcing, at)
+    touching = touching_of(_directed(sliders, at), z, forcing, at)
     copy_numbers(touching.undecided & ~pressed, touching.undecided)
     copy_numbers(pressed, touching.pressed)
     resting, pressed, solved = rest_contacts(touching)
@@ -157,10 +156,9 @@ def _forces(members: Ints, touching: Touching, sliders: Ints, at: Instant) -> tu
             low[i] = -high[i]
             # What slips along its branch is pulled by that force.
             start[i] = low[i] * at.branch[link]
-    ends = touching.left[members], touching.right[members]
-    rows = rows_of(*ends, touching.mass.size, touching.weights)
+    rows = rows_of(at.left[members], at.right[members], at.mass.size, at.weights)
     acceleration, noise = _accelerations(touching, rows.shape[1])
-    mass = touching.mass[: noise.size]
+    mass = at.mass[: noise.size]
     return least_in_box(BoxJoints(rows, mass, acceleration, noise, low, high, start))
 
 
@@ -171,14 +169,14 @@ def _accelerations(touching: Touching, bodies: int) -> tuple[Floats, Floats]:
     Behind the first row stand the Taylor coefficients of those of supports, where not all vanish:
     they may be less than the rounding of a sum, and still tell who gives way.
     """
-    mass, none = touching.mass, np.zeros(touching.undecided.size, np.bool_)
-    system, y = system_of(touching, pressed_as_one(touching, none))
+    mass, none = touching.at.mass, np.zeros(touching.undecided.size, np.bool_)
+    system, y, _ = system_of(touching, none)
     supports = 0
     for b in range(mass.size):
         supports += is_support(b, mass)
     found = accelerations(y, system, ORDER if supports > 0 else 1, touching)
     rough = round_as_the_scene(system, touching.forcing)
-    noise = noise_of(found, np.zeros(mass.size), rough, y, system, touching)
+    noise = noise_of(found, np.zeros(mass.size), rough, y, system, touching.forcing, touching.at)
     rows, count = np.zeros((1 + found.shape[0], bodies)), 1
     rows[0] = found[0, :bodies]
     for k in range(found.shape[0]):
@@ -212,34 +210,11 @@ def _take_sides(members: Ints, force: Floats, noise: float, sliders: Ints, at: I
 
 
 @kernel
-def _directed(sliders: Ints, at: Instant) -> tuple[Ints, Ints, Floats]:
-    """Ends and openings of the contacts (K,), those of sliders in the directions of their slips."""
+def _directed(sliders: Ints, at: Instant) -> ContactEnds:
+    """What the contacts are between, those of sliders in the directions of their slips."""
     left, right, opening = at.left.copy(), at.right.copy(), at.opening.copy()
     for i in range(sliders.size):
         j = at.gap.size - sliders.size + i
         if at.branch[sliders[i]] < 0:
             left[j], right[j], opening[j] = at.right[j], at.left[j], -at.opening[j]
-    return left, right, opening
-
-
-@kernel
-def locked_beside_sliders(
-    left: Ints,
-    right: Ints,
-    opening: Floats,
-    resting: Bools,
-    sliders: int,
-    mass: Floats,
-    weights: Floats,
-    clusters: Clusters,
-) -> Bools:
-    """Resting contacts (R,) that cannot open: the last ones, of sliders, give way either way."""
-    own, members = resting.copy(), clusters.resting
-    own[own.size - sliders :] = False
-    alone = form_clusters(left, right, opening, own, own, mass, weights)
-    locked = np.zeros_like(resting)
-    put_numbers(alone.locked, alone.resting, locked)
-    result = np.zeros(members.size, np.bool_)
-    for i in range(members.size):
-        result[i] = locked[members[i]]
-    return result
+    return ContactEnds(left, right, opening, at.mass, at.weights, left.size)

@@ -6,8 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.clusters import ContactEnds
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints, Records
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.records import NamedNumbers
 
 
@@ -74,3 +76,9 @@ class Instant(NamedTuple):
     before: Floats  # (N,): velocity before the impacts (m/s)
     now: Records  # (1,): a `Now`
     events: Floats  # (e, EVENT_WIDTH): rows
+
+
+@kernel
+def between_now(at: Instant) -> ContactEnds:
+    """What the contacts of an instant are between."""
+    return ContactEnds(at.left, at.right, at.opening, at.mass, at.weights, at.gap.size)

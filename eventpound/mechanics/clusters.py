@@ -22,9 +22,42 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.mechanics.followers import Grouped, Rests, examine_rests, follow, is_support
+from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel
 from eventpound.numerics.graph import grouped, on_directed_cycles, root
+
+
+class ContactEnds(NamedTuple):
+    """What K contacts are between.
+
+    Parameters
+    ----------
+    left, right : ndarray of int, shape (K,)
+        Coordinates of the contacts, -1 for a barrier.
+    gap : ndarray, shape (K,)
+        Openings at zero displacement (m).
+    mass : ndarray, shape (N,)
+        Of the coordinates, inf of supports, none of points.
+    weights : ndarray, shape (D, N)
+        Of the points (`Model.weights`).
+    own : int
+        How many of them, the first ones, are contacts. Behind them stand those of sliders, which
+        give way either way: they lock nothing.
+    """
+
+    left: Ints
+    right: Ints
+    gap: Floats
+    mass: Floats
+    weights: Floats
+    own: int
+
+
+def between_of(model: Model) -> ContactEnds:
+    """What the contacts of a model are between."""
+    ends = model.left, model.right, model.gap
+    return ContactEnds(*ends, model.mass, model.weights, model.own_contacts)
 
 
 class Clusters(NamedTuple):
@@ -78,49 +111,27 @@ class Clusters(NamedTuple):
 
 
 @kernel
-def form_clusters(
-    left: Ints,
-    right: Ints,
-    gap: Floats,
-    resting: Bools,
-    pressed: Bools,
-    mass: Floats,
-    weights: Floats,
-) -> Clusters:
+def form_clusters(between: ContactEnds, resting: Bools, pressed: Bools) -> Clusters:
     """Group coordinates by resting contacts.
 
     Parameters
     ----------
-    left, right : ndarray of int, shape (K,)
-        Coordinates of the contacts, -1 for a barrier.
-    gap : ndarray, shape (K,)
-        Openings at zero displacement (m).
+    between : ContactEnds
+        The contacts.
     resting : ndarray of bool, shape (K,)
         Contacts at rest.
     pressed : ndarray of bool, shape (K,)
         Contacts that a solution of the acceleration problem found pressed:
         where contacts are redundant, these carry the forces.
-    mass : ndarray, shape (N,)
-        Of the coordinates, inf of supports, none of points.
-    weights : ndarray, shape (D, N)
-        Of the points (`Model.weights`).
     """
-    return Clusters(*_joined(left, right, gap, resting, pressed, mass, weights))
+    return Clusters(*_joined(between, resting, pressed))
 
 
-def form_clusters_of_few(
-    left: Ints,
-    right: Ints,
-    gap: Floats,
-    resting: Bools,
-    pressed: Bools,
-    mass: Floats,
-    weights: Floats,
-) -> Clusters:
+def form_clusters_of_few(between: ContactEnds, resting: Bools, pressed: Bools) -> Clusters:
     """`form_clusters` for callers in Python: what resting contacts need is compiled when one is."""
-    if not resting.any() and weights.size == 0:
-        return _bodies_alone(mass.size)
-    return in_python(form_clusters)(left, right, gap, resting, pressed, mass, weights)
+    if not resting.any() and between.weights.size == 0:
+        return _bodies_alone(between.mass.size)
+    return in_python(form_clusters)(between, resting, pressed)
 
 
 def _bodies_alone(bodies: int) -> Clusters:
@@ -134,18 +145,11 @@ def _bodies_alone(bodies: int) -> Clusters:
 
 
 @kernel
-def _joined(
-    left: Ints,
-    right: Ints,
-    gap: Floats,
-    resting: Bools,
-    pressed: Bools,
-    mass: Floats,
-    weights: Floats,
-) -> tuple[Any, ...]:
+def _joined(between: ContactEnds, resting: Bools, pressed: Bools) -> tuple[Any, ...]:
     """The fields of `form_clusters`, a plain tuple for callers in Python."""
-    members, bodies = np.flatnonzero(resting), mass.size
-    first_node, second_node = left[members], right[members]
+    mass, weights, members = between.mass, between.weights, np.flatnonzero(resting)
+    bodies, own = mass.size, int((members < between.own).sum())
+    first_node, second_node = between.left[members], between.right[members]
     first_node[first_node < 0] = bodies
     second_node[second_node < 0] = bodies
     # Supports count as the barrier only here: where bodies are placed, these go with theirs.
@@ -157,10 +161,10 @@ def _joined(
     if points == 0:
         carrying = _forest(tail, head, pressed[members], bodies + 1)
     elif rests > 0:
-        ends, carry = (left[members], right[members]), pressed[members]
-        examine_rests(Rests(*ends, carry, carrying, locked, unique, force_map), mass, weights)
+        ends, carry = (between.left[members], between.right[members]), pressed[members]
+        examine_rests(Rests(*ends, carry, carrying, locked, unique, force_map), own, mass, weights)
     of_body, offset, count, elimination = _spread(
-        members[carrying], first_node[carrying], second_node[carrying], gap, bodies
+        members[carrying], first_node[carrying], second_node[carrying], between.gap, bodies
     )
     compliance, carried = np.zeros((0, 0)), np.zeros(0)
     if points > 0:
@@ -171,7 +175,7 @@ def _joined(
     else:
         # Only a redundant contact closes a cycle.
         if not carrying.all():
-            locked = on_directed_cycles(tail, head, bodies + 1)
+            locked[:own] = on_directed_cycles(tail[:own], head[:own], bodies + 1)
         unique = _unique(carrying, first_node, second_node, of_body, count)
     return (
         *(of_body, offset, count, members, locked, ~carrying, elimination, unique),

@@ -20,7 +20,7 @@ from eventpound.mechanics.elements import (
     z_rate,
     z_slopes,
 )
-from eventpound.mechanics.followers import is_support
+from eventpound.mechanics.followers import is_support, own_mass
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
@@ -193,7 +193,7 @@ def _ledger_slopes(d: Descriptor, y: Floats, x_rate: Floats, ground: float, J: F
     N, first = d.mass.size, d.ledger
     # The signs are those of `residual`: the rate less what it should be.
     for b in range(N):
-        J[first, N + b] = 0.0 if is_support(b, d.mass) else d.mass[b] * ground
+        J[first, N + b] = own_mass(b, d.mass) * ground
     for link in range(d.stiffness.size):
         h, q = d.z_of_link[link], pull_per_z(link, d.law.memory)
         for b in range(N):

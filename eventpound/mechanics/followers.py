@@ -61,6 +61,21 @@ def is_support(b: int, mass: Floats) -> bool:
     return mass[b] == np.inf
 
 
+@scalar_kernel
+def own_mass(b: int, mass: Floats) -> float:
+    """Mass of a body that forces move (kg): none of a support."""
+    return 0.0 if is_support(b, mass) else float(mass[b])
+
+
+@scalar_kernel
+def drive(of_body: Ints, mass: Floats, given: Floats, values: Floats) -> None:
+    """Give clusters with a support what is `given` of it (N,), whatever their `values` are."""
+    # Backwards: of several supports in a cluster the first one counts.
+    for b in range(mass.size - 1, -1, -1):
+        if of_body[b] >= 0 and is_support(b, mass):
+            values[of_body[b]] = given[b]
+
+
 @kernel
 def place_points(weights: Floats, values: Floats) -> None:
     """Give points, the last D of N values, the mean of those of bodies; `weights` (D, N)."""
@@ -104,8 +119,11 @@ def felt_mass(c: int, mass: Floats, compliance: Floats) -> float:
 
 
 @deferred_kernel
-def examine_rests(rests: Rests, mass: Floats, weights: Floats) -> None:
-    """Fill in which contacts carry, are locked and have unique forces, and their forces."""
+def examine_rests(rests: Rests, own: int, mass: Floats, weights: Floats) -> None:
+    """Fill in which contacts carry, are locked and have unique forces, and their forces.
+
+    Those behind the `own` ones, of sliders, lock none.
+    """
     rows = rows_of(rests.left, rests.right, mass.size, weights)
     R, first = rows.shape
     for b in range(first):
@@ -149,7 +167,7 @@ def examine_rests(rests: Rests, mass: Floats, weights: Floats) -> None:
                 if abs(parts_of[order[a]]) > DEPENDENT:
                     rests.unique[order[a]] = False
     if count < R:
-        rests.locked[:] = held_closed(rows)
+        rests.locked[:own] = held_closed(rows[:own])
 
 
 @kernel
@@ -171,8 +189,9 @@ def rows_of(left: Ints, right: Ints, coordinates: int, weights: Floats) -> Float
 def held_closed(rows: Floats) -> Bools:
     """Contacts (R,) that cannot open: pressures of all others balance one on it.
 
-    `rows` (R, bodies): their directions. Which pressures balance it best is a complementarity
-    problem (least squares without negative unknowns).
+    `rows` (R, bodies): their directions in what forces move. What is given balances any force: so
+    they hold until its motion opens one, which is another mode. Which pressures balance a contact
+    best is a complementarity problem (least squares without negative unknowns).
     """
     R, locked = rows.shape[0], np.zeros(rows.shape[0], np.bool_)
     G, q, x = np.empty((R - 1, R - 1)), np.empty(R - 1), np.zeros(R)
@@ -314,7 +333,7 @@ def _put_compliance(N: Floats, mass: Floats, out: Grouped) -> None:
     # Nᵀ M N is symmetric: its lower triangle is all that is wanted.
     K, right, own = np.zeros((free, free)), N.T.copy(), mass.copy()
     for c in range(moving):
-        own[c] = 0.0 if is_support(c, mass) else mass[c]
+        own[c] = own_mass(c, mass)
         for a in range(free):
             for b in range(a + 1):
                 K[a, b] += own[c] * N[c, a] * N[c, b]

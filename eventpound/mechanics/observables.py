@@ -16,7 +16,7 @@ import numpy as np
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.elements import contact_code, link_force
-from eventpound.mechanics.followers import answers, is_support, place_points
+from eventpound.mechanics.followers import answers, drive, own_mass, place_points
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing, Reduced, rate_on_ground
@@ -268,11 +268,9 @@ def _accelerations(bodies: Bodies, out: Observed) -> None:
             # The mass of a cluster with a support is inf, and makes nothing of any force.
             total[0, c] += pull[0, b] / bodies.cluster_mass[c]
             total[1, c] += pull[1, b] / bodies.cluster_mass[c]
-    # Backwards, so that of several supports in a cluster the first one counts.
-    for b in range(bodies.mass.size - 1, -1, -1):
-        if is_support(b, bodies.mass) and bodies.of_body[b] >= 0:
-            total[0, bodies.of_body[b]], total[1, bodies.of_body[b]] = pull[0, b], pull[1, b]
-    # Backwards again: the number of a cluster is at most that of its first body, so its place is
+    for row in range(2):
+        drive(bodies.of_body, bodies.mass, pull[row], total[row])
+    # Backwards: the number of a cluster is at most that of its first body, so its place is
     # read by all its bodies before one of them is put there.
     for b in range(bodies.mass.size - 1, -1, -1):
         c = bodies.of_body[b]
@@ -289,9 +287,7 @@ def _answer_coupled(bodies: Bodies, out: Observed) -> None:
         for b in range(bodies.mass.size):
             if bodies.of_body[b] >= 0:
                 force[bodies.of_body[b]] += out.pull[row, b]
-        for b in range(bodies.mass.size):
-            if bodies.of_body[b] >= 0 and is_support(b, bodies.mass):
-                force[bodies.of_body[b]] = out.pull[row, b]
+        drive(bodies.of_body, bodies.mass, out.pull[row], force)
         answers(bodies.compliance, force, found)
         for b in range(bodies.mass.size):
             c = bodies.of_body[b]
@@ -314,9 +310,9 @@ def _contact_forces(bodies: Bodies, out: Observed) -> None:
     residual = np.empty(out.pull.shape)
     for row in range(2):
         for b in range(bodies.mass.size):
-            residual[row, b] = 0.0
-            if not is_support(b, bodies.mass):
-                residual[row, b] = bodies.mass[b] * out.acceleration[row, b] - out.pull[row, b]
+            # What is left at a support, a root, nobody asks for.
+            inertia = own_mass(b, bodies.mass) * out.acceleration[row, b]
+            residual[row, b] = inertia - out.pull[row, b]
         if bodies.force_map.size > 0:
             for i in range(bodies.resting.size):
                 total = dot(bodies.force_map[i], residual[row])

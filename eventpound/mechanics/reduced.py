@@ -28,7 +28,7 @@ from eventpound.mechanics.elements import (
     pull_per_z,
     z_rate,
 )
-from eventpound.mechanics.followers import answers, is_support
+from eventpound.mechanics.followers import answers, is_support, own_mass
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced_loads import (
@@ -145,11 +145,11 @@ def _fields(
 ) -> tuple[Any, ...]:
     """The fields of a `Reduced`, a plain tuple for callers in Python."""
     stiffness, preload = branches
-    cluster_mass, own_mass = np.zeros(clusters.count), np.zeros(clusters.count)
+    cluster_mass, own = np.zeros(clusters.count), np.zeros(clusters.count)
     for b in range(mass.size):
         if clusters.of_body[b] >= 0:
             cluster_mass[clusters.of_body[b]] += mass[b]
-            own_mass[clusters.of_body[b]] += 0.0 if is_support(b, mass) else mass[b]
+            own[clusters.of_body[b]] += own_mass(b, mass)
     z_of_link = np.full(stiffness.size, -1, np.int64)
     for h in range(hysteretic.size):
         z_of_link[hysteretic[h]] = h
@@ -189,7 +189,7 @@ def _fields(
     return (
         size + ledger,
         cluster_mass,
-        own_mass,
+        own,
         ends,
         stiffness[active],
         shifted,
@@ -265,23 +265,7 @@ def state_vector(
         y.
     """
     y = np.zeros(system.size)
-    # A cluster of points alone has no mass to weigh their places by: the first point tells it.
-    for b in range(mass.size - 1, -1, -1):
-        c = clusters.of_body[b]
-        if c >= 0 and system.mass[c] == 0.0:
-            y[system.iq[c]], y[system.iv[c]] = u[b] - clusters.offset[b], v[b]
-    # The mean weighted by mass keeps the momentum, and the place of the centre of mass.
-    for b in range(mass.size):
-        c = clusters.of_body[b]
-        if c >= 0 and mass[b] > 0.0 and not is_support(b, mass):
-            share = mass[b] / system.mass[c]
-            y[system.iq[c]] += share * (u[b] - clusters.offset[b])
-            y[system.iv[c]] += share * v[b]
-    # Nothing moves a support: where one is, its cluster is; the first one where there are several.
-    for b in range(mass.size - 1, -1, -1):
-        c = clusters.of_body[b]
-        if c >= 0 and is_support(b, mass):
-            y[system.iq[c]], y[system.iv[c]] = u[b] - clusters.offset[b], v[b]
+    put_clusters(u, v, 1.0, clusters, mass, system, y)
     for h in range(z.size):
         if system.z_of[h] >= 0:
             y[system.z_of[h]] = z[h]
@@ -289,6 +273,34 @@ def state_vector(
         for i in range(ledger.size):
             y[system.ledger + i] = ledger[i]
     return y
+
+
+@scalar_kernel
+def put_clusters(
+    u: Floats, v: Floats, share: float, clusters: Any, mass: Floats, system: Reduced, y: Floats
+) -> None:
+    """Put displacements and velocities of clusters into a state of zeros.
+
+    `share` of the offsets in clusters is in those of the coordinates, u and v (N,): all, or none of
+    derivatives.
+    """
+    # A cluster of points alone has no mass to weigh their places by: the first point tells it.
+    for b in range(mass.size - 1, -1, -1):
+        c = clusters.of_body[b]
+        if c >= 0 and system.mass[c] == 0.0:
+            y[system.iq[c]], y[system.iv[c]] = u[b] - share * clusters.offset[b], v[b]
+    # The mean weighted by mass keeps the momentum, and the place of the centre of mass.
+    for b in range(mass.size):
+        c = clusters.of_body[b]
+        if c >= 0 and own_mass(b, mass) > 0.0:
+            part = mass[b] / system.mass[c]
+            y[system.iq[c]] += part * (u[b] - share * clusters.offset[b])
+            y[system.iv[c]] += part * v[b]
+    # Nothing moves a support: where one is, its cluster is; the first one where there are several.
+    for b in range(mass.size - 1, -1, -1):
+        c = clusters.of_body[b]
+        if c >= 0 and is_support(b, mass):
+            y[system.iq[c]], y[system.iv[c]] = u[b] - share * clusters.offset[b], v[b]
 
 
 def bandwidth(system: Reduced) -> int:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters, form_clusters
+from eventpound.mechanics.clusters import Clusters, between_of, form_clusters
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.observables import Bodies, Observed, bodies_of
 from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce
@@ -107,8 +107,7 @@ def random_instant(
 def clusters_of(model: Model, resting: list[int]) -> Clusters:
     """The clusters of a model with the given contacts at rest, all of them pressed."""
     rests = np.isin(np.arange(model.contacts), resting)
-    ends = model.left, model.right, model.gap
-    return form_clusters(*ends, rests, rests, model.mass, model.weights)
+    return form_clusters(between_of(model), rests, rests)
 
 
 def reduced(

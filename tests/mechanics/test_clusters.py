@@ -7,15 +7,15 @@ import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from eventpound.mechanics.clusters import Clusters, form_clusters
+from eventpound.mechanics.clusters import Clusters, ContactEnds, form_clusters
 from tests.numerics.problems import NO_POINTS, Contacts, graph
 
 
 def _form(pairs: list[tuple[int, int]], gap: list[float], bodies: int) -> Clusters:
     left, right = np.array(pairs, np.int64).reshape(-1, 2).T
     every = np.ones(len(pairs), bool)
-    rests = left.copy(), right.copy(), np.array(gap), every, every
-    return form_clusters(*rests, np.ones(bodies), NO_POINTS)
+    ends = left.copy(), right.copy(), np.array(gap)
+    return form_clusters(ContactEnds(*ends, np.ones(bodies), NO_POINTS, len(pairs)), every, every)
 
 
 def _incidence(pairs: list[tuple[int, int]], bodies: int) -> np.ndarray:
@@ -101,8 +101,8 @@ def test_parallel_contacts_are_not_locked() -> None:
 def test_the_pressed_contact_carries_the_force() -> None:
     left, right = np.array([0, 0]), np.array([1, 1])
     pressed, one = np.array([False, True]), np.ones(2)
-    rests = left, right, np.array([0.2, 0.2]), np.ones(2, bool), pressed
-    clusters = form_clusters(*rests, one, NO_POINTS)
+    between = ContactEnds(left, right, np.array([0.2, 0.2]), one, NO_POINTS, 2)
+    clusters = form_clusters(between, np.ones(2, bool), pressed)
     np.testing.assert_array_equal(clusters.redundant, [True, False])
 
 
@@ -126,7 +126,8 @@ def test_supports_are_one_node_and_no_cluster_has_two() -> None:
     left, right = np.array([0, 2, 3, 0, 4]), np.array([2, 3, -1, 4, 1])
     every, mass = np.ones(5, bool), np.array([np.inf, np.inf, 1.0, 1.0, 1.0])
     pressed = np.array([True, True, False, False, True])
-    clusters = form_clusters(left, right, np.zeros(5), every, pressed, mass, NO_POINTS)
+    between = ContactEnds(left, right, np.zeros(5), mass, NO_POINTS, 5)
+    clusters = form_clusters(between, every, pressed)
     np.testing.assert_array_equal(clusters.of_body, [0, 1, 0, 0, 1])
     np.testing.assert_array_equal(clusters.redundant, [False, False, True, True, False])
     # From the barrier to the first support nothing leads, from the first to the second one row.
@@ -166,7 +167,8 @@ def test_random_contact_graphs() -> None:
         # Gaps that all close at one position u of the bodies, on a grid that sums exactly.
         place = np.append(rng.integers(-64, 64, bodies) / 64.0, 0.0)
         gap = place[left] - place[right]
-        clusters = form_clusters(left, right, gap, resting, pressed, contacts.mass, NO_POINTS)
+        between = ContactEnds(left, right, gap, contacts.mass, NO_POINTS, gap.size)
+        clusters = form_clusters(between, resting, pressed)
         W, members = contacts.W[:, resting], np.flatnonzero(resting)
         np.testing.assert_array_equal(clusters.resting, members)
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import nnls
 
 from eventpound.contact.impacts import put_as_one
-from eventpound.mechanics.clusters import Clusters, form_clusters
+from eventpound.mechanics.clusters import Clusters, ContactEnds, form_clusters
 from eventpound.mechanics.contact_problem import Joints
 from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.impact import impact_law
@@ -47,7 +47,8 @@ class Drawn(NamedTuple):
     def clusters(self, resting: np.ndarray) -> Clusters:
         """Those with these contacts at rest."""
         ends = self.left, self.right, self.gap
-        return form_clusters(*ends, resting, resting, self.mass, self.weights)
+        between = ContactEnds(*ends, self.mass, self.weights, self.gap.size)
+        return form_clusters(between, resting, resting)
 
 
 def drawn(seed: int, decades: float) -> Drawn:
@@ -219,9 +220,8 @@ def test_points_of_whole_bodies_are_the_bodies() -> None:
         points = law(ends, scene.mass, restitution, closed, rates[1], both[1])
         np.testing.assert_allclose(points[0], pairs[0], atol=1e-13)
         np.testing.assert_allclose(both[1], np.tile(both[0], 2), atol=1e-13)
-    assert form_clusters(
-        left, right, np.zeros(4), np.zeros(4, bool), np.zeros(4, bool), mass, NO_POINTS
-    ).compliance.size == 0  # fmt: skip
+    between, none = ContactEnds(left, right, np.zeros(4), mass, NO_POINTS, 4), np.zeros(4, bool)
+    assert form_clusters(between, none, none).compliance.size == 0
 
 
 def test_points_start_where_later_steps_place_them_to_the_last_bit() -> None:

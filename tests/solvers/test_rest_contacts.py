@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.optimize import nnls
 
 from eventpound.contact.rest import Touching, rest_contacts
+from eventpound.mechanics.clusters import ContactEnds
 from eventpound.mechanics.link_law import link_law
-from eventpound.mechanics.reduced import Forcing
+from eventpound.mechanics.reduced import Branches, Forcing
 from eventpound.motion.base import Family
 from tests.numerics.problems import Contacts, graph
 
@@ -25,30 +28,37 @@ def _rest(
     """Each body pushed by a constant force (N), all at rest and in touch."""
     bodies, nothing = contacts.mass.size, np.zeros(contacts.mass.size)
     ends = np.column_stack((np.full(bodies, -1), np.arange(bodies)))
-    law = link_law([], nothing)
-    touching = Touching(
-        undecided,
-        np.zeros_like(undecided),
-        released,
-        nothing,
-        nothing,
-        np.empty(0),
-        contacts.left,
-        contacts.right,
-        np.zeros(contacts.left.size),
-        contacts.mass,
-        np.zeros((0, bodies)),
-        ends,
-        law,
-        np.empty(0, np.int64),
-        nothing,
-        -push,
-        STILL,
-        0.0,
-        1.0,
-        1.0,
+    gaps = np.zeros(contacts.left.size)
+    between = ContactEnds(
+        contacts.left, contacts.right, gaps, contacts.mass, np.zeros((0, bodies)), gaps.size
     )
-    return rest_contacts(touching)
+    return rest_contacts(
+        _touching(between, undecided, released, ends, Branches(nothing, -push), STILL)
+    )
+
+
+def _touching(
+    between: ContactEnds,
+    undecided: np.ndarray,
+    released: np.ndarray,
+    ends: np.ndarray,
+    branches: Branches,
+    forcing: Forcing,
+) -> Touching:
+    """All at rest, with scales of one."""
+    nothing, pressed = np.zeros(between.mass.size), np.zeros_like(undecided)
+    at = SimpleNamespace(
+        released=released,
+        mass=between.mass,
+        u=nothing,
+        v=nothing,
+        ends=ends,
+        hysteretic=np.empty(0, np.int64),
+        length=1.0,
+        time=1.0,
+    )
+    law = link_law([], nothing)
+    return Touching(at, between, undecided, pressed, np.empty(0), law, branches, forcing)  # type: ignore[arg-type]
 
 
 def _openings(contacts: Contacts, push: np.ndarray, members: np.ndarray) -> np.ndarray:
@@ -121,29 +131,10 @@ def test_rounding_of_an_acceleration_does_not_open_a_stiff_body(way: float) -> N
     ground = Forcing(
         int(Family.SINUSOIDS), np.array([0.0, 2.0, 3.0, way * 0.5 * np.pi]), np.empty(0), 0.0
     )
-    nothing, one = np.zeros(2), np.ones(2)
-    touching = Touching(
-        np.ones(1, bool),
-        np.zeros(1, bool),
-        np.zeros(1, bool),
-        nothing,
-        nothing,
-        np.empty(0),
-        np.array([0]),
-        np.array([1]),
-        np.zeros(1),
-        one,
-        np.zeros((0, 2)),
-        np.array([[-1, 0], [-1, 1]]),
-        link_law([], nothing),
-        np.empty(0, np.int64),
-        np.array([1.0, 1e9]),
-        nothing,
-        ground,
-        0.0,
-        1.0,
-        1.0,
-    )
+    pair = np.array([0]), np.array([1]), np.zeros(1), np.ones(2), np.zeros((0, 2))
+    branches, ends = Branches(np.array([1.0, 1e9]), np.zeros(2)), np.array([[-1, 0], [-1, 1]])
+    one, none = np.ones(1, bool), np.zeros(1, bool)
+    touching = _touching(ContactEnds(*pair, 1), one, none, ends, branches, ground)
     resting, pressed, solved = rest_contacts(touching)
     assert solved
     assert resting[0] == pressed[0] == (way > 0.0)

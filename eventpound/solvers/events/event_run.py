@@ -8,7 +8,7 @@ from eventpound.contact.cascade import last_speed
 from eventpound.contact.event_rows import EVENT_WIDTH, events_of
 from eventpound.contact.state import Instant, Now, begin
 from eventpound.errors import ComputationError
-from eventpound.mechanics.clusters import form_clusters_of_few
+from eventpound.mechanics.clusters import between_of, form_clusters_of_few
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.elements import branch_within
@@ -384,11 +384,10 @@ def _instant_of(
     unclosed = model.elements.kind[model.laws] == Element.HERTZ_DAMP
     law.damping[model.plain :][unclosed] = 0.0
     none = np.zeros(model.contacts, np.bool_)
-    none_rests = model.left, model.right, model.gap, none, none
     return Instant(
         mass=model.mass,
         weights=model.weights,
-        compliance=form_clusters_of_few(*none_rests, model.mass, model.weights).compliance,
+        compliance=form_clusters_of_few(between_of(model), none, none).compliance,
         ends=model.link_ends,
         law=law,
         compression=model.elastic.compression,

@@ -11,8 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from eventpound.contact.modes import ends_of_stick
-from eventpound.contact.sliders import locked_beside_sliders
-from eventpound.mechanics.clusters import Clusters, form_clusters_of_few
+from eventpound.mechanics.clusters import Clusters, between_of, form_clusters_of_few
 from eventpound.mechanics.elements import branch_ends, has_branches, memory_on_branches
 from eventpound.mechanics.link_law import STRENGTH, YIELDING
 from eventpound.mechanics.model import Model
@@ -124,8 +123,7 @@ class ModeTable:
         memory = in_python(memory_on_branches)(model.law.memory, branch)
         if memory is not model.law.memory:
             model = replace(model, law=model.law._replace(memory=memory))
-        rests = model.left, model.right, model.gap, resting
-        clusters = form_clusters_of_few(*rests, pressed, model.mass, model.weights)
+        clusters = form_clusters_of_few(between_of(model), resting, pressed)
         branches = Branches(*model.elastic.on_side(branch))
         system = in_python(reduce)(
             model.link_ends,
@@ -139,11 +137,6 @@ class ModeTable:
         frozen = np.zeros(model.hysteretic.size)
         bodies = with_address(bodies_of(model, clusters, system, *branches, frozen))
         system = with_address(system)
-        if model.sliders.size > 0 and not clusters.tree:
-            locked = in_python(locked_beside_sliders)
-            clusters = clusters._replace(
-                locked=locked(*rests, model.sliders.size, model.mass, model.weights, clusters)
-            )
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
         opened = ~resting

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.contact.kinks import still_rate
-from eventpound.contact.rest import acceleration_noise, closing_time, is_none
+from eventpound.contact.rest import closing_time, is_none
+from eventpound.contact.rounding import acceleration_noise
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents, element_pull
 from eventpound.mechanics.elements import bends_at_zero, z_bend

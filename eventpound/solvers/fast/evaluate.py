@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.followers import is_support, place_points, row_answer
+from eventpound.mechanics.followers import drive, is_support, own_mass, place_points, row_answer
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.by_address import by_address
@@ -98,11 +98,7 @@ def _accelerations(run: FastRun) -> None:
         c = series.of_body[b]
         if c >= 0:
             total[c] += observed.body_force[b] * series.inverse_mass[c]
-    # Backwards: of several supports in a cluster the first one counts.
-    for b in range(plan.mass.size - 1, -1, -1):
-        c = series.of_body[b]
-        if c >= 0 and is_support(b, plan.mass):
-            total[c] = observed.a[b]
+    drive(series.of_body, plan.mass, observed.a, total)
     for b in range(plan.mass.size):
         c = series.of_body[b]
         observed.a[b] = total[c] if c >= 0 else observed.base[0]
@@ -117,9 +113,7 @@ def _answer_coupled(run: FastRun) -> None:
         c = series.of_body[b]
         if c >= 0:
             series.force[c] += observed.body_force[b]
-    for b in range(observed.a.size):
-        if series.of_body[b] >= 0 and is_support(b, run.plan.mass):
-            series.force[series.of_body[b]] = observed.a[b]
+    drive(series.of_body, run.plan.mass, observed.a, series.force)
     for b in range(observed.a.size):
         c = series.of_body[b]
         observed.a[b] = ground
@@ -158,9 +152,7 @@ def _contact_forces(run: FastRun) -> None:
     plan, series, observed = run.plan, run.series, run.observed
     observed.contact_force[:] = 0.0
     for b in range(plan.mass.size):
-        series.force[b] = 0.0
-        if not is_support(b, plan.mass):
-            series.force[b] = plan.mass[b] * observed.a[b] - observed.body_force[b]
+        series.force[b] = own_mass(b, plan.mass) * observed.a[b] - observed.body_force[b]
     spread_forces(observed.contact_force, run)
 
 
@@ -193,7 +185,7 @@ def contact_force_series(order: int, run: FastRun) -> None:
     mass, ends, residual = plan.mass, plan.links.ends, series.force
     for k in range(order - 1):
         for b in range(mass.size):
-            c, m = series.of_body[b], 0.0 if is_support(b, mass) else mass[b]
+            c, m = series.of_body[b], own_mass(b, mass)
             residual[b] = m * series.ground[k]
             if c >= 0:
                 residual[b] += m * (k + 1) * (k + 2) * series.X[c, k + 2]
@@ -206,6 +198,6 @@ def contact_force_series(order: int, run: FastRun) -> None:
             if ends[a, 1] >= 0:
                 residual[ends[a, 1]] += series.F[a, k]
         for b in range(mass.size if series.load.shape[0] > 0 else 0):
-            # Supports come with loads only. They are roots: nothing has to balance there.
-            residual[b] = 0.0 if is_support(b, mass) else residual[b] - series.load[k, b]
+            # Of supports they are no forces; these are roots, where nothing has to balance.
+            residual[b] -= series.load[k, b]
         spread_forces(series.contact_force[:, k], run)

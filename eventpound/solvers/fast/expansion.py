@@ -17,7 +17,7 @@ import numpy as np
 
 from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.elements import INVERSE, begin_curve, next_z, pull_per_z
-from eventpound.mechanics.followers import felt_mass, is_support, row_answer
+from eventpound.mechanics.followers import drive, felt_mass, is_support, row_answer
 from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece, ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
@@ -83,9 +83,8 @@ def _add_loads(k: int, mass: Floats, series: FastSeries) -> None:
 @compiled_noinline
 def _answer_coupled(k: int, scale: float, clusters: int, mass: Floats, series: FastSeries) -> None:
     """Coefficient k + 2 of the displacements where clusters follow others, by `series.force`."""
-    for b in range(mass.size if series.load.shape[0] > 0 else 0):
-        if series.of_body[b] >= 0 and is_support(b, mass):
-            series.force[series.of_body[b]] = series.load[k, b]
+    if series.load.shape[0] > 0:
+        drive(series.of_body, mass, series.load[k], series.force)
     for c in range(clusters):
         answer = row_answer(c, clusters, series.compliance, series.force)
         series.X[c, k + 2] = (answer - series.carried[c] * series.ground[k]) * scale

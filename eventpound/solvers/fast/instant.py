@@ -15,10 +15,9 @@ from eventpound.contact.kinks import still_rate
 from eventpound.contact.sliders import (
     begin_beside_sliders,
     decide_sticks,
-    locked_beside_sliders,
 )
 from eventpound.contact.state import Instant
-from eventpound.mechanics.clusters import form_clusters
+from eventpound.mechanics.clusters import ContactEnds, form_clusters
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
@@ -92,16 +91,16 @@ def _form(run: FastRun) -> tuple[int, int]:
     numbers of clusters and of rows of the elimination.
     """
     contacts, mass, state, series = run.plan.contacts, run.plan.mass, run.state, run.series
-    rests = contacts.left, contacts.right, contacts.gap, state.resting
-    clusters = form_clusters(*rests, state.pressed, mass, contacts.weights)
+    own = contacts.gap.size - run.plan.links.sliders.size
+    ends = contacts.left, contacts.right, contacts.gap
+    clusters = form_clusters(
+        ContactEnds(*ends, mass, contacts.weights, own), state.resting, state.pressed
+    )
     copy_numbers(clusters.of_body, series.of_body)
     edges = clusters.elimination.shape[0]
     for row in range(edges):
         copy_numbers(clusters.elimination[row], series.elimination[row])
     unique, locked = clusters.unique, clusters.locked
-    if any_slider(run):
-        sliders = run.plan.links.sliders.size
-        locked = locked_beside_sliders(*rests, sliders, mass, contacts.weights, clusters)
     for i in range(clusters.resting.size):
         j = clusters.resting[i]
         state.unlocked[j] = not (locked[i] or clusters.redundant[i])

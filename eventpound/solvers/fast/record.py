@@ -14,7 +14,7 @@ from eventpound.contact.cascade import is_fleeting, is_over
 from eventpound.contact.event_rows import end_cascade, events_wanted
 from eventpound.contact.state import Now
 from eventpound.mechanics.elements import pull_per_z
-from eventpound.mechanics.followers import is_support
+from eventpound.mechanics.followers import is_support, own_mass
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.monitored import copy_extremes
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
@@ -161,8 +161,7 @@ def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
             _add_loaded(state.now[0].t + at, weight, piece, run)
         for b in range(plan.mass.size):
             # The work of a support is its own, and its mass infinite.
-            if not is_support(b, plan.mass):
-                state.ledger[0] -= weight * plan.mass[b] * observed.v[b] * g
+            state.ledger[0] -= weight * own_mass(b, plan.mass) * observed.v[b] * g
         for a in range(links.ends.shape[0]):
             first, second = links.ends[a, 0], links.ends[a, 1]
             x_rate = observed.v[second] if second >= 0 else 0.0

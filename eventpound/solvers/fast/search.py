@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.rest import acceleration_noise, is_none
+from eventpound.contact.rest import is_none
+from eventpound.contact.rounding import acceleration_noise
 from eventpound.mechanics.followers import on_body
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root

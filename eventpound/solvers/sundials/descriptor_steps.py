@@ -15,14 +15,13 @@ from eventpound.mechanics.descriptor_motion import (
     residual,
     to_moving_frame,
 )
-from eventpound.mechanics.followers import is_support
+from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.observables import Bodies, Observed, observe_motion
-from eventpound.mechanics.reduced import Reduced
+from eventpound.mechanics.reduced import Reduced, put_clusters
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
-from eventpound.numerics.small_systems import dot
 from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import (
     CLEAR,
@@ -42,25 +41,13 @@ def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, cluste
     `share` of the bodies' offsets in their clusters is in `y`: all, or none of a derivative.
     """
     N, H = bodies.mass.size - bodies.weights.shape[0], bodies.z_of.size
-    clusters[:] = 0.0
-    for d in range(bodies.weights.shape[0]):
-        c = bodies.of_body[N + d]
-        # Points alone have no mass: they are where their bodies put them.
-        if c >= 0 and bodies.cluster_mass[c] == 0.0:
-            u, v = dot(bodies.weights[d, :N], y[:N]), dot(bodies.weights[d, :N], y[N : 2 * N])
-            clusters[system.iq[c]], clusters[system.iv[c]] = u - share * bodies.offset[N + d], v
+    u, v = np.empty(bodies.mass.size), np.empty(bodies.mass.size)
     for b in range(N):
-        c = bodies.of_body[b]
-        if c >= 0 and not is_support(b, bodies.mass):
-            part = bodies.mass[b] / bodies.cluster_mass[c]
-            clusters[system.iq[c]] += part * (y[b] - share * bodies.offset[b])
-            clusters[system.iv[c]] += part * y[N + b]
-    # Backwards: of several supports in a cluster the first one counts.
-    for b in range(N - 1, -1, -1):
-        c = bodies.of_body[b]
-        if c >= 0 and is_support(b, bodies.mass):
-            clusters[system.iq[c]] = y[b] - share * bodies.offset[b]
-            clusters[system.iv[c]] = y[N + b]
+        u[b], v[b] = y[b], y[N + b]
+    place_points(bodies.weights, u)
+    place_points(bodies.weights, v)
+    clusters[:] = 0.0
+    put_clusters(u, v, share, bodies, bodies.mass, system, clusters)
     for h in range(H):
         if bodies.z_of[h] >= 0:
             clusters[bodies.z_of[h]] = y[2 * N + h]

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.contact.kinks import still_rate
-from eventpound.contact.rest import acceleration_noise
+from eventpound.contact.rounding import acceleration_noise
 from eventpound.contact.state import Now
 from eventpound.mechanics.backbone import backbone_inverse, shape_of
 from eventpound.mechanics.elements import pull_per_z
