@@ -88,9 +88,12 @@ def impact_law(
                 gap_rate[j] += sign * change[end]
                 terms += abs(change[end])
         rounding[j] = CANCELLED * terms
-    eps = restitution[members]
-    energy_lost = rates_after(members, before, eps, noise, x, w, rounding, closed, gap_rate)
-    return impulse, involved, energy_lost, solved
+        # A closed contact that neither opens nor approaches but for rounding stands still.
+        if closed[j] and abs(gap_rate[j]) <= rounding[j]:
+            gap_rate[j] = 0.0
+    opening = np.where(w > rounding[members], w, 0.0)
+    lost = rates_after(members, before, restitution, noise, impulse, opening, gap_rate)
+    return impulse, involved, lost, solved
 
 
 @scalar_kernel
@@ -101,35 +104,29 @@ def rates_after(
     noise: float,
     impulse: Floats,
     opening: Floats,
-    rounding: Floats,
-    closed: Bools,
     gap_rate: Floats,
 ) -> float:
-    """Rates of the gaps (K,) after an impact, free of rounding; the kinetic energy lost (J).
+    """Rates of gaps (K,) after an impact, free of rounding; the kinetic energy lost (J).
 
     Parameters
     ----------
     members : ndarray of int, shape (k,)
         Contacts of the problem.
-    before, restitution, noise : ndarray, shape (k,), and float
-        Their γ⁻ (m/s) and ε; speeds below the noise (m/s) are none.
-    impulse, opening : ndarray, shape (k,)
-        Λ (N s) and ``γ⁺ + ε γ⁻`` (m/s) of the solution.
-    rounding, closed, gap_rate : ndarray, shape (K,)
-        Of all contacts: rounding of the rates, which are closed, and the rates (m/s), overwritten.
+    before, opening : ndarray, shape (k,)
+        Their γ⁻, and ``γ⁺ + ε γ⁻`` of the solution (m/s).
+    noise : float
+        Speeds below this (m/s) are none.
+    restitution, impulse, gap_rate : ndarray, shape (K,)
+        ε, Λ (N s), and the rates (m/s), overwritten.
     """
-    for j in range(gap_rate.size):
-        # A closed contact that neither opens nor approaches but for rounding stands still.
-        if closed[j] and abs(gap_rate[j]) <= rounding[j]:
-            gap_rate[j] = 0.0
     energy_lost = 0.0
     for i in range(members.size):
-        j, eps = members[i], restitution[i]
-        after = (opening[i] if opening[i] > rounding[j] else 0.0) - eps * before[i]
+        j, eps = members[i], restitution[members[i]]
+        after = opening[i] - eps * before[i]
         # Touched by no impulse and left by none: still at rest, not opening at rounding speed.
         gap_rate[j] = 0.0 if before[i] == 0.0 and after <= noise else after
         # Λ (γ⁻ + γ⁺)/2 with Λ > 0 only where γ⁺ = -ε γ⁻: exactly none for ε = 1.
-        energy_lost -= 0.5 * impulse[i] * (1.0 - eps) * before[i]
+        energy_lost -= 0.5 * impulse[j] * (1.0 - eps) * before[i]
     return energy_lost
 
 
