@@ -132,6 +132,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     (f"{_CONTACT}.impacts", "impacts of one instant, one after the other", _ALL),
     (f"{_CONTACT}.cascade", "where cascades of impacts end", _ALL),
     (f"{_CONTACT}.rest", "which resting contacts open", _ALL),
+    (f"{_CONTACT}.rounding", "what of an acceleration is rounding, not a reason to open", _ALL),
     ("eventpound.tolerances", "what is rounding, and what one instant", _ALL),
     (f"{_EVENTS}.scales", "scales of the motion, tolerances of each body", _ALL),
     (f"{_EVENTS}.event_bounds", "what counts as a new extreme", _ALL),

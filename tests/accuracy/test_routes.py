@@ -68,6 +68,7 @@ def test_what_is_listed_is_used(solver, formulation):
 
 NEITHER = {
     # Types, arrays, names and the means by which kernels are compiled and called.
+    "mechanics.coordinates",
     "mechanics.descriptor",
     "mechanics.ground_frame",
     "mechanics.pressures",
