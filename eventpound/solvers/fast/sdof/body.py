@@ -175,12 +175,12 @@ def place_of(u: float, body: SdofBody) -> float:
 
 
 @compiled
-def spring_state(u: float, run: SdofRun) -> float:
+def spring_state(u: float, solo: SdofRun) -> float:
     """``σ y`` at the displacement u (m), reached without reversal; 0 without hysteresis."""
-    body = run.body
+    body = solo.body
     if not body.hysteretic:
         return 0.0
-    return body.sigma * on_part(body.part, place_of(u, body), run.table, 0)
+    return body.sigma * on_part(body.part, place_of(u, body), solo.table, 0)
 
 
 @compiled
@@ -211,10 +211,10 @@ def set_tolerance(body: SdofBody) -> None:
 
 
 @compiled
-def observe_end(run: SdofRun) -> None:
+def observe_end(solo: SdofRun) -> None:
     """What the forces are at the end of the step."""
-    body, u = run.body, run.body.u + run.body.change
-    body.next_z = spring_state(u, run)
+    body, u = solo.body, solo.body.u + solo.body.change
+    body.next_z = spring_state(u, solo)
     body.next_a = absolute_acceleration(u, body.rate, body.next_z, body)
 
 
@@ -225,14 +225,14 @@ def absolute_acceleration(u: float, v: float, z: float, body: SdofBody) -> float
 
 
 @compiled_noinline
-def turn_round(u: float, run: SdofRun) -> None:
+def turn_round(u: float, solo: SdofRun) -> None:
     """Put the link on the curve for the other direction at u (m); ``σ y`` stays."""
-    body = run.body
+    body = solo.body
     sigma = -body.sigma
     # Beyond one it is so by rounding.
     y = min(max(sigma * body.z, -1.0), 1.0)
     body.sigma, body.u_r = sigma, u
-    body.xi_r = backbone_inverse(run.table, 0, y)
+    body.xi_r = backbone_inverse(solo.table, 0, y)
     body.part = part_at(body.xi_r, body.core_end, body.down_end, body.saturation)
 
 
@@ -251,9 +251,9 @@ def pass_border(u: float, body: SdofBody) -> None:
 
 
 @compiled
-def load_body(plan: FastPlan, state: FastState, run: SdofRun) -> None:
+def load_body(plan: FastPlan, state: FastState, solo: SdofRun) -> None:
     """Fill in the constants of a run and what moves, once: from then on it moves here."""
-    body, o, contacts = run.body, plan.oscillator, plan.contacts
+    body, o, contacts = solo.body, plan.oscillator, plan.contacts
     # Nothing is left of the run before.
     body.piece_known = 0
     body.on_line[0] = body.saturated[0] = 0.0
@@ -269,7 +269,7 @@ def load_body(plan: FastPlan, state: FastState, run: SdofRun) -> None:
         # the start; the link is about to be turned round to it.
         body.z = body.side * state.xi_r[0]
         body.sigma = body.side if body.side * body.v < 0.0 else -body.side
-        turn_round(body.u, run)
+        turn_round(body.u, solo)
 
 
 @compiled

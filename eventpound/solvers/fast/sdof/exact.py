@@ -86,12 +86,12 @@ _SAMPLES = int(Family.SAMPLES)
 
 
 @compiled_noinline
-def rest_step(stop: float, piece: CurrentPiece, run: SdofRun) -> bool:
+def rest_step(stop: float, piece: CurrentPiece, solo: SdofRun) -> bool:
     """One step at rest, to `stop` (s) at most; False where the record has no room.
 
     `SdofBody.released` says then whether the contact force has vanished.
     """
-    body, t, side = run.body, run.now.t, run.body.rests_on
+    body, t, side = solo.body, solo.now.t, solo.body.rests_on
     if piece.family == _SAMPLES:
         stop = next_sample(piece.coefficients, t, stop)
     gaussian, sinusoid, _ = shortest_times(piece.family, piece.coefficients)
@@ -102,23 +102,23 @@ def rest_step(stop: float, piece: CurrentPiece, run: SdofRun) -> bool:
     for k in range(REST_TERMS):
         f[k] = -side * f[k]
     f[0] += side * body.a
-    release = _release(h, run.progress.stalled > 0, f, run)
+    release = _release(h, solo.progress.stalled > 0, f, solo)
     tau = min(h, release)
     t_end = stop if tau == stop - t else t + tau
-    if not sample_sdof(t, t_end, 0, piece, run):
+    if not sample_sdof(t, t_end, 0, piece, solo):
         return False
-    _extremes_inside(t, tau, f, run)
+    _extremes_inside(t, tau, f, solo)
     g = ground_acceleration(piece, t_end)
     set_force(g, body)
-    update_extreme(run.running.at.acceleration, g, t_end, run.running)
-    take_contact_forces(t_end, run)
+    update_extreme(solo.running.at.acceleration, g, t_end, solo.running)
+    take_contact_forces(t_end, solo)
     body.released = release <= tau
-    pass_time(tau, t_end, 1, run.now, run.progress)
+    pass_time(tau, t_end, 1, solo.now, solo.progress)
     return True
 
 
 @compiled
-def _release(h: float, kept: bool, f: Floats, run: SdofRun) -> float:
+def _release(h: float, kept: bool, f: Floats, solo: SdofRun) -> float:
     """When the contact force, ``Σ f_k τ^k`` for each unit of mass, falls below zero, or inf.
 
     `kept`: see `release_time`.
@@ -128,34 +128,34 @@ def _release(h: float, kept: bool, f: Floats, run: SdofRun) -> float:
         spread = (spread + abs(f[k])) * h
     if f[0] > spread:
         return np.inf
-    c, level = run.scratch.rate, run.body.no_force
+    c, level = solo.scratch.rate, solo.body.no_force
     for k in range(REST_TERMS):
         c[k] = f[k]
     kept = kept and abs(f[0]) <= level
     k, rounding = 0, level
     while kept and k < REST_TERMS and abs(c[k]) <= rounding:
         c[k] = 0.0
-        rounding /= run.plan.limits.time
+        rounding /= solo.plan.limits.time
         k += 1
-    return release_time(c, REST_TERMS, h, h, level, kept, run.scratch.work)
+    return release_time(c, REST_TERMS, h, h, level, kept, solo.scratch.work)
 
 
 @compiled
-def _extremes_inside(t: float, tau: float, f: Floats, run: SdofRun) -> None:
+def _extremes_inside(t: float, tau: float, f: Floats, solo: SdofRun) -> None:
     """Turning points of the contact force and of the acceleration of the ground."""
-    body, d, running, spread = run.body, run.scratch.rate, run.running, 0.0
+    body, d, running, spread = solo.body, solo.scratch.rate, solo.running, 0.0
     for k in range(REST_TERMS - 1, 0, -1):
         spread = (spread + abs(f[k])) * tau
         d[k - 1] = k * f[k]
     side, mass, i = body.rests_on, body.mass, running.at.acceleration
-    touched = run.plan.oscillator.right if side > 0.0 else run.plan.oscillator.left
+    touched = solo.plan.oscillator.right if side > 0.0 else solo.plan.oscillator.left
     force = running.at.contact_force + touched
     g = body.a - side * f[0]
     low, high = mass * (f[0] - spread), mass * (f[0] + spread)
     if stays_within(i, g - spread, g + spread, running) and stays_within(force, low, high, running):
         return
-    for m in range(turning_times(d, REST_TERMS - 1, tau, run.scratch.turns, run.scratch.work)):
-        at = run.scratch.turns[m]
+    for m in range(turning_times(d, REST_TERMS - 1, tau, solo.scratch.turns, solo.scratch.work)):
+        at = solo.scratch.turns[m]
         value, _ = value_and_slope(f[:REST_TERMS], at)
         update_turning_point(i, body.a - side * value, t + at, body.flat_time, running)
         update_turning_point(force, mass * value, t + at, body.flat_time, running)
@@ -198,12 +198,12 @@ def _way(body: SdofBody) -> float:
 
 
 @compiled_noinline
-def swing_freely(stop: float, piece: CurrentPiece, run: SdofRun) -> int:
+def swing_freely(stop: float, piece: CurrentPiece, solo: SdofRun) -> int:
     """Go to the next turn or barrier, or to `stop` (s); GOING_ON, or why not.
 
     `NOT_FREE` says that the forces do not give the acceleration there, and nothing was done.
     """
-    body, t = run.body, run.now.t
+    body, t = solo.body, solo.now.t
     k, way, left = tangent(body), _way(body), stop - t
     omega = math.sqrt(k)
     y, r = -body.a / k, body.v / omega
@@ -227,14 +227,14 @@ def swing_freely(stop: float, piece: CurrentPiece, run: SdofRun) -> int:
     body.change, body.rate, body.bend = change, rate, -k * (y + change)
     body.next_odd = body.next_g = 0.0
     set_tolerance(body)
-    observe_end(run)
+    observe_end(solo)
     if not (tau > 0.0 and equations_hold(tau, 1, body)):
         return NOT_FREE
     t_end = stop if tau == left else t + tau
-    if is_due(t_end, run.plan.output_times, run.progress):
+    if is_due(t_end, solo.plan.output_times, solo.progress):
         # The record has room, which was looked for before.
-        sample_sdof(t, t_end, 0, piece, run)
-    return arrive(tau, t_end, rate == 0.0, event, run)
+        sample_sdof(t, t_end, 0, piece, solo)
+    return arrive(tau, t_end, rate == 0.0, event, solo)
 
 
 ROW_ORDER = 16
@@ -310,14 +310,14 @@ class ExactStep(NamedTuple):
 
 @compiled
 def exact_step(
-    u: float, v: float, a: float, g: float, slope: float, dt: float, run: SdofRun
+    u: float, v: float, a: float, g: float, slope: float, dt: float, solo: SdofRun
 ) -> ExactStep:
     """The exact step of a body at u (m) with the velocity v and the absolute acceleration a.
 
     The acceleration of the ground is g (m/s²) with a slope (m/s³). It holds where bounds say that
     the body stays on its line and exceeds no extreme inside.
     """
-    body = run.body
+    body = solo.body
     table = body.saturated if body.part == SATURATED else body.on_line
     pulled, k, damping = a - g, tangent(body), body.damping
     change = table[1] * v + table[2] * pulled + table[3] * slope
@@ -333,28 +333,28 @@ def exact_step(
     if body.part != CORE:
         holds = holds and one_way and body.sigma * v > 0.0
     if holds and not one_way:
-        holds = stays_within(run.running.at.displacement, low, high, run.running)
+        holds = stays_within(solo.running.at.displacement, low, high, solo.running)
     if holds and (damping > 0.0 or not one_way):
         spread = k * reach + damping * dt * fastest
-        holds = not force_exceeds(a - spread, a + spread, run)
+        holds = not force_exceeds(a - spread, a + spread, solo)
     return ExactStep(holds, change, next_v, next_a)
 
 
 @compiled_deferred.but(recipe=SMALL)
 def sample_steps(
-    budget: int, segment: int, piece_end: float, piece: CurrentPiece, run: SdofRun
+    budget: int, segment: int, piece_end: float, piece: CurrentPiece, solo: SdofRun
 ) -> int:
     """Steps from the sample `segment`, where the body is, as far as nothing can happen.
 
     Rows of the history that fall between samples are written on the way, so that
     the motion does not depend on them. The sample where the body is then is returned.
     """
-    body, coefficients, samples = run.body, piece.coefficients, piece.samples
+    body, coefficients, samples = solo.body, piece.coefficients, piece.samples
     origin, dt = coefficients[0], coefficients[1]
     if UNLOADING < body.part < SATURATED:
         return segment
     set_line(dt, body)
-    u, v, a, t, until = body.u, body.v, body.a, run.now.t, piece_end - SAME_SAMPLE * dt
+    u, v, a, t, until = body.u, body.v, body.a, solo.now.t, piece_end - SAME_SAMPLE * dt
     first, started, due = segment, segment, True
     while due:
         due = False
@@ -364,14 +364,14 @@ def sample_steps(
             if not t_end < until:
                 break
             g, slope = samples[segment], (samples[segment + 1] - samples[segment]) / dt
-            step = exact_step(u, v, a, g, slope, dt, run)
-            due = step.holds and is_due(t_end, run.plan.output_times, run.progress)
+            step = exact_step(u, v, a, g, slope, dt, solo)
+            due = step.holds and is_due(t_end, solo.plan.output_times, solo.progress)
             if due or not step.holds:
                 break
             u, v, a, t = u + step.change, step.v, step.a, t_end
             segment += 1
         if segment > started:
-            _arrive(u, v, t, segment - started, dt, run)
+            _arrive(u, v, t, segment - started, dt, solo)
             started = segment
         if due:
             # The body's own ground is not known any more.
@@ -380,17 +380,17 @@ def sample_steps(
             body.x[1], body.x[2] = v, 0.5 * (a - g)
             body.step, body.of_u, body.of_v = dt, 0.0, 0.0
             order, _ = linear_series(tangent(body), ROW_ORDER, body)
-            due = sample_sdof(t, t_end, order, piece, run)
+            due = sample_sdof(t, t_end, order, piece, solo)
         if due:
             u, v, a, t = u + step.change, step.v, step.a, t_end
             segment += 1
     if segment > first:
-        body.z, body.a = spring_state(u, run), a
+        body.z, body.a = spring_state(u, solo), a
     return segment
 
 
 @compiled
-def _arrive(u: float, v: float, t: float, steps: int, dt: float, run: SdofRun) -> None:
-    body = run.body
+def _arrive(u: float, v: float, t: float, steps: int, dt: float, solo: SdofRun) -> None:
+    body = solo.body
     body.u, body.v, body.right, body.left = u, v, body.right_gap - u, body.left_gap + u
-    pass_time(steps * dt, t, steps, run.now, run.progress)
+    pass_time(steps * dt, t, steps, solo.now, solo.progress)

@@ -77,19 +77,19 @@ from eventpound.tolerances import SAME_SAMPLE
 
 
 @compiled_noinline
-def impact_at_barrier(side: float, j: int, run: SdofRun) -> None:
+def impact_at_barrier(side: float, j: int, solo: SdofRun) -> None:
     """Newton's law at the barrier on one side, contact j, which the body has met."""
-    body, limits, restitution = run.body, run.plan.limits, run.plan.contacts.restitution[j]
+    body, limits, restitution = solo.body, solo.plan.limits, solo.plan.contacts.restitution[j]
     last = last_speed(limits.length / limits.time, False)
     # On the right the gap is right_gap - u, so its rate is -v; on the left v.
     meeting = Meeting(j, -side * body.v, restitution, 1.0 / body.mass, last, limits.time)
-    after, _ = rebound(meeting, run.now, run.events)
-    end_impacts(run.now)
+    after, _ = rebound(meeting, solo.now, solo.events)
+    end_impacts(solo.now)
     body.v = -side * after
 
 
 @compiled_deferred
-def stays_closed(side: float, piece: CurrentPiece, run: SdofRun) -> bool:
+def stays_closed(side: float, piece: CurrentPiece, solo: SdofRun) -> bool:
     """Whether a body that stands still at a barrier without a contact force stays there.
 
     Parameters
@@ -98,12 +98,12 @@ def stays_closed(side: float, piece: CurrentPiece, run: SdofRun) -> bool:
         1 for a barrier on the right, -1 for one on the left.
     piece : CurrentPiece
         The ground motion from now on.
-    run : SdofRun
+    solo : SdofRun
         The run.
     """
-    ground, level, t = run.body.work[:], run.body.no_acceleration, run.now.t
+    ground, level, t = solo.body.work[:], solo.body.no_acceleration, solo.now.t
     ground_taylor(piece, t, MOST_DECIDING, ground)
-    time = min(run.plan.limits.time, decay_time(piece, t))
+    time = min(solo.plan.limits.time, decay_time(piece, t))
     for k in range(1, MOST_DECIDING):
         level /= time * k
         if abs(ground[k]) > level:
@@ -113,20 +113,20 @@ def stays_closed(side: float, piece: CurrentPiece, run: SdofRun) -> bool:
 
 
 @compiled
-def settle_sdof(g: float, piece: CurrentPiece, run: SdofRun) -> None:
+def settle_sdof(g: float, piece: CurrentPiece, solo: SdofRun) -> None:
     """Do the duties of the present instant; `g` is the acceleration of the ground (m/s²)."""
-    body = run.body
+    body = solo.body
     side = side_closed(body)
-    j = run.plan.oscillator.right if side > 0.0 else run.plan.oscillator.left
+    j = solo.plan.oscillator.right if side > 0.0 else solo.plan.oscillator.left
     if side != 0.0:
         # The displacement agrees with a gap of zero.
         body.u = body.right_gap if side > 0.0 else -body.left_gap
-    body.z = spring_state(body.u, run)
+    body.z = spring_state(body.u, solo)
     if side != 0.0 and duty(0.0, -side * body.v) == IMPACT:
-        impact_at_barrier(side, j, run)
+        impact_at_barrier(side, j, solo)
     # After the impact, which may have turned it.
     if turns_back(body.part, body.sigma, body.v, body.still):
-        turn_round(body.u, run)
+        turn_round(body.u, solo)
     body.a = absolute_acceleration(body.u, body.v, body.z, body)
     rests = 0.0
     if side != 0.0 and duty(0.0, -side * body.v) == ACCELERATION:
@@ -134,19 +134,19 @@ def settle_sdof(g: float, piece: CurrentPiece, run: SdofRun) -> None:
         stays = side * pull > 0.0
         # Order zero tells nothing, or has vanished by definition: the next ones do.
         if body.released or abs(pull) <= acceleration_level(body):
-            stays = stays_closed(side, piece, run)
+            stays = stays_closed(side, piece, solo)
         rests = side if stays else 0.0
     if rests != body.rests_on:
-        _write_rest(rests != 0.0, j, -side * body.v, run)
+        _write_rest(rests != 0.0, j, -side * body.v, solo)
     body.rests_on, body.released = rests, False
-    run.progress.resting = 1 if rests != 0.0 else 0
+    solo.progress.resting = 1 if rests != 0.0 else 0
 
 
 @compiled_deferred
-def _write_rest(rests: bool, j: int, rate: float, run: SdofRun) -> None:
+def _write_rest(rests: bool, j: int, rate: float, solo: SdofRun) -> None:
     """Write down that the body comes to rest on contact j, or no longer rests on it."""
     code = transition_code(not rests, rests, rate)
-    write_change(code, j, new_group(run.now), rate, run.now, run.events)
+    write_change(code, j, new_group(solo.now), rate, solo.now, solo.events)
 
 
 @compiled_noinline
@@ -167,7 +167,7 @@ def oscillate(budget: int, plan: FastPlan, state: FastState, sdof: Sdof, record:
     ----------
     budget : int
         Most steps.
-    plan, state, single, record
+    plan, state, sdof, record
         See `eventpound.solvers.fast.run`; a record whose rows have no width takes none.
 
     Returns
@@ -177,7 +177,7 @@ def oscillate(budget: int, plan: FastPlan, state: FastState, sdof: Sdof, record:
     """
     start = plan.hysteresis.at[0] if plan.hysteresis.at.size > 0 else 0
     at = places_of(1, plan.links.springs, plan.contacts.gap.size)
-    run = by_address(
+    solo = by_address(
         SdofRun(
             sdof.body[0],
             state.now[0],
@@ -190,61 +190,61 @@ def oscillate(budget: int, plan: FastPlan, state: FastState, sdof: Sdof, record:
             sdof,
         )
     )
-    body, now, progress = run.body, run.now, run.progress
+    body, now, progress = solo.body, solo.now, solo.progress
     if not progress.started:
-        load_body(plan, state, run)
+        load_body(plan, state, solo)
         progress.started = True
     last_step = progress.steps + budget
     code = GOING_ON
     while code == GOING_ON:
-        if not has_room_for(1, run.plan.output_times.size, now, progress, run.events, run.rows):
+        if not has_room_for(1, solo.plan.output_times.size, now, progress, solo.events, solo.rows):
             code = FULL
             break
-        if progress.due == 1 or now.t >= run.plan.limits.end:
-            _settle(run)
-            if now.t >= run.plan.limits.end:
+        if progress.due == 1 or now.t >= solo.plan.limits.end:
+            _settle(solo)
+            if now.t >= solo.plan.limits.end:
                 code = DONE
                 break
         if progress.steps >= last_step:
             break
-        code = _rest(last_step, run) if body.rests_on != 0.0 else _swing(last_step, run)
+        code = _rest(last_step, solo) if body.rests_on != 0.0 else _swing(last_step, solo)
     store_body(plan.oscillator, body, state)
     return code
 
 
 @compiled
-def _settle(run: SdofRun) -> None:
+def _settle(solo: SdofRun) -> None:
     """Do the duties of the present instant and write down what follows it."""
-    body, ground, t, progress = run.body, run.plan.ground, run.now.t, run.progress
+    body, ground, t, progress = solo.body, solo.plan.ground, solo.now.t, solo.progress
     # At a border of pieces the motion from now on counts.
     while progress.due == 1 and ground.ends[progress.piece] <= t:
         progress.piece += 1
     piece = by_address(piece_of(progress.piece, ground))
     g = ground_acceleration(piece, t)
     if progress.due == 1:
-        settle_sdof(g, piece, run)
+        settle_sdof(g, piece, solo)
         progress.due = 0
         body.segment = -1
     set_force(g, body)
-    write_present(t, g, run)
+    write_present(t, g, solo)
     # A body at rest has the acceleration of the ground, whatever its spring pulls.
-    take_settled(t, g if body.rests_on != 0.0 else body.a, run)
+    take_settled(t, g if body.rests_on != 0.0 else body.a, solo)
 
 
 @compiled_deferred.but(recipe=SMALL)
-def _rest(last_step: int, run: SdofRun) -> int:
+def _rest(last_step: int, solo: SdofRun) -> int:
     """Steps of a body at rest, until something is to be settled."""
-    ground, body, now, progress = run.plan.ground, run.body, run.now, run.progress
+    ground, body, now, progress = solo.plan.ground, solo.body, solo.now, solo.progress
     i = progress.piece
     piece = by_address(piece_of(i, ground))
-    piece_end = min(ground.ends[i], run.plan.limits.end)
+    piece_end = min(ground.ends[i], solo.plan.limits.end)
     while progress.steps < last_step and progress.due == 0 and now.t < piece_end:
-        if not rest_step(piece_end, piece, run):
+        if not rest_step(piece_end, piece, solo):
             return FULL
         if body.released:
             end_flight(now)
             g = ground_acceleration(piece, now.t)
-            write_present(now.t, g, run)
+            write_present(now.t, g, solo)
             progress.due = 1
         if progress.stalled > MOST_STALLS:
             return STUCK
@@ -254,12 +254,12 @@ def _rest(last_step: int, run: SdofRun) -> int:
 
 
 @compiled
-def _swing(last_step: int, run: SdofRun) -> int:
+def _swing(last_step: int, solo: SdofRun) -> int:
     """Steps of a body that moves, until something is to be settled."""
-    body, ground, now, progress = run.body, run.plan.ground, run.now, run.progress
+    body, ground, now, progress = solo.body, solo.plan.ground, solo.now, solo.progress
     i = progress.piece
     piece = by_address(piece_of(i, ground))
-    piece_end = min(ground.ends[i], run.plan.limits.end)
+    piece_end = min(ground.ends[i], solo.plan.limits.end)
     family, coefficients = piece.family, piece.coefficients
     if body.piece_known != i + 1:
         know_piece(i, piece, body)
@@ -277,7 +277,7 @@ def _swing(last_step: int, run: SdofRun) -> int:
             # Exact steps go from sample to sample.
             if now.t == sample_time(coefficients[0], dt, segment):
                 budget = last_step - progress.steps
-                if sample_steps(budget, segment, piece_end, piece, run) > segment:
+                if sample_steps(budget, segment, piece_end, piece, solo) > segment:
                     stop, segment = sample_after(now.t, piece_end, piece)
                 if progress.steps >= last_step:
                     break
@@ -286,13 +286,13 @@ def _swing(last_step: int, run: SdofRun) -> int:
             body.segment = segment
             body.even, body.odd = pair_at(now.t, piece, body)
         if family == _ZERO and swings_freely(body):
-            code = swing_freely(stop, piece, run)
+            code = swing_freely(stop, piece, solo)
             if code != NOT_FREE:
                 continue
-        code = take_step(min(stop - now.t, longest), stop, piece, run)
+        code = take_step(min(stop - now.t, longest), stop, piece, solo)
     if now.t >= ground.ends[i]:
         progress.due = 1
     if progress.due == 1 or now.t >= piece_end:
         # The end of a stretch may be an extreme.
-        take_if_new(now.t, body.u, body.a, run)
+        take_if_new(now.t, body.u, body.a, solo)
     return code

@@ -80,14 +80,14 @@ def closed_at(way: float) -> int:
 
 
 @compiled
-def expand_step(a_g: float, run: SdofRun) -> tuple[int, int, float]:
+def expand_step(a_g: float, solo: SdofRun) -> tuple[int, int, float]:
     """Series of a step, in the direction in which the body moves.
 
     Parameters
     ----------
     a_g : float
         Acceleration of the ground (m/s²).
-    run : SdofRun
+    solo : SdofRun
         The run; the longest step is `SdofBody.step`, and a linear body may have `MORE_TERMS` more
         than its order.
 
@@ -96,7 +96,7 @@ def expand_step(a_g: float, run: SdofRun) -> tuple[int, int, float]:
     order, first, h
         Highest power, lowest that differs from zero, and length (s).
     """
-    body, most = run.body, run.plan.limits.order
+    body, most = solo.body, solo.plan.limits.order
     order, first, good = 0, 1, False
     for _ in range(MOST_REVERSALS):
         # No event: Φ is one there to within what does not count.
@@ -111,11 +111,11 @@ def expand_step(a_g: float, run: SdofRun) -> tuple[int, int, float]:
             order, good = linear_series(tangent(body), most + MORE_TERMS, body)
         first = 1
         if abs(body.v) <= body.still:
-            first = _leading(order, body.still / run.plan.limits.time, body)
+            first = _leading(order, body.still / solo.plan.limits.time, body)
         # Else it is about to go against the curve that it is on.
         if part == CORE or body.sigma * body.x[first] >= 0.0:
             break
-        turn_round(body.u, run)
+        turn_round(body.u, solo)
     h = body.step if good else shorter(order, body)
     return order, first, h
 
@@ -161,12 +161,12 @@ def expected_step_size(a_g: float, body: SdofBody) -> float:
 
 
 @compiled
-def first_event(h: float, order: int, first: int, run: SdofRun) -> tuple[float, int, float]:
+def first_event(h: float, order: int, first: int, solo: SdofRun) -> tuple[float, int, float]:
     """Length of a step of at most h (s), how it ends, and when the body turns (s), or inf.
 
     The motion at its end stands in `SdofBody` then: `change`, `rate` and `bend`.
     """
-    body = run.body
+    body = solo.body
     reach = h * (abs(body.v) + h * abs(body.x[2]))
     # Two terms alone mostly tell that it moves; only where they do not the whole series is asked.
     if reach <= body.standing:
@@ -175,20 +175,20 @@ def first_event(h: float, order: int, first: int, run: SdofRun) -> tuple[float, 
             reach = (reach + abs(body.x[k])) * h
     if reach <= body.standing:
         # A link that all but stands still reverses at the level of rounding.
-        tau, event, turn = _of_standing(h, reach, order, first, run)
+        tau, event, turn = _of_standing(h, reach, order, first, solo)
         body.change, body.rate, body.bend = motion(tau, order, body.x[:])
     else:
-        tau, event, turn = _of_one_way(h, order, first, run)
+        tau, event, turn = _of_one_way(h, order, first, solo)
     return tau, event, turn
 
 
 @compiled
-def _of_one_way(h: float, order: int, first: int, run: SdofRun) -> tuple[float, int, float]:
+def _of_one_way(h: float, order: int, first: int, solo: SdofRun) -> tuple[float, int, float]:
     """The same for a step that ends where the body turns; before, it goes one way."""
-    body = run.body
+    body = solo.body
     way = 1.0 if body.x[first] > 0.0 else -1.0
     event, tau = FREE, h
-    turn = first_turn(order, first, h, body, run.scratch.work)
+    turn = first_turn(order, first, h, body, solo.scratch.work)
     if turn <= h:
         tau, event = turn, FREE if body.part == CORE else TURNED
     body.change, body.rate, body.bend = motion(tau, order, body.x[:])
@@ -215,28 +215,28 @@ def _of_one_way(h: float, order: int, first: int, run: SdofRun) -> tuple[float, 
 
 @compiled_deferred
 def _of_standing(
-    h: float, reach: float, order: int, first: int, run: SdofRun
+    h: float, reach: float, order: int, first: int, solo: SdofRun
 ) -> tuple[float, int, float]:
     """The same for a body that may turn within the step.
 
     The step ends there if it may be an extreme. `reach` bounds the change of displacement (m).
     """
-    body, turn = run.body, np.inf
-    tau, event = _first_unordered(h, reach, order, run)
+    body, turn = solo.body, np.inf
+    tau, event = _first_unordered(h, reach, order, solo)
     spread = reach * (body.stiffness + body.strength * body.per_scale)
-    place = run.running.at.displacement
-    new = not stays_within(place, body.u - reach, body.u + reach, run.running)
-    if new or force_exceeds(body.a - spread, body.a + spread, run):
-        turn = first_turn(order, first, tau, body, run.scratch.work)
+    place = solo.running.at.displacement
+    new = not stays_within(place, body.u - reach, body.u + reach, solo.running)
+    if new or force_exceeds(body.a - spread, body.a + spread, solo):
+        turn = first_turn(order, first, tau, body, solo.scratch.work)
         if turn < tau:
             tau, event = turn, FREE
     return tau, event, turn
 
 
 @compiled
-def _first_unordered(h: float, reach: float, order: int, run: SdofRun) -> tuple[float, int]:
+def _first_unordered(h: float, reach: float, order: int, solo: SdofRun) -> tuple[float, int]:
     """First closing or border within h (s), and `reach` (m), of a body that may turn."""
-    body, work = run.body, run.scratch.work
+    body, work = solo.body, solo.scratch.work
     tau, event = h, FREE
     for side in (1.0, -1.0):
         gap = gap_to(side, body)
@@ -263,23 +263,23 @@ def _first_unordered(h: float, reach: float, order: int, run: SdofRun) -> tuple[
 
 
 @compiled
-def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SdofRun) -> int:
+def take_step(wanted: float, stop: float, piece: CurrentPiece, solo: SdofRun) -> int:
     """One step of at most `wanted` (s); GOING_ON, or why not."""
-    body, t = run.body, run.now.t
+    body, t = solo.body, solo.now.t
     a_g = body.even
     # A ground of several terms is expanded anew, with 1 for both factors of its series.
     if not body.pair:
-        a_g = expand_ground(t, run.plan.limits.order + MORE_TERMS, piece, body.ground[:])
+        a_g = expand_ground(t, solo.plan.limits.order + MORE_TERMS, piece, body.ground[:])
         body.even = body.odd = 1.0
     body.step = min(wanted, expected_step_size(a_g, body))
     set_tolerance(body)
-    order, first, h = expand_step(a_g, run)
-    run.progress.expansions += 1
-    tau, event, turn = first_event(h, order, first, run)
+    order, first, h = expand_step(a_g, solo)
+    solo.progress.expansions += 1
+    tau, event, turn = first_event(h, order, first, solo)
     for halving in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
         _observe_ground(t_end, piece, body)
-        observe_end(run)
+        observe_end(solo)
         if equations_hold(tau, order, body):
             break
         if halving == MOST_HALVINGS - 1:
@@ -290,28 +290,28 @@ def take_step(wanted: float, stop: float, piece: CurrentPiece, run: SdofRun) -> 
         body.change, body.rate, body.bend = motion(tau, order, body.x[:])
     turned = event == TURNED or (turn <= tau and event == FREE)
     if body.damping > 0.0:
-        damped_acceleration(t, tau, order, run)
-    due = is_due(t_end, run.plan.output_times, run.progress)
-    if due and not sample_sdof(t, t_end, order, piece, run):
+        damped_acceleration(t, tau, order, solo)
+    due = is_due(t_end, solo.plan.output_times, solo.progress)
+    if due and not sample_sdof(t, t_end, order, piece, solo):
         return FULL
-    return arrive(tau, t_end, turned, event, run)
+    return arrive(tau, t_end, turned, event, solo)
 
 
 @compiled
-def arrive(tau: float, t_end: float, turned: bool, event: int, run: SdofRun) -> int:
+def arrive(tau: float, t_end: float, turned: bool, event: int, solo: SdofRun) -> int:
     """Make the end of a step of length tau (s) the present state, and do what ends it there."""
-    body = run.body
+    body = solo.body
     if turned:
         # Exactly, where the root has left its rounding.
         body.rate = 0.0
-        take_if_new(t_end, body.u + body.change, body.next_a, run)
-    pass_time(tau, t_end, 1, run.now, run.progress)
+        take_if_new(t_end, body.u + body.change, body.next_a, solo)
+    pass_time(tau, t_end, 1, solo.now, solo.progress)
     _move(body)
-    code = audit(run.progress.stalled, body)
+    code = audit(solo.progress.stalled, body)
     if code == GOING_ON and event != FREE:
-        _do_event(event, t_end, run)
-    elif is_over(run.now, run.plan.limits.time):
-        list_all(run.now, run.events)
+        _do_event(event, t_end, solo)
+    elif is_over(solo.now, solo.plan.limits.time):
+        list_all(solo.now, solo.events)
     return code
 
 
@@ -370,19 +370,19 @@ def _move(body: SdofBody) -> None:
 
 
 @compiled
-def _do_event(event: int, t: float, run: SdofRun) -> None:
+def _do_event(event: int, t: float, solo: SdofRun) -> None:
     """Do what ended the step; an impact is settled next."""
-    body = run.body
+    body = solo.body
     if event == TURNED:
-        turn_round(body.u, run)
+        turn_round(body.u, solo)
     elif event == CROSSED:
         pass_border(body.u, body)
     else:
         # Before the impact sets back the time since the last one.
-        end_flight(run.now)
+        end_flight(solo.now)
         if event == CLOSED_RIGHT:
             body.right = 0.0
         else:
             body.left = 0.0
-        write_present(t, body.next_g, run)
-        run.progress.due = 1
+        write_present(t, body.next_g, solo)
+        solo.progress.due = 1
