@@ -22,8 +22,9 @@ from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.reversals import first_reversal, may_reverse, take_directions
+from eventpound.solvers.events.short_series import _first_reversal
 from eventpound.solvers.sundials.wrapped import WrappedCvode
-from eventpound.tolerances import HELD_BELOW, REVERSAL_WITHIN
+from eventpound.tolerances import HELD_BELOW, REVERSAL_WITHIN, SERIES_SHARE
 from tests.mechanics.dense import memory_of
 from tests.mechanics.scenes import clusters_of, reduced
 
@@ -201,3 +202,19 @@ def test_without_compiled_calls_the_steps_end_there_too():
     size = abs(truth.displacement.minimum[0])
     assert wrapped.u[0] == pytest.approx(truth.u[0], abs=400.0 * task.rtol * size)
     assert wrapped.work.steps == pytest.approx(direct.work.steps, rel=0.05)
+
+
+def test_a_short_series_sees_a_reversal_after_all_the_way_that_its_terms_make():
+    """All terms of the rate are as large: the way is 2.6 of one, and z bends by that much."""
+    system = _system((GROUND, "a"))
+    (z,) = system.iz[system.iz >= 0]
+    Y = np.zeros((8, system.size))
+    Y[:7, system.iv[0]] = 1e-3 * np.array([1, 1, 1, -1, -1, -1, -1])
+    way = sum(1e-3 / (k + 1) for k in range(7))
+    turn = min(
+        root.real for root in Polynomial(Y[:7, system.iv[0]]).roots() if root.imag == 0 < root.real
+    )
+    weight = np.ones(system.size)
+    for share, found in ((0.9, turn), (1.1, 1.0)):
+        weight[z] = share * (way / 1e-2) ** 6.0 / SERIES_SHARE
+        assert _first_reversal(Y, system, weight, 1.0) == pytest.approx(found, rel=1e-12)

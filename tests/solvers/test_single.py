@@ -23,6 +23,7 @@ from eventpound.solvers.fast.run import FastPlan, FastRecord, FastState
 from eventpound.solvers.fast.sdof.body import SdofRun, load_body
 from eventpound.solvers.fast.sdof.exact import fill_table
 from eventpound.solvers.fast.sdof.oscillator import settle_sdof, stays_closed
+from eventpound.solvers.fast.sdof.step import equations_hold
 from eventpound.tolerances import LAST_SPEED
 from tests.numerics.problems import joints
 from tests.solvers.test_modes import TABLE
@@ -190,3 +191,17 @@ def test_a_table_is_that_of_the_matrix_exponential(dt, damping):
     assert step[0] == dt
     assert (np.abs(step[1:4] - whole[0, 1:]) <= 1e-14 * dt**order).all()
     assert (np.abs(step[4:7] - whole[1, 1:]) <= 1e-14 * dt ** (order - 1.0)).all()
+
+
+@pytest.mark.parametrize("order", [5, 14, 30])
+def test_a_defect_counts_as_what_it_leaves(order):
+    """Of one that grows like τ^(p-1), integrated once and twice."""
+    body, tau, defect = at_barrier(1.0, False, 0.0).body, 0.3, 0.7
+    body.next_a, body.next_g, body.bend = defect, 0.0, 0.0
+    of_v = defect * tau / order
+    of_u = of_v * tau / (order + 1)
+    for share, holds in ((0.99, False), (1.0 + 1.01 / order, True)):
+        body.of_u, body.of_v = share * of_u, np.inf
+        assert equations_hold(tau, order, body) == holds
+        body.of_u, body.of_v = np.inf, share * of_v
+        assert equations_hold(tau, order, body) == holds

@@ -195,7 +195,7 @@ def _first_reversal(Y: Floats, system: Reduced, weight: Floats, limit: float) ->
             x_rate[k] = link_motion(a, Y[k], system)[1]
         travel = 0.0
         for k in range(order):
-            travel = max(travel, abs(x_rate[k]) * first ** (k + 1))
+            travel += abs(x_rate[k]) * first ** (k + 1) / (k + 1)
         bend = z_bend(a, system.memory, Y[0, iz], Y[0, system.beside[a]], travel)
         # A z that is a line to within the tolerance is not bent by a reversal either.
         if bend <= SERIES_SHARE * weight[iz]:

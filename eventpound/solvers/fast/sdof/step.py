@@ -322,14 +322,14 @@ def equations_hold(tau: float, order: int, body: SdofBody) -> bool:
     A defect that grows like τ^(p-1) leaves τ/p of itself in v and τ²/p² in u.
     """
     defect = abs(body.next_a - body.next_g - body.bend) * tau
-    return defect <= body.of_v * order and defect * tau <= body.of_u * order
+    return defect <= body.of_v * order and defect * tau <= body.of_u * order**2
 
 
 @compiled_noinline
 def _shortened(tau: float, order: int, body: SdofBody) -> float:
     """Factor by which a step is to be shortened that does not fit."""
     defect = abs(body.next_a - body.next_g - body.bend) * tau
-    error = max(defect / (body.of_v * order), defect * tau / (body.of_u * order))
+    error = max(defect / (body.of_v * order), defect * tau / (body.of_u * order**2))
     return shortening(error, order)
 
 
