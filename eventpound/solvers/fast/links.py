@@ -16,6 +16,8 @@ both directions are the same line, so a link that only swings there costs no eve
 
 from __future__ import annotations
 
+import numpy as np
+
 from eventpound.mechanics.backbone import Hysteresis, backbone, backbone_inverse
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
 from eventpound.mechanics.observables import difference, gap_rounding
@@ -180,22 +182,27 @@ def reverse(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> None:
     set_curve(h, x, -sigma, -y, hysteresis, state)
 
 
+@compiled
+def across_border(part: int, xi: float, core: float, down: float) -> tuple[float, float, int]:
+    """What follows a part left at ξ: -1 where σ changes, ξ to count from or inf, the next part."""
+    if part == CORE and xi < 0.0:
+        # The lower end of the core is its upper one on the curve of the other direction.
+        return -1.0, core, UP
+    if part == DOWN:
+        # From here on ξ counts from the border exactly, without the rounding of the way there.
+        return 1.0, down, UNLOADING if down < -core else CORE
+    return 1.0, np.inf, UP if part <= UNLOADING else part
+
+
 @compiled_noinline
 def cross_border(h: int, x: float, hysteresis: Hysteresis, state: FastState) -> None:
     """Move a link that has reached the border of its part to the next."""
-    part = state.part[h]
-    core = hysteresis.core[h]
     xi = xi_at(h, x, hysteresis, state)
-    if part == CORE and xi < 0.0:
-        # The lower end of the core is its upper one on the curve of the other direction.
-        state.sigma[h] = -state.sigma[h]
-        state.xi_r[h], state.x_r[h], state.part[h] = core, x, UP
-    elif part <= UNLOADING:
-        state.part[h] = UP
-    elif part == DOWN:
-        # From here on ξ counts from the border exactly, without the rounding of the way there.
-        state.xi_r[h], state.x_r[h] = hysteresis.down[h], x
-        state.part[h] = UNLOADING if hysteresis.down[h] < -core else CORE
+    side, begin, part = across_border(state.part[h], xi, hysteresis.core[h], hysteresis.down[h])
+    state.part[h] = part
+    state.sigma[h] *= side
+    if begin < np.inf:
+        state.xi_r[h], state.x_r[h] = begin, x
 
 
 @compiled_deferred

@@ -29,9 +29,8 @@ from eventpound.numerics.records import NamedNumbers
 from eventpound.solvers.fast.compiled import compiled, compiled_noinline
 from eventpound.solvers.fast.links import (
     CORE,
-    DOWN,
     UNLOADING,
-    UP,
+    across_border,
     on_part,
     open_gaps,
     part_at,
@@ -239,15 +238,12 @@ def turn_round(u: float, solo: SdofRun) -> None:
 @compiled_noinline
 def pass_border(u: float, body: SdofBody) -> None:
     """Move a link that has reached the border of its part to the next."""
-    part = body.part
-    if part == CORE and place_of(u, body) < 0.0:
-        # The lower end of the core is its upper one on the curve of the other direction.
-        body.sigma, body.u_r, body.xi_r, body.part = -body.sigma, u, body.core_end, UP
-    elif part <= UNLOADING:
-        body.part = UP
-    elif part == DOWN:
-        body.u_r, body.xi_r = u, body.down_end
-        body.part = UNLOADING if body.down_end < -body.core_end else CORE
+    xi = place_of(u, body)
+    side, begin, part = across_border(body.part, xi, body.core_end, body.down_end)
+    body.part = part
+    body.sigma *= side
+    if begin < np.inf:
+        body.xi_r, body.u_r = begin, u
 
 
 @compiled
