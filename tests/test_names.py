@@ -62,8 +62,8 @@ WITHOUT = {
     "motion": "parametric swing",
     "problems": "page",
     "quantities": "listed runs",
-    "report": "bridge_response design_figures design_study design_tables many_appendix "
-    "profile run_appendix study_curves study_figure study_files zoom",
+    "report": "design_figures design_study design_tables many_appendix "
+    "run_appendix study_curves study_figure study_files zoom",
     "results": "records",
     "scene": "ends equilibrium linkage",
     "score": "drawing page",

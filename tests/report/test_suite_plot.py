@@ -15,9 +15,13 @@ from eventpound.case import Case
 from eventpound.case.case import member_case
 from eventpound.errors import InputError
 from eventpound.report import suite_plot
-from eventpound.report.bridge_response import bridge_response_figure
 from eventpound.report.similarity_contours import similarity_contours_figure
-from eventpound.report.suite_plot import named_lengths, plot_suite, suite_spectrum_figure
+from eventpound.report.suite_plot import (
+    bridge_response_figure,
+    named_lengths,
+    plot_suite,
+    suite_spectrum_figure,
+)
 from eventpound.report.view import View
 from eventpound.results import gather
 from tests.models import CASES
