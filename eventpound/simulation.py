@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.basics.given import positive
 from eventpound.basics.told import Reached
 from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import RunOptions, Stated, with_given
@@ -20,7 +19,7 @@ from eventpound.case.solver_options import (
     SolverOptions,
     rtol_problems,
     settings_in_si,
-    solver_instead,
+    solver_given,
 )
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
@@ -42,7 +41,6 @@ from eventpound.solvers import (
     unknown_springs,
 )
 from eventpound.solvers.base import ReadyTask, Recording, Solver, Task
-from eventpound.units import Dimension
 
 
 def response_of(
@@ -73,11 +71,7 @@ def made_ready(
     max_steps: int | None = None,
 ) -> ReadyScene:
     """A checked scene with its options of a run (`options_of`) and of `simulate`."""
-    number = positive("rtol", rtol, Dimension.NUMBER)
-    if solver is not None:
-        options = solver_instead(options, name_of(solver), "solver")
-    if number is not None:
-        options = replace(options, rtol=number)
+    options = solver_given(options, None if solver is None else name_of(solver), rtol)
     if settings is not None:
         if isinstance(solver, str) and ":" in solver:
             raise InputError(f"settings: found beside solver = {solver!r}; accepted: one of them")

@@ -13,7 +13,7 @@ from eventpound.accuracy.digits import DigitsOverTime
 from eventpound.accuracy.near_misses import Graze, NearMiss
 from eventpound.results import write_together
 from eventpound.results.jsontext import to_json
-from eventpound.results.tables import Cells, lines_of
+from eventpound.results.tables import aligned
 
 FEWEST_DIGITS = 4.0
 """Digits below which a value is refused."""
@@ -281,8 +281,7 @@ def _table(c: Certificate) -> Iterator[str]:
         event = kinds[q.quantity]
         rows.append((*_cells(q), f"{q.limited_by}; {event['kind']} {event['contact']}"))
     heads = ("quantity", "value", "bound", "unit", "digits", "amplified", "of", "by cvode")
-    words = tuple(head in ("quantity", "unit", "of") for head in heads)
-    yield from lines_of(Cells((*heads, "limited by"), tuple(rows), (*words, True)))
+    yield aligned((*heads, "limited by"), rows, {0, 3, 6, 8})
     if len(times) > MOST_ROWS:
         yield f"and {len(times) - MOST_ROWS} more events"
 
@@ -328,8 +327,8 @@ def _over_time(c: Certificate) -> Iterator[str]:
         return
     columns = zip(digits.t, digits.digits, digits.amplification, strict=True)
     lines = [(f"{t:.6g}", f"{n:.1f}", f"{size:.1e}") for t, n, size in columns]
-    rows = tuple(lines[:: max(1, len(lines) // 10)])
-    yield from lines_of(Cells(("up to (s)", "digits", "amplification"), rows, (False,) * 3))
+    rows = lines[:: max(1, len(lines) // 10)]
+    yield aligned(("up to (s)", "digits", "amplification"), rows, ())
     if digits.lost_from is not None:
         yield f"three digits and more are lost from {digits.lost_from:.6g} s on"
 

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from eventpound.basics.given import number as given_number
+from eventpound.basics.given import positive
 from eventpound.case.keys import Bound, keys_of, number_key, read_keys
 from eventpound.case.table import Table
 from eventpound.errors import InputError
@@ -169,6 +170,15 @@ def solver_instead(own: SolverOptions, word: str, option: str) -> SolverOptions:
     name, settings = solver_word(word, option, {})
     kept = own.settings if name == own.name else {}
     return replace(own, name=name, settings={**kept, **settings})
+
+
+def solver_given(
+    own: SolverOptions, solver: str | None, rtol: float | str | None, option: str = "solver"
+) -> SolverOptions:
+    """Options with the solver and the relative tolerance of a call, where it gives some."""
+    number = positive("rtol", rtol, Dimension.NUMBER)
+    named = own if solver is None else solver_instead(own, solver, option)
+    return named if number is None else replace(named, rtol=number)
 
 
 def solver_word(

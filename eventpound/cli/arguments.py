@@ -224,19 +224,12 @@ def by_kind(
     records : str, optional
         Others, which make a suite of a run.
     """
-    from eventpound.study.kinds import kind_of
+    from eventpound.study.kinds import Holds, kind_of
 
-    def of_case() -> T:
-        return one(loaded_case(path))
-
-    def of_suite() -> T:
-        return (suite or one)(loaded_case(path, records))
-
-    def of_study() -> T:
-        return of_case() if study is None else study(loaded_study(path))
-
-    run = of_suite if records else of_case
-    return kind_of(path)[0].choose(run=run, suite=of_suite, study=of_study, folder=of_case)()
+    if study is not None and kind_of(path)[0] is Holds.STUDY:
+        return study(loaded_study(path))
+    case = loaded_case(path, records)
+    return one(case) if suite is None or case.suite is None else suite(case)
 
 
 def case_of_results(manifest: Mapping[str, Any], out: Path, options: Options) -> Case:
@@ -294,8 +287,7 @@ def checked_suite(case: Case) -> Plan:
     from eventpound.study.suite import suite_plan
 
     with told_of(file_of(case)):
-        plan, _ = suite_plan(case, None, None, None, intensities=False)
-    return plan
+        return suite_plan(case)
 
 
 def file_of(case: Case) -> str:

@@ -111,10 +111,9 @@ def _all_quantities() -> Iterator[str]:
     """What quantities there are, with units and what they are."""
     from eventpound.quantities.base import SIX
     from eventpound.quantities.lookup import listing
-    from eventpound.results.tables import Cells, lines_of
+    from eventpound.results.tables import aligned
 
-    rows = tuple((name, unit, text) for name, unit, text, _ in listing())
-    yield from lines_of(Cells(("quantity", "unit", "what it is"), rows, (True,) * 3))
+    yield aligned(("quantity", "unit", "what it is"), (row[:3] for row in listing()), range(3))
     yield f"* stands for {', '.join(SIX)}"
 
 

@@ -69,12 +69,11 @@ def write_pulses(
 
 def _summary(fits: Sequence[PulseFit]) -> str:
     """The pulses of one record, to be read."""
-    from eventpound.results.tables import Cells, lines_of
+    from eventpound.results.tables import aligned
 
-    rows = tuple(
+    rows = (
         (f.kind, f"{f.a_p:.4f}", f"{f.T_p:.4f}", f"{f.length:.5f}", f"{f.explained:.1%}")
         for f in fits
     )
     heads = ("pulse", "a_p (m/s^2)", "T_p (s)", "L_e (m)", "explained")
-    table = Cells(heads, rows, (True, *(False for _ in heads[1:])))
-    return "\n".join(lines_of(table)) + f"\n          explained: of the squares of the {fits[0].on}"
+    return aligned(heads, rows, {0}) + f"\n          explained: of the squares of the {fits[0].on}"

@@ -125,12 +125,10 @@ def _export(options: Options) -> int:
 
 def _with_solver(case: Case, options: Options) -> Case:
     """The case with the solver and the tolerance of the command line."""
-    from eventpound.case.solver_options import solver_instead
+    from eventpound.case.solver_options import solver_given
 
-    own = case.solver
-    if options.solver is not None:
-        own = solver_instead(own, options.solver, "--solver")
-    return replace(case, solver=replace(own, rtol=options.rtol or own.rtol))
+    given = solver_given(case.solver, options.solver, options.rtol, "--solver")
+    return replace(case, solver=given)
 
 
 def _compute(case: Case, options: Options, out: Path) -> tuple[Response, dict[str, Any] | None]:
@@ -203,7 +201,7 @@ def _keep_partial(case: Case, error: BaseException, response: Response | None, o
 
 def _summary(response: Response) -> Iterator[str]:
     """Contacts and what they need, peaks and cost of a run, to be read."""
-    from eventpound.results.tables import Cells, lines_of
+    from eventpound.results.tables import aligned
 
     recording, scene = response.recording, response.scene
     if scene.contacts:
@@ -217,12 +215,11 @@ def _summary(response: Response) -> Iterator[str]:
     yield from _demands(response)
     x = recording.displacement
     columns = (x.maximum, x.time_of_maximum, x.minimum, x.time_of_minimum)
-    rows = tuple(
+    rows = (
         (body.name, f"{high:.6e}", f"{at:.4f}", f"{low:.6e}", f"{then:.4f}")
         for body, high, at, low, then in zip(scene.bodies, *columns, strict=True)
     )
-    heads = ("body", "max (m)", "at (s)", "min (m)", "at (s)")
-    yield from lines_of(Cells(heads, rows, (True, *(False for _ in columns))))
+    yield aligned(("body", "max (m)", "at (s)", "min (m)", "at (s)"), rows, {0})
     for shock in response.shock_rows:
         told = shock["failed"]
         if not told:

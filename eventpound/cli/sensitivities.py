@@ -46,7 +46,7 @@ def _only_scene(case: StudyCase) -> Case:
 
 def _sensitivities(options: Options) -> int:
     from eventpound.results import check_writable
-    from eventpound.results.tables import Cells, lines_of, table_csv
+    from eventpound.results.tables import aligned, table_csv
     from eventpound.study.sensitivities import PEAKS, sensitivities
 
     case = arguments.by_kind(options.case, lambda case: case, _only_scene)
@@ -56,8 +56,8 @@ def _sensitivities(options: Options) -> int:
         table = sensitivities(case, of=options.of or PEAKS, to=options.to, progress=progress)
     for name, part in table.groupby("quantity", sort=False):
         shown = zip(part["to"], part["elasticity"], part["note"], strict=True)
-        rows = tuple((to, "" if note else f"{size:+.4f}", note) for to, size, note in shown)
-        print("\n".join(lines_of(Cells((str(name), "% for 1 %", ""), rows, (True, False, True)))))
+        rows = ((to, "" if note else f"{size:+.4f}", note) for to, size, note in shown)
+        print(aligned((str(name), "% for 1 %", ""), rows, {0, 2}))
     files = {"sensitivities.csv": table_csv(table)}
     if not options.no_figures:
         from eventpound.report.study_curves import tornado_figure

@@ -34,7 +34,7 @@ def run_and_tell_suite(case: Case, options: Options, out: Path, told: str) -> in
 
     estimate = True if options.error_estimate else None
     with told_of(told):
-        plan, case = suite.suite_plan(case, None, None, estimate, intensities=True)
+        plan = suite.suite_plan(case, estimate, intensities=True)
     keep = _keeper(out / _HISTORIES) if options.histories else None
     with going_on(lambda: _kept(out, plan.size)), Counter("records") as progress:
         moved = suite.run_suite(plan, case, out, progress, keep)

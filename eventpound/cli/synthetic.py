@@ -32,7 +32,7 @@ def _synthetic(options: Options) -> int:
     from eventpound.motion.synthetic import synthetic_motion
     from eventpound.motion.synthetic.files import QUANTITIES, parameter_table, spread
     from eventpound.results import check_writable, write_together
-    from eventpound.results.tables import Cells, lines_of
+    from eventpound.results.tables import aligned
 
     check_writable(options.directory)
     motions = []
@@ -45,7 +45,6 @@ def _synthetic(options: Options) -> int:
     write_together(options.directory, files | {"parameters.csv": table})
     print(f"{options.count} synthetic motions, seed {options.seed}: {options.directory}")
     spreads = zip(QUANTITIES, spread(motions), strict=True)
-    rows = tuple((name, *(f"{value:.4g}" for value in values)) for name, values in spreads)
-    heads, words = ("", "least", "median", "largest"), (True, False, False, False)
-    print("\n".join(lines_of(Cells(heads, rows, words))))
+    rows = ((name, *(f"{value:.4g}" for value in values)) for name, values in spreads)
+    print(aligned(("", "least", "median", "largest"), rows, {0}))
     return 0

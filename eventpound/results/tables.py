@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -77,6 +77,12 @@ def lines_of(table: Cells) -> Iterator[str]:
         yield "  ".join(parts).rstrip()
     if table.more:
         yield f"and {table.more} more"
+
+
+def aligned(headings: Sequence[str], rows: Iterable[Sequence[str]], words: Collection[int]) -> str:
+    """A table in columns, those of these numbers of words, as one text."""
+    left = tuple(i in words for i in range(len(headings)))
+    return "\n".join(lines_of(Cells(tuple(headings), tuple(map(tuple, rows)), left)))
 
 
 def markdown_of(headings: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

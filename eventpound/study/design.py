@@ -164,7 +164,8 @@ def made_of_suite(
     workers: int | None = None,
 ) -> DesignRuns:
     """Run a case under every record, with what its design numbers need."""
-    plan, own = suite_plan(asking(case), None, None, None, intensities=True)
+    own = asking(case)
+    plan = suite_plan(own, intensities=True)
     run_suite(plan, own, out, progress, workers=workers)
     runs = read_table(out, SUITE_TABLE)
     return DesignRuns(design_of_suite(runs, own), own, runs=runs)

@@ -8,10 +8,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 
-from eventpound.basics.given import positive
 from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import with_given
-from eventpound.case.solver_options import FAST, SolverOptions, default_solver, solver_instead
+from eventpound.case.solver_options import FAST, SolverOptions, default_solver, solver_given
 from eventpound.case.suite import Member
 from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
@@ -22,7 +21,6 @@ from eventpound.results.manifest import versions
 from eventpound.scene.scene import Scene
 from eventpound.simulation import refuse_suite
 from eventpound.study.axes import NumberAxis, sizes
-from eventpound.units import Dimension
 
 PART, RECORD = "part", "record"
 """Columns that name the part of a study a row belongs to, and the record it ran under."""
@@ -169,10 +167,8 @@ def solver_of(
     InputError
         Where either is none.
     """
-    tolerance = positive("rtol", rtol, Dimension.NUMBER)
     case = case_of(given, _RTOL)
-    own, solver = case.solver, solver or default_solver([case.scene], many=True)
-    return replace(solver_instead(own, solver, "solver"), rtol=tolerance or own.rtol)
+    return solver_given(case.solver, solver or default_solver([case.scene], many=True), rtol)
 
 
 def described(base: Base) -> Base:

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 from eventpound.accuracy.judge import KEEPING
 from eventpound.basics.cores import cores
-from eventpound.basics.given import Count, checked, positive
+from eventpound.basics.given import Count, checked
 from eventpound.basics.told import Counted
 from eventpound.case.case import Case, member_case
 from eventpound.case.run_options import Way, refuse_options
-from eventpound.case.solver_options import FAST, solver_instead
+from eventpound.case.solver_options import FAST, solver_given
 from eventpound.case.suite import Member
 from eventpound.errors import InputError
 from eventpound.motion.record import Record
@@ -34,7 +34,6 @@ from eventpound.study.records import FAILED, record_columns, sa_of_suite
 from eventpound.study.running import run_study
 from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
 from eventpound.study.table import SUITE_FORMAT, SUITE_TABLE, read_table
-from eventpound.units import Dimension
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -105,7 +104,8 @@ def simulate_suite(
     UserWarning
         Where records are scaled by more than ``largest_scale``.
     """
-    plan, case = suite_plan(case, solver, rtol, error_estimate, intensities)
+    case = replace(case, solver=solver_given(case.solver, solver, rtol))
+    plan = suite_plan(case, error_estimate, intensities)
     warn_of_scales(plan.bases)
     with TemporaryDirectory() as scratch:
         out = Path(scratch if folder is None else folder)
@@ -135,28 +135,17 @@ def run_suite(
     return run_study(plan, out, engine, progress, details, again=keep is not None)
 
 
-def suite_plan(
-    case: Case,
-    solver: str | None,
-    rtol: float | str | None,
-    error_estimate: bool | None,
-    intensities: bool,
-) -> tuple[Plan, Case]:
-    """The plan of a suite, and its case with the solver of the call.
+def suite_plan(case: Case, error_estimate: bool | None = None, intensities: bool = False) -> Plan:
+    """The plan of a suite.
 
     Raises
     ------
     InputError
         As `simulate_suite` says.
     """
-    number = positive("rtol", rtol, Dimension.NUMBER)
-    members = case.members
+    members, options = case.members, case.solver
     if not members:
         raise InputError("the case has no suite of records; simulate runs it")
-    options = replace(case.solver, rtol=number or case.solver.rtol)
-    if solver is not None:
-        options = solver_instead(options, solver, "solver")
-    case = replace(case, solver=options)
     errors = bool(case.run.error_estimate if error_estimate is None else error_estimate)
     scene, quantities = case.scene, []
     if scene.bodies:
@@ -174,7 +163,7 @@ def suite_plan(
     suite, base = OfSuite(sa, errors), described(base_of(case, (), members, options))
     names = tuple(dict.fromkeys(quantities))
     columns = record_columns(members, suite)
-    return Plan(case.title, (base,), columns, names, options.name, options.rtol, suite), case
+    return Plan(case.title, (base,), columns, names, options.name, options.rtol, suite)
 
 
 def _handing_on(case: Case, keep: Keep) -> Callable[[Member, Response], None]:

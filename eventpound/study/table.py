@@ -170,18 +170,15 @@ def read_many(out: Path) -> tuple[pd.DataFrame, list[Mapping[str, Any]]]:
     InputError
         Where there is none.
     """
-    match table_there(out):
-        case "":
-            raise InputError(
-                f"{out}: neither {TABLE} nor {SUITE_TABLE}; `eventpound study` or `eventpound run` "
-                "of a suite writes it"
-            )
-        case name if name == SUITE_TABLE:
-            table, manifest = read_suite(out)
-            return table, [manifest["case"].get("excitation", {})]
-        case _:
-            scenes: Any = (manifest_there(out) or {}).get("scenes", [])
-            return read_table(out), [scene["case"].get("excitation", {}) for scene in scenes]
+    name = table_there(out)
+    if not name:
+        writes = "`eventpound study` or `eventpound run` of a suite writes it"
+        raise InputError(f"{out}: neither {TABLE} nor {SUITE_TABLE}; {writes}")
+    if name == SUITE_TABLE:
+        table, manifest = read_suite(out)
+        return table, [manifest["case"].get("excitation", {})]
+    scenes: Any = (manifest_there(out) or {}).get("scenes", [])
+    return read_table(out), [scene["case"].get("excitation", {}) for scene in scenes]
 
 
 def read_table(directory: Path, name: str = TABLE) -> pd.DataFrame:
