@@ -57,7 +57,7 @@ ONE_TABLE = "motion/readers"
 """Its modules are the rows of one table, which `test_reading` and `test_header` go through."""
 WITHOUT = {
     "accuracy": "comparison_tables reference work_precision",
-    "case": "capacity case keys record_scaling scene_tables",
+    "case": "case keys record_scaling scene_tables",
     "cli": "arguments folder fragility report score suite_run",
     "motion": "parametric swing",
     "problems": "page",

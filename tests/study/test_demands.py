@@ -221,14 +221,6 @@ def test_quantities_of_the_case_stand_in_its_report(tmp_path):
     assert asked.loc["impacts", ["50 %", "84 %"]].tolist() == np.ceil(fractiles).tolist()
 
 
-def test_a_capacity_has_any_unit_of_its_quantity(tmp_path):
-    name = "acceleration.deck.abs_max"
-    suite_with(tmp_path, "{ ductility = 9 }", f'[capacity]\n"{name}" = "0.5 g"\n')
-    case = load_case(tmp_path)
-    assert dict(case.run.stated.capacities)[name] == pytest.approx(0.5 * 9.80665, rel=1e-15)
-    assert read_case(case.understood, tmp_path / "case.toml").run.stated == case.run.stated
-
-
 def test_a_pier_with_a_height_is_no_storey():
     scene = bridge()
     pier = replace(scene.springs[0], height=7.0)
