@@ -2,6 +2,7 @@ import json
 import math
 import re
 from dataclasses import replace
+from decimal import Decimal
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
+from tests.accuracy.storeys import DURATION, SCENE, TRUE
 from tests.solvers.random_scenes import random_scene
 
 
@@ -310,3 +312,15 @@ def test_an_interrupted_command_writes_what_is_done(monkeypatch, tmp_path, capsy
     assert main(["verify", str(case)]) == 130
     assert (case / "results" / "certificate.json").read_text() == "{}"
     assert "stays" in capsys.readouterr().err
+
+
+def test_a_certificate_at_the_tightest_tolerance_holds_against_113_bits():
+    """The fast solver is off by the same 1.4e-13 of scale at rtol 1e-11 to 1e-14."""
+    certificate = verify(SCENE, duration=DURATION)
+    found = {quantity.quantity: quantity for quantity in certificate.quantities}
+    assert certificate.certified
+    for name, true in TRUE.items():
+        bound = found[name].bound
+        assert bound is not None
+        assert abs(Decimal(found[name].value) - true) <= bound
+        assert found[name].digits >= 11.0
