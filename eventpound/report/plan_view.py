@@ -191,7 +191,7 @@ def _draw_contact(
     if state is not None:
         opening += sum(part * state.get(name, 0.0) for name, part in contact.direction)
     up = 1.0 if ends[0].at[1] > 0.0 else -1.0
-    axes.annotate(
+    label = axes.annotate(
         f"{literal(contact.name)}\n{opening / size:.3g} {unit}",
         (float(at[0]), float(at[1])),
         (0.0, 14.0 * up),
@@ -201,3 +201,5 @@ def _draw_contact(
         fontsize=7.0,
         color=PALETTE[2],
     )
+    # The margin has room for it.
+    label.set_in_layout(False)

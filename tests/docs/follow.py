@@ -98,7 +98,7 @@ def _keep(source: Path, target: Path) -> None:
     sys.path.insert(0, str(ROOT / "docs"))
     from pictures import shrink
 
-    shrink(source, target)
+    shrink([source], target)
 
 
 def _compare(folder: Path, file: str, keys: str, text: str, shown: str) -> list[str]:
