@@ -30,7 +30,7 @@ WIDTH, COLOURS = 900, 256
 """Pixels, and shades: enough for a figure of lines, at a quarter of the size."""
 MODEL, MODEL_DPI = (5.6, 3.6), 150
 """Inches that a sketch has at most, so that its names are read in half a page."""
-FIRST = ("displacements.png", "study.png")
+FIRST = ("plan.png", "displacements.png", "study.png")
 """The picture that says most, where there are several."""
 AS_PRINTED = {
     "figure-04": ("figure-04-0.2.png",),
