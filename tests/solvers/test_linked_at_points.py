@@ -149,7 +149,7 @@ def test_half_the_way_with_twice_the_force_is_the_same(law: str, solver: str) ->
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("seed", [0, 2, 8])
 def test_what_yields_and_degrades_is_another_programs(seed: int, solver: str) -> None:
-    """Of 60 scenes none was off by more than 4e-11 of its size."""
+    """Of 60 scenes none was off by more than 5e-10 of its size."""
     scene, end = smooth_scene(seed)
     check_scene(scene)
     u, v = moved(scene, end)
@@ -160,7 +160,10 @@ def test_what_yields_and_degrades_is_another_programs(seed: int, solver: str) ->
 
 @pytest.mark.parametrize("seed", [0, 6, 2])
 def test_with_sliders_contacts_and_supports_it_is_another_programs(seed: int) -> None:
-    """That tries who sticks and rests, and has SciPy solve impacts; all of it at points."""
+    """That tries who sticks and rests, and has SciPy solve impacts; all of it at points.
+
+    Of 100 scenes it gave up 13 and one is unfit; 85 agree to 1e-10, one to 7e-9 with all three.
+    """
     scene, end = touching_scene(seed, seed % 3)
     check_scene(scene)
     first = run(scene, end, "cvode", 1e-11)
