@@ -27,7 +27,7 @@ from eventpound.quantities.rows import Rerun, close_times, first_step, settled, 
 from eventpound.scene.ends import Joining, opening
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
-from eventpound.scene.structures import structures_of
+from eventpound.scene.structures import structure_names, structures_of
 from eventpound.solvers.base import Extremes, Recording, Task
 from eventpound.solvers.supported import link_force_on
 
@@ -149,9 +149,9 @@ def signals_of(scene: Scene, run: Recording) -> dict[str, Floats]:
     for seat in scene.seats:
         left, right = seat.between
         found[f"seats.{seat.name}.*_opening"] = u[right] - u[left]
-    for group in structures_of(scene):
+    for name, group in zip(structure_names(scene), structures_of(scene), strict=True):
         shear = link_force_on(ground, scene, h.force, rate, group)
-        found[f"structures.{group[0]}.*_base_shear"] = shear
+        found[f"structures.{name}.*_base_shear"] = shear
     if scene.in_plan:
         found |= dict(signals_in_plan(scene, h, rate))
     for support in scene.supports:
