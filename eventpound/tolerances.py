@@ -79,6 +79,13 @@ all masses; where a cycle makes it zero, rounding leaves EPS over that ratio.
 Masses of a ratio up to some 1e7 lie on the right side of both."""
 DEPENDENT = 1e-9
 """Part of its length below which what a row has beside the others is their rounding."""
+SAME_ANSWER = 1e-6
+"""Difference of what two answers to contacts with friction do, as part of what asks for them, below
+which they are one: at the border of two states both answer, each to its own rounding."""
+LEMKE_PIVOT = 1e-11
+"""Entries of Lemke's tableau, of entries near 1, below which they are rounding and no pivot."""
+LEMKE_TIE = 1e-12
+"""Difference of two ratios in it below which they are a tie."""
 TAKEN_OVER = 1e-3
 """Part of its bound by which friction that has just come to it is below it again where forces that
 are not unique are shared anew: far more than the error of a located force."""

@@ -5,6 +5,8 @@ Sums run in the order of the entries, so that the same numbers give the same bit
 
 from __future__ import annotations
 
+import numpy as np
+
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 
@@ -53,3 +55,31 @@ def solve_definite(K: Floats, right: Floats) -> Floats:
             for k in range(i + 1, n):
                 right[i, c] -= K[k, i] * right[k, c]
     return right
+
+
+@kernel
+def invert(matrix: Floats, inverse: Floats, least: float) -> bool:
+    """Invert a matrix (n, n), overwritten; False where a pivot is below the least one.
+
+    By Gauss' and Jordan's elimination with row exchanges.
+    """
+    n = matrix.shape[0]
+    inverse[:] = np.eye(n)
+    for c in range(n):
+        pivot = c
+        for i in range(c + 1, n):
+            if abs(matrix[i, c]) > abs(matrix[pivot, c]):
+                pivot = i
+        if not abs(matrix[pivot, c]) > least:
+            return False
+        for j in range(n):
+            matrix[c, j], matrix[pivot, j] = matrix[pivot, j], matrix[c, j]
+            inverse[c, j], inverse[pivot, j] = inverse[pivot, j], inverse[c, j]
+        divisor = matrix[c, c]
+        matrix[c], inverse[c] = matrix[c] / divisor, inverse[c] / divisor
+        for i in range(n):
+            factor = matrix[i, c]
+            if i != c and factor != 0.0:
+                matrix[i] -= factor * matrix[c]
+                inverse[i] -= factor * inverse[c]
+    return True
