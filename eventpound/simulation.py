@@ -36,6 +36,7 @@ from eventpound.solvers import (
     lists_springs,
     name_of,
     solver_named,
+    takes_friction,
     takes_loads,
     takes_points,
     unknown_springs,
@@ -264,7 +265,7 @@ def _own_problems(solver: Solver, check: str, of: object) -> list[str]:
 
 def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
     """What of a scene a solver cannot take, with the solvers that take all of it."""
-    wanted = [knows_laws, knows_springs, takes_points, takes_loads]
+    wanted = [knows_laws, knows_springs, takes_points, takes_friction, takes_loads]
     if events:
         wanted.append(lists_springs)
     if all(can(solver, scene) for can in wanted):
@@ -273,6 +274,7 @@ def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
     unknown = unknown_springs(solver, scene).items()
     springs = ", ".join(f"{spring!r} ({law})" for spring, law in unknown)
     points = ", ".join(scene.at_points)
+    rubbing = ", ".join(repr(c.name) for c in scene.contacts if c.friction > 0.0)
     kinds = (("supports", scene.supports), ("forces", scene.forces))
     loads = " and ".join(word for word, given in kinds if given)
     name = solver.name
@@ -280,6 +282,7 @@ def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
         knows_laws: f"{name} does not know the laws of contacts {laws}",
         knows_springs: f"{name} does not know the laws of springs {springs}",
         takes_points: f"{name} does not take ends at a point between bodies ({points})",
+        takes_friction: f"{name} does not take contacts with friction ({rubbing})",
         takes_loads: f"name: the solver {name!r} cannot take {loads}",
         lists_springs: f"{name} does not list events of springs",
     }

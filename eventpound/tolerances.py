@@ -51,6 +51,9 @@ BALANCE = 1e-12
 """Part of L/T that the balance of momentum of such a step may miss."""
 AT_REST = 1e-10
 """Part of L, or L/T, up to which a motion is rest: none of its digits is asked for."""
+GAINED_IN_STEP = 1e-2
+"""Part of what impulses of such a step pass on by which they may gain energy: forces of the step
+act in it, too."""
 NO_SPEED = 1e-30
 """Part of L/T that is none at all."""
 
@@ -86,6 +89,8 @@ LEMKE_PIVOT = 1e-11
 """Entries of Lemke's tableau, of entries near 1, below which they are rounding and no pivot."""
 LEMKE_TIE = 1e-12
 """Difference of two ratios in it below which they are a tie."""
+GAINED = 1e-9
+"""Part of what impulses pass on, beyond the rounding of sums, that no impact may gain."""
 TAKEN_OVER = 1e-3
 """Part of its bound by which friction that has just come to it is below it again where forces that
 are not unique are shared anew: far more than the error of a located force."""

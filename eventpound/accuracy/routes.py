@@ -160,6 +160,12 @@ SHARED_WITH_SLIDERS = {
     "eventpound.numerics.box": "the forces of what may stick or rest",
 }
 """What those of a scene with sliders share besides."""
+SHARED_WITH_FRICTION = {
+    "eventpound.contact.friction": "impacts with friction, and which contacts slip or stick",
+    "eventpound.numerics.coulomb": "forces and states of contacts with friction",
+    f"{_MECHANICS}.oblique": "how what slips moves",
+}
+"""What those of a scene share besides in which contacts have friction."""
 SHARED_WITH_LOADS = {
     "eventpound.motion.loads": "forces and motions of supports at a time",
     "eventpound.motion.travel": "displacements of supports from their accelerations",
@@ -222,6 +228,8 @@ def shared_code(routes: tuple[Route, ...], scene: Scene) -> dict[str, str]:
         shared |= SHARED_WITH_LAWS
     if any(isinstance(spring.law, Slider) for spring in scene.springs):
         shared |= SHARED_WITH_SLIDERS
+    if any(contact.friction for contact in scene.contacts):
+        shared |= SHARED_WITH_FRICTION
     if scene.supports or scene.forces:
         shared |= SHARED_WITH_LOADS
     found = " and ".join(repr(route.label) for route in routes if route.finds_events)

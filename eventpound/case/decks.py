@@ -96,9 +96,10 @@ def _read_joint(table: Table) -> Joint | None:
     else:
         gap = (table.quantity("gap", Dimension.LENGTH),) * 2
     restitution = table.quantity("restitution", Dimension.NUMBER)
+    friction = table.quantity("friction", Dimension.NUMBER, 0.0)
     if not (first and second and gap[0] == gap[0]):
         return None
-    return Joint(name, (first, second), gap, restitution)
+    return Joint(name, (first, second), gap, restitution, friction)
 
 
 def two_numbers(table: Table, key: str, dimension: Dimension, accepted: str) -> tuple[float, float]:

@@ -53,7 +53,9 @@ def read_contacts(tables: Sequence[Table], decks: Sequence[Deck] = ()) -> tuple[
     contacts = []
     for table, (left, right), name in zip(tables, ends, names, strict=True):
         gap = table.quantity("gap", Dimension.LENGTH)
-        contacts.append(Contact(name, left, right, gap, *_read_law(table)))
+        law = _read_law(table)
+        friction = table.quantity("friction", Dimension.NUMBER, 0.0)
+        contacts.append(Contact(name, left, right, gap, *law, friction))
         table.close()
     return tuple(contacts)
 

@@ -118,8 +118,9 @@ def sources_of(understood: Mapping[str, Any]) -> dict[str, list[str]]:
 
 
 def contact_law_keys(contact: Contact) -> dict[str, object]:
-    """Restitution and law of a contact, by the keys of a case."""
+    """Restitution, law and friction of a contact, by the keys of a case."""
     keys: dict[str, object] = {"restitution": contact.restitution}
+    keys |= {"friction": contact.friction} if contact.friction else {}
     if contact.law is not None:
         law = contact.law
         keys |= {"law": law.kind, "stiffness": law.stiffness, "damping": law.damping}

@@ -48,11 +48,11 @@ def settle_closed(at: Instant) -> int:
         if at.gap_rate[one] < 0.0:
             _impact_of_only(one, at)
     elif one != NONE:
-        _close_several(at)
+        close_several(at)
         ended = _impacts_of_several(at)
         # Without an impulse nothing has been left at the rounding of velocities.
         if ended == DONE and at.now[0].here > 0:
-            _still_several(at)
+            still_several(at)
         return ended
     return DONE
 
@@ -88,14 +88,14 @@ def _only_closed(gap: Floats) -> int:
 
 
 @deferred_kernel
-def _close_several(at: Instant) -> None:
+def close_several(at: Instant) -> None:
     """Put all bodies that closed contacts join in touch, their centres of mass kept."""
     shut = at.gap == 0.0
     put_as_one(clusters_of(shut, shut, at), True, at.mass, at.u)
 
 
 @deferred_kernel
-def _still_several(at: Instant) -> None:
+def still_several(at: Instant) -> None:
     """Give all bodies that contacts join which neither open nor close the same velocity.
 
     On a barrier they have none. Of what rounding leaves of it after an impulse, stiff springs and
@@ -288,12 +288,20 @@ def _impacts_of_several(at: Instant) -> int:
         )
         if not solved:
             return NO_IMPACT
-        for j in range(shut.size):
-            # Beside a last impact nothing opens more slowly than such impacts are: else two
-            # contacts of one body open each other until no number is small enough.
-            if plastic and shut[j] and 0.0 < gap_rate[j] <= at.last_speed:
-                gap_rate[j] = 0.0
+        open_last(plastic, shut, at)
         list_impacts(plastic, before, impulse, involved, lost, at)
+
+
+@scalar_kernel
+def open_last(plastic: bool, shut: Bools, at: Instant) -> None:
+    """Let nothing open beside a last, `plastic` impact more slowly than such impacts are.
+
+    Else two contacts of one body would open each other until no number is small enough. `shut`
+    (K,): closed contacts.
+    """
+    for j in range(shut.size):
+        if plastic and shut[j] and 0.0 < at.gap_rate[j] <= at.last_speed:
+            at.gap_rate[j] = 0.0
 
 
 @scalar_kernel

@@ -90,6 +90,9 @@ class Clusters(NamedTuple):
         A of `eventpound.mechanics.followers` in such a scene (1/kg), else empty: 1/m of each.
     carried : ndarray, shape (C,)
         r there, else empty: 1.
+    slide, press : ndarray, shape (F, C)
+        Of F contacts with friction, while they slip, as `eventpound.mechanics.oblique` has them,
+        else zero; empty in other scenes.
     """
 
     of_body: Ints
@@ -103,6 +106,8 @@ class Clusters(NamedTuple):
     force_map: Floats
     compliance: Floats
     carried: Floats
+    slide: Floats
+    press: Floats
 
     @property
     def tree(self) -> bool:
@@ -140,7 +145,7 @@ def _bodies_alone(bodies: int) -> Clusters:
     no_rows, no_map = np.zeros((0, 4), np.int64), np.zeros((0, 0))
     return Clusters(
         *(np.arange(bodies), np.zeros(bodies), bodies, none, nobody, nobody, no_rows),
-        *(nobody, no_map, no_map, np.zeros(0)),
+        *(nobody, no_map, no_map, np.zeros(0), no_map, no_map),
     )
 
 
@@ -166,7 +171,7 @@ def _joined(between: ContactEnds, resting: Bools, pressed: Bools) -> tuple[Any, 
     of_body, offset, count, elimination = _spread(
         members[carrying], first_node[carrying], second_node[carrying], between.gap, bodies
     )
-    compliance, carried = np.zeros((0, 0)), np.zeros(0)
+    compliance, carried, no_slips = np.zeros((0, 0)), np.zeros(0), np.zeros((0, 0))
     if points > 0:
         grouped_at = Grouped(of_body, offset, np.zeros((bodies, bodies)), np.zeros(bodies))
         count = follow(count, mass, weights, grouped_at)
@@ -179,7 +184,7 @@ def _joined(between: ContactEnds, resting: Bools, pressed: Bools) -> tuple[Any, 
         unique = _unique(carrying, first_node, second_node, of_body, count)
     return (
         *(of_body, offset, count, members, locked, ~carrying, elimination, unique),
-        *(force_map, compliance, carried),
+        *(force_map, compliance, carried, no_slips, no_slips),
     )
 
 

@@ -22,7 +22,8 @@ _Pair = tuple[int, int]
 class Numbered(NamedTuple):
     """Ends by the numbers of their coordinates, -1 for the ground and barriers.
 
-    springs, contacts: first and second end of each. dashpots: links of dashpots that stand alone.
+    springs, contacts: first and second end of each. tangents: of each contact with friction the
+    ends along which it slides. dashpots: links of dashpots that stand alone.
     of_dashpot: the link of each dashpot, springs numbered first. weights (D, N): parts of the
     coordinates in the points, the last of them. on_ground (D,): that of the ground.
     """
@@ -30,6 +31,7 @@ class Numbered(NamedTuple):
     springs: list[_Pair]
     dashpots: list[_Pair]
     contacts: list[_Pair]
+    tangents: list[_Pair]
     of_dashpot: list[int]
     weights: Floats
     on_ground: Floats
@@ -43,17 +45,17 @@ def numbered(scene: Scene) -> Numbered:
     index = {body.name: i for i, body in enumerate(scene.bodies)} | {GROUND: -1, BARRIER: -1}
     index |= {support.name: -1 for support in scene.supports}
     bodies = len(scene.bodies)
-    points: dict[tuple[tuple[str, float], ...], int] = {}
+    points: dict[tuple[tuple[tuple[str, float], ...], str], int] = {}
 
-    def coordinate(end: End) -> int:
+    def coordinate(end: End, own: str = "") -> int:
         if isinstance(end, str):
             return index[end]
         if all(index[name] < 0 for name, _ in weights_of(end)):
             return -1
-        return points.setdefault(weights_of(end), bodies + len(points))
+        return points.setdefault((weights_of(end), own), bodies + len(points))
 
-    def pair(first: End, second: End) -> _Pair:
-        return coordinate(first), coordinate(second)
+    def pair(first: End, second: End, own: str = "") -> _Pair:
+        return coordinate(first, own), coordinate(second, own)
 
     springs = [pair(*spring.between) for spring in scene.springs]
     links, of_dashpot = springs.copy(), list[int]()
@@ -62,15 +64,22 @@ def numbered(scene: Scene) -> Numbered:
         if place == len(links):
             links.append(ends)
         of_dashpot.append(place)
-    contacts = [pair(contact.left, contact.right) for contact in scene.contacts]
+    # Friction asks for points of its own, at which nothing else acts.
+    own = [contact.name if contact.friction else "" for contact in scene.contacts]
+    contacts = [pair(c.left, c.right, name) for c, name in zip(scene.contacts, own, strict=True)]
+    tangents = [
+        pair(*contact.tangent, name) if name else (-1, -1)
+        for contact, name in zip(scene.contacts, own, strict=True)
+    ]
     weights, on_ground = np.zeros((len(points), bodies + len(points))), np.zeros(len(points))
-    for d, own in enumerate(points):
-        for name, weight in own:
+    for d, (parts, _) in enumerate(points):
+        for name, weight in parts:
             if index[name] < 0:
                 on_ground[d] += weight
             else:
                 weights[d, index[name]] += weight
-    return Numbered(springs, links[len(springs) :], contacts, of_dashpot, weights, on_ground)
+    alone = links[len(springs) :]
+    return Numbered(springs, alone, contacts, tangents, of_dashpot, weights, on_ground)
 
 
 def parts_on_ground(ends: list[_Pair], bodies: int, on_ground: Floats) -> Floats:

@@ -68,6 +68,10 @@ class Model:
         Coordinates of each contact; -1 is a barrier.
     gap, restitution : ndarray, shape (K,)
         Openings at zero displacement (m) and coefficients of restitution, NaN where none is.
+    friction : ndarray, shape (K,)
+        μ of each contact.
+    tangent : ndarray of int, shape (K, 2)
+        Coordinates along which contacts with friction slide, as `left` and `right`; else -1.
     elements : Elements
         Laws of the contacts, shape (K,).
     supports, loads : int
@@ -79,6 +83,9 @@ class Model:
         Of the points, the last D coordinates: the parts w of bodies in each.
     sliders : ndarray of int, shape (J,)
         Links of sliders, whose last J contacts hold them while they stick (`with_sliders`).
+    rubbing : ndarray of int, shape (F,)
+        Contacts with friction, along which the last F links are and the last F contacts hold them
+        while they stick (`with_friction`); then there are no `laws` and `sliders`.
     """
 
     mass: Floats
@@ -95,12 +102,15 @@ class Model:
     right: Ints
     gap: Floats
     restitution: Floats
+    friction: Floats
+    tangent: Ints
     elements: Elements
     supports: int = 0
     loads: int = 0
     laws: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
     weights: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     sliders: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    rubbing: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @property
     def coordinates(self) -> int:
@@ -125,12 +135,12 @@ class Model:
     @property
     def own_contacts(self) -> int:
         """Number of the contacts of the scene, which come first."""
-        return self.contacts - self.sliders.size
+        return self.contacts - self.sliders.size - self.rubbing.size
 
     @property
     def ledger_entries(self) -> int:
-        """Entries of the energy ledger, the work of each support the last."""
-        return WORK_OF_SUPPORTS + self.supports
+        """Entries of the energy ledger, the work of each support and each friction the last."""
+        return WORK_OF_SUPPORTS + self.supports + self.rubbing.size
 
     @property
     def plain(self) -> int:
@@ -245,21 +255,48 @@ def with_sliders(model: Model) -> Model:
     sliders = np.flatnonzero(model.law.memory[:, KIND] == SLIDER)
     if sliders.size == 0:
         return model
-    nothing, ends = np.zeros(sliders.size), model.link_ends[sliders]
-    elements, none = model.elements, np.full(sliders.size, NO_LAW)
+    return replace(_with_contacts(model, model.link_ends[sliders]), sliders=sliders)
+
+
+def with_friction(model: Model) -> Model:
+    """The model with a link and a contact along every contact with friction.
+
+    The link, which carries no force, tells how far it has slid and whether it still slides; the
+    contact rests while that sticks.
+    """
+    rubbing = np.flatnonzero(model.friction)
+    if rubbing.size == 0:
+        return model
+    nothing, ends = np.zeros(rubbing.size), model.tangent[rubbing]
+    slack = as_arrays([_SLACK] * rubbing.size)
+    return replace(
+        _with_contacts(model, ends),
+        link_ends=np.vstack((model.link_ends, ends)),
+        on_ground=np.append(model.on_ground, nothing),
+        law=LinkLaw(*map(np.concatenate, zip(model.law, link_law([], nothing), strict=True))),
+        elastic=ElasticLaws(*map(np.append, model.elastic, slack)),
+        rubbing=rubbing,
+    )
+
+
+def _with_contacts(model: Model, ends: Ints) -> Model:
+    """The model with contacts without gaps between such ends (k, 2) behind its own."""
+    nothing, none = np.zeros(len(ends)), np.full(len(ends), NO_LAW)
+    elements = model.elements
     return replace(
         model,
         left=np.append(model.left, ends[:, 0]),
         right=np.append(model.right, ends[:, 1]),
         gap=np.append(model.gap, nothing),
         restitution=np.append(model.restitution, nothing),
+        friction=np.append(model.friction, nothing),
+        tangent=np.vstack((model.tangent, np.full(ends.shape, -1))),
         elements=Elements(
             np.append(elements.kind, none),
             np.append(elements.stiffness, nothing),
             np.append(elements.damping, nothing),
             np.append(elements.cut, np.zeros_like(none)),
         ),
-        sliders=sliders,
     )
 
 
@@ -327,6 +364,8 @@ def assemble(scene: Scene) -> Model:
         restitution=column(
             [math.nan if c.restitution is None else c.restitution for c in scene.contacts]
         ),
+        friction=column([c.friction for c in scene.contacts]),
+        tangent=np.array(at.tangents, np.int64).reshape(-1, 2),
         elements=elements_of(scene, mass, left, right),
         supports=motion.supports if isinstance(motion, LoadedMotion) else 0,
         loads=len(motion.loads) if isinstance(motion, LoadedMotion) else 0,

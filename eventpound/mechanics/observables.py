@@ -35,7 +35,10 @@ class Bodies(NamedTuple):
     on_ground (L,): what of their forces counts in the base shear.
     z_of_link: below -1 the code of a closed contact element. laws (P,): contacts whose elements
     are the last P links. weights (D, N): of the `Model`. compliance, carried: of the `Reduced`.
-    sliders (J,): links of sliders, whose contacts are the last J.
+    sliders (J,): links of sliders, whose contacts are the last J. rubbing (F,), friction (K,): as
+    the `Model` has them. slips (S, 2): of contacts that slip the normal and the tangential one,
+    drag (S,): ``-σ μ`` there. rubbed (5, F): of the whole run, what `eventpound.contact.friction`
+    keeps.
     """
 
     mass: Floats
@@ -64,6 +67,11 @@ class Bodies(NamedTuple):
     compliance: Floats
     carried: Floats
     sliders: Ints
+    rubbing: Ints
+    friction: Floats
+    slips: Ints
+    drag: Floats
+    rubbed: Floats
 
 
 class Observed(NamedTuple):
@@ -134,6 +142,11 @@ def bodies_of(
         compliance=system.compliance,
         carried=system.carried,
         sliders=model.sliders,
+        rubbing=model.rubbing,
+        friction=model.friction,
+        slips=np.zeros((0, 2), np.int64),
+        drag=np.zeros(0),
+        rubbed=np.zeros((5, 0)),
     )
 
 
@@ -412,6 +425,11 @@ def _observe_on_ground(
     _contact_forces(bodies, out)
     if bodies.sliders.size > 0:
         observe_friction(bodies.sliders, bodies.z_of_link, bodies.memory, bodies.on_ground, out)
+    for s in range(bodies.drag.size):
+        # Of one that slips the normal force tells that of friction.
+        j, t = bodies.slips[s]
+        for row in range(2):
+            out.contact_force[row, t] = bodies.drag[s] * out.contact_force[row, j]
     observe_gaps(bodies, out)
     # Bodies in one cluster differ by constants: what is left of their gap is the rounding of these.
     for i in range(bodies.resting.size):

@@ -70,7 +70,8 @@ class Reduced(NamedTuple):
     own. `z_of` (H,) is the place of each z of the model, -1 where it is frozen. `link` (A,) is
     the model's number of each link. `plain`: the links before contact elements, the last.
     `mass` is inf of clusters with supports, `own_mass` that of their other bodies.
-    `compliance` (C, C) and `carried` (C,): A and r of the `Clusters`, empty without points.
+    `compliance` (C, C) and `carried` (C,): A and r of the `Clusters`, empty without points;
+    `slide` and `press` (F, C) of them, empty without friction at contacts.
     """
 
     size: int
@@ -92,6 +93,8 @@ class Reduced(NamedTuple):
     plain: int
     compliance: Floats
     carried: Floats
+    slide: Floats
+    press: Floats
 
 
 class Branches(NamedTuple):
@@ -206,6 +209,8 @@ def _fields(
         plain,
         clusters.compliance,
         clusters.carried,
+        clusters.slide,
+        clusters.press,
     )
 
 
@@ -393,6 +398,8 @@ def rate_on_ground(
         # A support is left out, whose mass is infinite: its work is an entry of its own.
         put_in -= system.own_mass[c] * y[iv[c]] * ground
     if system.compliance.size > 0:
+        if system.ledger >= 0:
+            _add_friction(y, rate, system)
         _answer_coupled(ground, system, rate)
     else:
         for c in range(system.mass.size):
@@ -403,6 +410,18 @@ def rate_on_ground(
         rate[system.ledger] = put_in
         rate[system.ledger + 1] = viscous
         rate[system.ledger + 2] = hysteretic
+
+
+@kernel
+def _add_friction(y: Floats, rate: Floats, system: Reduced) -> None:
+    """Power of friction at each contact (W), the last of the ledger, from the forces in `rate`."""
+    first = system.size - system.slide.shape[0]
+    for i in range(system.slide.shape[0]):
+        way, pressed = 0.0, 0.0
+        for c in range(system.mass.size):
+            way += system.slide[i, c] * y[system.iv[c]]
+            pressed += system.press[i, c] * rate[system.iv[c]]
+        rate[first + i] = way * pressed
 
 
 @kernel

@@ -29,6 +29,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel
 from eventpound.numerics.power_series import power_coefficient, sign_after
+from eventpound.numerics.small_systems import dot
 
 
 @deferred_kernel
@@ -103,6 +104,19 @@ def _add_work(
             for j in range(k + 1):
                 # The caller divides the first three places of the ledger by k + 1, and not these.
                 Y[k + 1, place] += Y[j, iv[c]] * given[k - j, c] / (k + 1)
+
+
+@deferred_kernel
+def _add_friction(k: int, system: Reduced, Y: Floats, forces: Floats) -> None:
+    """Coefficient k + 1 of the work of friction at each contact.
+
+    `forces` (order, C): coefficients of what acts on the clusters.
+    """
+    first = system.size - system.slide.shape[0]
+    for i in range(system.slide.shape[0]):
+        for j in range(k + 1):
+            way = dot(system.slide[i], Y[j][system.iv])
+            Y[k + 1, first + i] += way * dot(system.press[i], forces[k - j]) / (k + 1)
 
 
 class _Terms(NamedTuple):
@@ -204,6 +218,7 @@ def motion_series(
     ground_taylor(forcing, forcing.start + tau, order, ground)
     terms = _blank_terms(order, system)
     force, coupled = np.empty(system.mass.size), np.empty(system.compliance.shape[0])
+    forces = np.zeros((order if system.slide.size > 0 else 0, system.mass.size))
     loads = np.zeros((2, order if forcing.family == LOADED else 0, system.mass.size))
     pushed, driven, given = loads[0], loads[1], np.zeros(loads[0].shape)
     if forcing.family == LOADED and system.mass.size > 0:
@@ -219,6 +234,8 @@ def motion_series(
                 force[c] += pushed[k, c]
                 if coupled.size > 0 and is_support(c, system.mass):
                     force[c] = driven[k, c]
+        if forces.size > 0:
+            forces[k] = force
         answers(system.compliance, force, coupled)
         for c in range(system.mass.size):
             Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
@@ -235,6 +252,8 @@ def motion_series(
                 _add_work(k, system, forcing, Y, pushed, given)
             for i in range(out.size):
                 out[i] /= k + 1
+            if forces.size > 0:
+                _add_friction(k, system, Y, forces)
     return Y
 
 

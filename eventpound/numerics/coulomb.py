@@ -109,6 +109,21 @@ def _columns(state: Ints, problem: Rubbing) -> tuple[Ints, Floats]:
 
 
 @kernel
+def _solved(matrix: Floats, inverse: Floats, right: Floats) -> Floats:
+    """Solve by an inverse, and once more for what rounding has left."""
+    found = np.zeros(right.size)
+    for _ in range(2):
+        left = right.copy()
+        for a in range(right.size):
+            for b in range(right.size):
+                left[a] -= matrix[a, b] * found[b]
+        for a in range(right.size):
+            for b in range(right.size):
+                found[a] += inverse[a, b] * left[b]
+    return found
+
+
+@kernel
 def solve_state(state: Ints, problem: Rubbing) -> tuple[Floats, Floats, float]:
     """Forces and motion in a state, and how far they are from an answer.
 
@@ -120,40 +135,28 @@ def solve_state(state: Ints, problem: Rubbing) -> tuple[Floats, Floats, float]:
         By how much an inequality fails, as part of the rounding that is allowed; up to 1 it is an
         answer, and inf where the equations depend on each other.
     """
-    k, q, noise = state.size, problem.q, problem.noise
-    x, w = np.zeros(2 * k), np.zeros(2 * k)
+    k, x, w = state.size, np.zeros(2 * state.size), np.zeros(2 * state.size)
     rows, effect = _columns(state, problem)
     n = rows.size
-    matrix, found = np.empty((n, n)), np.zeros(n)
+    matrix, inverse, right = np.empty((n, n)), np.empty((n, n)), np.empty(n)
     for a in range(n):
-        matrix[a] = effect[rows[a]]
-    inverse = np.empty((n, n))
+        matrix[a], right[a] = effect[rows[a]], -problem.q[rows[a]]
     if not invert(matrix.copy(), inverse, DEPENDENT):
         return x, w, np.inf
-    # The second turn solves for what rounding has left.
-    for _ in range(2):
-        left = np.empty(n)
-        for a in range(n):
-            left[a] = -q[rows[a]]
-            for b in range(n):
-                left[a] -= matrix[a, b] * found[b]
-        for a in range(n):
-            for b in range(n):
-                found[a] += inverse[a, b] * left[b]
+    found = _solved(matrix, inverse, right)
     rounding, spread = 0.0, 1.0
     for i in range(2 * k):
-        w[i], terms = q[i], abs(q[i])
+        w[i], terms = problem.q[i], abs(problem.q[i])
         for a in range(n):
             w[i] += effect[i, a] * found[a]
             terms += abs(effect[i, a] * found[a])
-        rounding = max(rounding, LCP_ROUNDING * terms + noise[i])
+        rounding = max(rounding, LCP_ROUNDING * terms + problem.noise[i])
     for a in range(n):
-        w[rows[a]], total = 0.0, 1.0
+        # What the equations make of the rounding of their right-hand sides.
+        x[rows[a]], w[rows[a]], total = found[a], 0.0, 1.0
         for b in range(n):
             total += abs(inverse[a, b])
         spread = max(spread, total)
-    for a in range(n):
-        x[rows[a]] = found[a]
     for i in range(k):
         if state[i] == FORWARD or state[i] == BACKWARD:
             x[k + i] = _drag(i, state[i], problem) * x[i]

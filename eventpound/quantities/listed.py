@@ -154,6 +154,17 @@ LISTED: tuple[Quantity, ...] = (
     Quantity(_CONTACT + "longest_contact", "longest contact", D.TIME,
              "Longest time that a contact with a law of its own is closed.",
              v.of_laws("longest_contact"), TakenFrom.LAWS, v.has_law),
+    *(Quantity(_CONTACT + name, called, dimension, text, v.of_friction(key), TakenFrom.LAWS,
+               v.has_friction)
+      for name, called, dimension, text, key in (
+          ("sliding_path", "sliding path", D.LENGTH,
+           "Way that a contact with friction slides while it is closed.", "path"),
+          ("friction_work", "friction work", D.ENERGY,
+           "Energy that friction takes at a contact, in impacts too; with the ledger.", "work"),
+          ("max_normal_impulse", "largest normal impulse", D.IMPULSE,
+           "Largest normal impulse of an impact at a contact with friction.", "impulse"),
+          ("max_tangential_impulse", "largest tangential impulse", D.IMPULSE,
+           "Largest impulse of friction in an impact.", "tangential"))),
     of_contact("t_max_impulse", "time of the strongest impact", D.TIME,
                "Time of the impact of the largest impulse; none without an impact."),
     of_contact("t_first_impact", "time of the first impact", D.TIME,
@@ -215,7 +226,8 @@ LISTED: tuple[Quantity, ...] = (
           ("elastic", "stored in the k x parts of the springs at the end"),
           ("hysteretic", "of the work done on the Q z parts of the springs"),
           ("viscous", "of the work done in the dashpots"),
-          ("impact", "lost in impacts"))),
+          ("impact", "lost in impacts"),
+          ("friction", "that friction takes where bodies touch, between impacts"))),
     *(Quantity("pi_um" + owner, "$u_{max}/L_e$", D.NUMBER,
                f"Largest displacement of either sign over L_e (eq. 8), {whose}.", v.peak_term,
                tabled=False)

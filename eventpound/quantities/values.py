@@ -341,6 +341,18 @@ def of_laws(name: str) -> Value:
     return _of_each(lambda run, i: np.nan if run.laws is None else getattr(run.laws, name)[i])
 
 
+def has_friction(scene: Scene, i: int) -> bool:
+    """Whether contact i has friction."""
+    return scene.contacts[i].friction > 0.0
+
+
+def of_friction(name: str) -> Value:
+    """A number of what friction did at contacts, NaN where the solver does not tell."""
+    return _of_each(
+        lambda run, i: np.nan if run.friction is None else getattr(run.friction, name)[i]
+    )
+
+
 def estimated_force(many: Runs, i: int) -> Floats:
     """Force of the strongest impact if the contact were a spring of the stated stiffness (N).
 

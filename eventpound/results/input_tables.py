@@ -63,7 +63,8 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
         ),
         (
             "contacts",
-            "name=contact; between; gap:length; law; stiffness=k (SI); restitution; damping; "
+            "name=contact; between; gap:length; law; stiffness=k (SI); restitution; "
+            "friction; damping; "
             "c:damping; effective_mass=mass:mass; source",
         ),
         (

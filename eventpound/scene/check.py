@@ -410,12 +410,24 @@ def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
         else:
             yield from _contact_law_problems(element, contact, contact.law)
         yield from element.numbers(contact)
+        if contact.friction > 0.0:
+            yield from _friction_problems(element, contact)
         if i in penetrated:
             accepted = (
                 "a gap that is not penetrated at the start; with the initial displacements it "
                 f"is {penetrated[i]:.6g} m open"
             )
             yield element.problem("gap", contact.gap, accepted)
+
+
+def _friction_problems(element: _Element, contact: Contact) -> Iterator[Problem]:
+    """What friction at a contact asks for."""
+    if not all(isinstance(end, PlanPoint) or end == BARRIER for end in contact.sides):
+        accepted = "0 but between places of decks in plan: nothing else slides along a contact"
+        yield element.problem("friction", contact.friction, accepted)
+    if contact.law is not None:
+        accepted = f"0 beside a law of contact; friction is of {NEWTON}'s law"
+        yield element.problem("friction", contact.friction, accepted)
 
 
 def _restitution(element: _Element, contact: Contact) -> Iterator[Problem]:

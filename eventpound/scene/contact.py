@@ -11,10 +11,12 @@ from eventpound.basics.given import (
     OptionalNumber,
     converting,
     default,
+    not_negative,
     read_fields,
 )
 from eventpound.scene.contact_law import ContactLaw, damping_constant
 from eventpound.scene.ends import End, GivenEnd, Joining, read_ends
+from eventpound.scene.plan_point import PlanPoint
 from eventpound.units import Dimension
 
 BARRIER = "barrier"
@@ -41,6 +43,8 @@ class Contact(Joining):
         follows from.
     law : ContactLaw, optional
         A contact element in the place of Newton's law, under which the gap stays ``g >= 0``.
+    friction : float, optional
+        Coulomb's coefficient μ of what slides along it, between places of decks in plan.
 
     Examples
     --------
@@ -54,6 +58,9 @@ class Contact(Joining):
     gap: Annotated[Number, Dimension.LENGTH, Accepted("a length (m)")]
     restitution: Annotated[OptionalNumber, Dimension.NUMBER] = default(None)
     law: ContactLaw | None = None
+    friction: Annotated[Number, Dimension.NUMBER, Accepted("a number >= 0", not_negative)] = (
+        default(0.0)
+    )
 
     def __post_init__(self) -> None:
         for side in ("left", "right"):
@@ -73,3 +80,9 @@ class Contact(Joining):
     def sides(self) -> tuple[End, End]:
         """Its left and its right end."""
         return self.left, self.right
+
+    @property
+    def tangent(self) -> tuple[End, End]:
+        """Its ends as they move along it, a quarter turn to the left of how they close it."""
+        left, right = (e.tangent if isinstance(e, PlanPoint) else e for e in self.sides)
+        return left, right

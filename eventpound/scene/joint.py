@@ -13,7 +13,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from eventpound.basics.given import Given, Number, converting, number, read_fields
+from eventpound.basics.given import Given, Number, converting, default, number, read_fields
 from eventpound.errors import InputError
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.deck import Deck, Side, facing
@@ -41,12 +41,15 @@ class Joint:
         At right angles to the edges (m); two are those at the lower and at the upper end.
     restitution : float
         Newton's coefficient, 0 to 1.
+    friction : float, optional
+        Coulomb's coefficient μ of what slides along the edges.
     """
 
     name: str
     between: tuple[str, str]
     gap: Given[_Gaps, _Gap | tuple[_Gap, _Gap]]
     restitution: Annotated[Number, Dimension.NUMBER]
+    friction: Annotated[Number, Dimension.NUMBER] = default(0.0)
 
     def __post_init__(self) -> None:
         given: object = self.gap
@@ -80,6 +83,7 @@ class Joint:
                 _end(right, "left", -1.0, y),
                 gap,
                 self.restitution,
+                friction=self.friction,
             )
             for word, y, gap in zip(ENDS, (low, high), self.gap, strict=True)
         )

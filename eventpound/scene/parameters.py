@@ -3,7 +3,7 @@
 body.<name>.mass, .displacement, .velocity
 spring.<name>.<number of its law>; of a series spring .parts.<1, 2, ...>.<number>; .weight
 dashpot.<first>-<second>.coefficient; .2 ahead of the last dot for the second of a pair
-contact.<name>.gap, .restitution; of one with a law .stiffness, .damping
+contact.<name>.gap, .restitution, .friction of one with some; with a law .stiffness, .damping
 support.<name>.delay, of one that has a delay
 excitation.<number of the motion>: amplitude, period, start, scale, ...; in plan .attack
 excitation.across.<number>: of the second component; the factor on a record is one for both
@@ -96,7 +96,9 @@ def number_places(scene: Scene) -> dict[str, Place]:
 
     def add(key: str, kind: str, index: int, owner: object, part: int = -1) -> None:
         for name in numbers_of(type(owner)) if is_dataclass(owner) else ():
-            places[f"{key}.{name}"] = Place(kind, index, name, part)
+            # Without friction a contact has none along which it could slide.
+            if name != "friction" or getattr(owner, name):
+                places[f"{key}.{name}"] = Place(kind, index, name, part)
 
     for i, body in enumerate(scene.bodies):
         add(f"body.{body.name}", "body", i, body)

@@ -39,7 +39,15 @@ def plugins() -> Plugins[Solver]:
 
 def takes_loads(solver: Solver, scene: Scene) -> bool:
     """Whether a solver takes the supports and forces of a scene, or its decks in plan."""
-    return not scene.is_driven or getattr(solver, "takes_supports", False)
+    if getattr(solver, "takes_supports", False) or not scene.is_driven:
+        return True
+    return not scene.supports and getattr(solver, "takes_forces", False)
+
+
+def takes_friction(solver: Solver, scene: Scene) -> bool:
+    """Whether a solver takes the friction of contacts, if there is any."""
+    rubs = any(contact.friction > 0.0 for contact in scene.contacts)
+    return not rubs or getattr(solver, "takes_friction", False)
 
 
 def knows_laws(solver: Solver, scene: Scene) -> bool:
@@ -72,7 +80,9 @@ def lists_springs(solver: Solver, scene: Scene) -> bool:
 
 def knows_scene(solver: Solver, scene: Scene) -> bool:
     """Whether a solver takes every spring and contact of a scene."""
-    return all(can(solver, scene) for can in (knows_laws, takes_points, knows_springs))
+    return all(
+        can(solver, scene) for can in (knows_laws, takes_points, takes_friction, knows_springs)
+    )
 
 
 def _own_names() -> list[str]:

@@ -156,7 +156,7 @@ class Work:
 class Energy:
     """The energy ledger (J).
 
-    ``initial + input + Σ supports = kinetic + elastic + hysteretic + viscous + impact``
+    ``initial + input + Σ supports = kinetic + elastic + hysteretic + viscous + impact + friction``
 
     Parameters
     ----------
@@ -174,6 +174,8 @@ class Energy:
     supports : tuple of float
         What each support put in, ``∫ R s' dt`` with the impulses of its contacts; of every support
         of the scene, zero of those that move with the ground.
+    friction : float
+        Work of friction where bodies touch, that in impacts apart.
     """
 
     initial: float
@@ -185,6 +187,7 @@ class Energy:
     impact: float
     closure: float
     supports: tuple[float, ...] = ()
+    friction: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,6 +236,26 @@ class LawRecording:
 
     smallest_force: Floats
     longest_contact: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionRecording:
+    """What friction did at each contact, shape (K,) each.
+
+    Parameters
+    ----------
+    path : ndarray
+        Way slid while closed (m).
+    work : ndarray
+        Energy that it took, in impacts too (J).
+    impulse, tangential : ndarray
+        Largest normal and tangential impulse of an impact (N s).
+    """
+
+    path: Floats
+    work: Floats
+    impulse: Floats
+    tangential: Floats
 
 
 class Stick(NamedTuple):
@@ -295,6 +318,8 @@ class Recording:
     unique_z : ndarray of bool, shape (H,), optional
         False for the z of a slider whose friction was, at some time, not unique; None where the
         scene has no sliders.
+    friction : FrictionRecording, optional
+        Where contacts have friction.
     """
 
     success: bool
@@ -322,6 +347,7 @@ class Recording:
     largest_gap: Floats | None = None
     sticks: tuple[Stick, ...] = ()
     unique_z: np.ndarray | None = None
+    friction: FrictionRecording | None = None
 
     def of_bodies(self, own: slice) -> Recording:
         """The same of some of its bodies."""
@@ -370,7 +396,9 @@ class Solver(Protocol):
 
     A solver that heeds `Task.max_steps` says so by an attribute ``counts_steps = True``;
     any other is never given one. One that takes scenes with supports and forces says so by
-    ``takes_supports = True``. One that knows laws of contacts besides Newton's names them in
+    ``takes_supports = True``, with forces alone by ``takes_forces = True``; one that takes
+    friction at contacts by ``takes_friction = True``.
+    One that knows laws of contacts besides Newton's names them in
     an attribute ``contact_laws``, a collection of `eventpound.scene.contact_law.ContactLaw` kinds;
     scenes with others are refused. One that takes ends at points between bodies, with more
     than two bodies in a column of W, says so by ``takes_points = True``. One that knows spring laws

@@ -59,6 +59,7 @@ class Cvode:
     counts_steps = True
     takes_supports = True
     takes_points = True
+    takes_friction = True
     memories = frozenset(LawName)
     lists_springs = True
     contact_laws = tuple(BY_WORD)

@@ -10,9 +10,11 @@ from eventpound import (
     ContactLaw,
     Cosine,
     Dashpot,
+    Deck,
     DegradingBoucWen,
     Force,
     InputError,
+    Joint,
     Linear,
     Point,
     Scene,
@@ -44,6 +46,12 @@ def _scene(law: Law, left: End = "a", kind: ContactLaw | None = None) -> Scene:
     )
 
 
+def _rubbing() -> Scene:
+    deck = Deck("deck", "1 t", "20 m", "8 m")
+    joint = Joint("joint", ("deck", "barrier"), "1 cm", 0.5, 0.3)
+    return Scene(deck.bodies(), contacts=joint.contacts({"deck": deck}), decks=[deck])
+
+
 _PLAIN = _scene(Linear(1e6))
 _SLIDER = Slider(0.1, "10 kN")
 _POINT = Point({"a": 0.4, "c": 0.6})
@@ -59,6 +67,7 @@ SCENES = {
         _scene(Linear(1e6), _POINT), dashpots=(Dashpot((_POINT, "b"), "1 kN s/m"),)
     ),
     "the same beside friction bearings": _scene(_SLIDER, _POINT),
+    "friction where decks in plan touch": _rubbing(),
     "the same on supports": replace(_scene(Linear(1e6), _POINT), supports=(_SUPPORT,)),
 }
 """What a scene may have that not every solver takes."""

@@ -17,7 +17,7 @@ import numpy as np
 from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.monitored import Places, Running, contact_pressed, is_motion, motion_of
 from eventpound.mechanics.observables import Observed
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein, quintic_bernstein
 from eventpound.tolerances import FLAT_TURN, LENGTH
@@ -34,7 +34,8 @@ class Watched(NamedTuple):
     for what it does. force_low, force_high (K,): forces between which a contact stays
     at rest (N). kink_low, kink_high (L,): elongations at which a link
     changes branch, of those that `turns` (L,) marks rates of elongation. force_noise: contact
-    forces below which the sign means nothing (N). at: columns of the extremes.
+    forces below which the sign means nothing (N). at: columns of the extremes. presses, friction
+    (K,): of one that holds what sticks, the contact whose force bounds its own, and μ; else -1.
     """
 
     open_contacts: Bools
@@ -47,6 +48,8 @@ class Watched(NamedTuple):
     turns: Bools
     force_noise: float
     at: Places
+    presses: Ints
+    friction: Floats
 
 
 class Marks(NamedTuple):
@@ -103,6 +106,8 @@ def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, mark
             i = at.gap + j
             low, high = _bounds(motion_of(i, at, a), motion_of(i, at, b), h, True)
             marks.closing[j] = low <= DOUBT * (high - low)
+        elif watched.unlocked[j] and watched.presses[j] >= 0:
+            marks.detaching[j] = _may_slip(j, a, b, h, watched)
         elif watched.unlocked[j]:
             i = at.contact_force + j
             low, high = _bounds(motion_of(i, at, a), motion_of(i, at, b), h, False)
@@ -111,6 +116,19 @@ def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, mark
                 low - doubt < watched.force_low[j] - watched.force_noise
                 or high + doubt > watched.force_high[j] + watched.force_noise
             )
+
+
+@kernel
+def _may_slip(j: int, a: Observed, b: Observed, h: float, watched: Watched) -> bool:
+    """Whether what sticks may come to the bound of friction inside a step."""
+    i, mu, may = watched.presses[j], watched.friction[j], False
+    x, y = a.contact_force, b.contact_force
+    for way in (1.0, -1.0):
+        start = mu * x[0, i] + way * x[0, j], mu * x[1, i] + way * x[1, j], 0.0
+        end = mu * y[0, i] + way * y[0, j], mu * y[1, i] + way * y[1, j], 0.0
+        low, high = _bounds(start, end, h, False)
+        may |= low - DOUBT * (high - low) < -watched.force_noise
+    return may
 
 
 @kernel
@@ -141,8 +159,26 @@ def margin_on_branch(link: int, watched: Watched, elongation: Floats) -> tuple[f
 @scalar_kernel
 def margin_at_rest(j: int, watched: Watched, contact_force: Floats) -> tuple[float, float]:
     """How far the force of a resting contact is from where its rest ends (N), and the rate."""
+    i, mu = watched.presses[j], watched.friction[j]
+    if i >= 0:
+        bound, rate = mu * contact_force[0, i], mu * contact_force[1, i]
+        return _margin_of_stick(bound, rate, contact_force[0, j], contact_force[1, j])
     low, high = watched.force_low[j], watched.force_high[j]
     return _margin_between(low, high, contact_force[0, j], contact_force[1, j])
+
+
+@scalar_kernel
+def _margin_of_stick(
+    bound: float, bound_rate: float, force: float, force_rate: float
+) -> tuple[float, float]:
+    """How far a force is inside of a bound that moves (N), and the rate; smooth as below."""
+    below, above = bound + force, bound - force
+    if min(below, above) <= 0.0:
+        way = 1.0 if below <= above else -1.0
+        return min(below, above), bound_rate + way * force_rate
+    value = 0.5 * below * above / bound
+    rate = below * (bound_rate - force_rate) + above * (bound_rate + force_rate)
+    return value, (0.5 * rate - value * bound_rate) / bound
 
 
 @scalar_kernel

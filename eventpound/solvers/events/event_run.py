@@ -13,7 +13,7 @@ from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.elements import branch_within
 from eventpound.mechanics.link_law import KIND, SLIDER
-from eventpound.mechanics.model import Model, assemble, with_elements, with_sliders
+from eventpound.mechanics.model import Model, assemble, with_elements, with_friction, with_sliders
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.observables import Observed, blank_observed, initial_gaps
 from eventpound.mechanics.reduced import Forcing, forcing_of
@@ -120,7 +120,8 @@ class EventRun:
 
     def __init__(self, task: Task) -> None:
         self.task = task
-        model = self.model = with_elements(with_sliders(assemble(task.scene)))
+        model = with_elements(with_sliders(assemble(task.scene)))
+        model = self.model = with_friction(model)
         self.scales = scene_scales(task.scene, model, task.end - task.start)
         self.table = ModeTable(model, ledger=task.energy, force_noise=FORCE * self.scales.force)
         self.unique_forces = np.ones(model.contacts, np.bool_)
@@ -141,11 +142,12 @@ class EventRun:
 
     @property
     def names(self) -> list[str]:
-        """Of the contacts, those of sliders included."""
-        springs = self.task.scene.springs
+        """Of the contacts, those of sliders and of friction included."""
+        springs, contacts = self.task.scene.springs, self.task.scene.contacts
         return [
-            *(contact.name for contact in self.task.scene.contacts),
+            *(contact.name for contact in contacts),
             *(springs[link].name for link in self.model.sliders),
+            *(contacts[j].name for j in self.model.rubbing),
         ]
 
     @property
@@ -400,7 +402,9 @@ def _instant_of(
         restitution=model.restitution,
         length=rules.length,
         time=rules.time,
-        last_speed=last_speed(rules.length / rules.time, model.sliders.size > 0),
+        last_speed=last_speed(
+            rules.length / rules.time, model.sliders.size + model.rubbing.size > 0
+        ),
         u=state.u,
         v=state.v,
         gap=state.gap,

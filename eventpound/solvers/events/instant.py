@@ -13,6 +13,12 @@ import numpy as np
 
 from eventpound.contact.cascade import LONGEST_CASCADE, is_fleeting
 from eventpound.contact.event_rows import end_cascade, events_wanted
+from eventpound.contact.friction import (
+    Rubs,
+    begin_beside_friction,
+    decide_friction,
+    settle_with_friction,
+)
 from eventpound.contact.impacts import DONE, FULL
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import lacks_branch, pass_kinks
@@ -20,6 +26,7 @@ from eventpound.contact.sliders import begin_beside_sliders, decide_sticks
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import CurrentPiece, longest_safe_step, next_corner
+from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.by_address import by_address
 from eventpound.numerics.compiled import deferred_kernel, kernel
 from eventpound.solvers.events.dense import Dense, DenseStep, observe_at
@@ -169,16 +176,22 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """Follow the motion from the present instant until nothing is near; ends as `proceed`."""
     state, at = run.state, run.instant
     now, progress, sliders = state.now[0], state.progress[0], mode.bodies.sliders
+    rubbing = mode.bodies.rubbing.size
     ended = DONE
     while ended == DONE:
         if not _has_room(run):
             return FULL
         if progress.phase == IMPACTS:
+            # The last observation is at the event.
+            force = run.observations[2].contact_force[0]
             if sliders.size > 0:
-                # The last observation is at the event.
-                force = run.observations[2].contact_force[0]
                 begin_beside_sliders(force, run.located.kinked, sliders, at)
-            ended = settle_impacts(at)
+            if rubbing > 0:
+                rubs = _rubs(mode)
+                begin_beside_friction(force, run.located.kinked, rubs, at)
+                ended = settle_with_friction(rubs, at)
+            else:
+                ended = settle_impacts(at)
             if ended != DONE:
                 return ended
             progress.phase = RESTS
@@ -217,12 +230,21 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
 
 
 @kernel
+def _rubs(mode: Dynamics) -> Rubs:
+    """The contacts with friction."""
+    bodies = mode.bodies
+    return Rubs(borrow(bodies.rubbing), borrow(bodies.friction), borrow(bodies.rubbed))
+
+
+@kernel
 def _decide(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """Who rests, or sticks, after the impacts of an instant; ends as `decide_rests`."""
     z, at, sliders = run.state.z, run.instant, mode.bodies.sliders
     forcing = by_address(forcing_now(piece, run.state.now[0].t))
     if sliders.size > 0:
         return decide_sticks(z, forcing, mode.watched.force_noise, sliders, at)
+    if mode.bodies.rubbing.size > 0:
+        return decide_friction(z, forcing, mode.watched.force_noise, _rubs(mode), at)
     return decide_rests(z, forcing, at)
 
 

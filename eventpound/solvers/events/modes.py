@@ -16,6 +16,7 @@ from eventpound.mechanics.elements import branch_ends, has_branches, memory_on_b
 from eventpound.mechanics.link_law import STRENGTH, YIELDING
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_in
+from eventpound.mechanics.oblique import Slips, are_tied, with_slips
 from eventpound.mechanics.observables import Bodies, bodies_of
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -73,6 +74,7 @@ class ModeTable:
         self.ledger = ledger
         self.force_noise = force_noise
         self.places = places_in(model)
+        self.rubbed = np.zeros((5, model.rubbing.size))
         self._modes: dict[tuple[bytes, ...], Mode] = {}
         self._branched = [
             (h, a)
@@ -110,7 +112,7 @@ class ModeTable:
         """Say where branches of memories end, from displacements (N,) and z (H,) on them."""
         model, watched = self.model, mode.watched
         at_rest = mode.clusters.resting - model.own_contacts
-        sticking = model.sliders[at_rest[at_rest >= 0]]
+        sticking = model.sliders[at_rest[at_rest >= 0]] if model.sliders.size > 0 else at_rest[:0]
         for h, a in self._branched:
             branch, offset = int(mode.branch[a]), float(model.elastic.offset[a])
             if branch != 0 and a not in sticking:
@@ -124,6 +126,9 @@ class ModeTable:
         if memory is not model.law.memory:
             model = replace(model, law=model.law._replace(memory=memory))
         clusters = form_clusters_of_few(between_of(model), resting, pressed)
+        slips = _slips_of(model, clusters, branch)
+        if model.rubbing.size > 0:
+            clusters = with_slips(clusters, slips, model.rubbing.size, model.mass)
         branches = Branches(*model.elastic.on_side(branch))
         system = in_python(reduce)(
             model.link_ends,
@@ -135,7 +140,16 @@ class ModeTable:
             model.ledger_entries if self.ledger else 0,
         )
         frozen = np.zeros(model.hysteretic.size)
-        bodies = with_address(bodies_of(model, clusters, system, *branches, frozen))
+        bodies = bodies_of(model, clusters, system, *branches, frozen)
+        if model.rubbing.size > 0:
+            bodies = bodies._replace(
+                slips=np.column_stack((model.rubbing, model.own_contacts + _numbers(model)))[
+                    slips.which
+                ],
+                drag=slips.drag,
+                rubbed=self.rubbed,
+            )
+        bodies = with_address(bodies)
         system = with_address(system)
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
@@ -146,6 +160,14 @@ class ModeTable:
         kink_low = np.where(branch > 0, kink, -np.inf)
         kink_high = np.where(branch < 0, kink, np.inf)
         kink_low[model.sliders], kink_high[model.sliders] = -np.inf, np.inf
+        slide = slice(model.links - model.rubbing.size, None)
+        turns[slide] = True
+        # What others keep from sliding does not stop.
+        tied = model.links - model.rubbing.size + slips.which[_tied(slips, clusters)]
+        kink_low[tied], kink_high[tied] = -np.inf, np.inf
+        presses, friction = np.full(model.contacts, -1), np.zeros(model.contacts)
+        presses[model.own_contacts :][: model.rubbing.size] = model.rubbing
+        friction[model.own_contacts :][: model.rubbing.size] = model.friction[model.rubbing]
         watched = Watched(
             opened,
             unlocked,
@@ -156,9 +178,36 @@ class ModeTable:
             turns,
             self.force_noise,
             self.places,
+            presses,
+            friction,
         )
         dynamics = with_address(Dynamics(system, bodies, watched))
         return Mode(branch.copy(), clusters, system, bodies, watched, dynamics)
+
+
+def _numbers(model: Model) -> Ints:
+    """Of the contacts with friction, from 0."""
+    return np.arange(model.rubbing.size)
+
+
+def _slips_of(model: Model, clusters: Clusters, branch: Ints) -> Slips:
+    """Contacts that slip in a mode."""
+    place = {j: i for i, j in enumerate(clusters.resting.tolist())}
+    ways = branch[model.links - model.rubbing.size :]
+    which = np.array(
+        [f for f, j in enumerate(model.rubbing.tolist()) if j in place and ways[f] != 0], np.int64
+    )
+    contacts = model.rubbing[which]
+    rest = np.array([place[j] for j in contacts.tolist()], np.int64)
+    left, right = model.tangent[contacts].T.copy()
+    return Slips(which, rest, left, right, -ways[which] * model.friction[contacts])
+
+
+def _tied(slips: Slips, clusters: Clusters) -> Bools:
+    """Slips (S,) that something else keeps from sliding."""
+    if slips.which.size == 0:
+        return np.zeros(0, np.bool_)
+    return np.asarray(in_python(are_tied)(slips.left, slips.right, clusters))
 
 
 def _force_limits(model: Model) -> tuple[Floats, Floats]:

@@ -224,12 +224,12 @@ def own_recording(recording: Recording, model: Model) -> Recording:
     """
     if model.weights.size > 0:
         recording = recording.of_bodies(np.s_[: model.bodies])
-    if model.sliders.size == 0:
+    if model.contacts == model.own_contacts:
         return recording
     own = model.own_contacts
     h, laws, z = recording.history, recording.laws, recording.z.copy()
     of_sliders, unique_z = model.z_of_link[model.sliders], np.ones(z.size, np.bool_)
-    unique_z[of_sliders] = recording.unique_forces[own:]
+    unique_z[of_sliders] = recording.unique_forces[own : own + model.sliders.size]
     if h.t.size > 0:
         z[of_sliders] = h.z[-1, of_sliders]
     if laws is not None:
@@ -243,14 +243,14 @@ def own_recording(recording: Recording, model: Model) -> Recording:
         sticks=tuple(
             Stick(event.t, int(model.sliders[event.contact - own]), event.kind is _REST)
             for event in recording.events
-            if event.contact >= own
+            if event.contact >= own and model.sliders.size > 0
         ),
         smallest_gap=recording.smallest_gap[:own],
         largest_gap=recording.largest_gap[:own],
         resting_time=recording.resting_time[:own],
         max_force=recording.max_force[:own],
         unique_forces=recording.unique_forces[:own],
-        unique_z=unique_z,
+        unique_z=unique_z if model.sliders.size > 0 else None,
         laws=laws,
     )
 
@@ -314,6 +314,7 @@ def energy_ledger(
     work: Floats,
     impact: float,
     struck: Floats | None = None,
+    friction: float = 0.0,
 ) -> Energy:
     """The ledger at the state u, v.
 
@@ -329,6 +330,8 @@ def energy_ledger(
         Kinetic energy lost in impacts, what elements still hold included (J).
     struck : ndarray, shape (number of supports,), optional
         Work of the supports in impacts up to there (J).
+    friction : float
+        What friction at contacts took between impacts (J).
     """
     impact -= stored(model.elements, model.gaps(u))
     impact += stored(model.elements, model.gaps(model.u0))
@@ -337,8 +340,8 @@ def energy_ledger(
     supports = work[WORK_OF_SUPPORTS:] + (0.0 if struck is None else struck)
     initial = sum(stored_energy(model, model.u0, model.v0))
     rest = initial + put_in + float(supports.sum())
-    rest -= kinetic + elastic + hysteretic + viscous + impact
-    terms = (initial, abs(put_in), kinetic, elastic, abs(hysteretic), viscous, impact)
+    rest -= kinetic + elastic + hysteretic + viscous + impact + friction
+    terms = (initial, abs(put_in), kinetic, elastic, abs(hysteretic), viscous, impact, friction)
     closure = rest / max(*terms, *np.abs(supports).tolist(), scales.energy)
     return Energy(
         initial,
@@ -350,4 +353,5 @@ def energy_ledger(
         impact,
         closure,
         tuple(supports.tolist()),
+        friction,
     )

@@ -205,6 +205,11 @@ def contact_error(
             f"contact {name!r} penetrates by {depth:.3g} m; try a smaller rtol", t
         )
     pull = -float(in_python(margin_at_rest)(j, watched, observed.contact_force)[0])
+    if watched.presses[j] >= 0:
+        return ComputationError(
+            f"{name!r} sticks with {pull:.3g} N more than friction can; try a smaller rtol",
+            t,
+        )
     if watched.force_low[j] < 0.0 or watched.force_high[j] < np.inf:
         return ComputationError(
             f"slider {name!r} sticks with {pull:.3g} N more than it can; try a smaller rtol", t

@@ -2,6 +2,7 @@
 
     M (v₁ - v₀) = h f_θ + W p,   u₁ = u₀ + h v_θ
     0 <= γ₁ + ε γ₀ ⊥ p >= 0      over the contacts with g₀ + h γ₀ / 2 <= 0
+    p_T ∈ -μ p Sgn(γ_T₁)         of those with friction, in the tangential rows of W
     p = 0                        over the others;  γ = Wᵀ v
 
 (J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics,
@@ -25,6 +26,7 @@ import numpy as np
 
 from eventpound.contact.event_rows import DETACHMENT, IMPACT, REST, EventRow, new_group, write_event
 from eventpound.mechanics.contact_problem import Joints, solve_contacts
+from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -32,6 +34,7 @@ from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.numerics.borrowing import put_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel, step_kernel
 from eventpound.numerics.compiled.recipe import SMALL
+from eventpound.numerics.coulomb import NO_ANSWER, SEVERAL, Rubbing, solve_rubbing
 from eventpound.numerics.lcp import solve_dense
 from eventpound.solvers.timestepping.equations import (
     FixedStep,
@@ -45,28 +48,46 @@ from eventpound.solvers.timestepping.equations import (
 from eventpound.solvers.timestepping.stepping import (
     CONTACT,
     DONE,
+    FRICTION,
+    GAINED,
     NOT_CONVERGED,
     NOT_SOLVED,
+    NOT_UNIQUE,
     Span,
     Stepping,
-    Structure,
     copy_values,
     gap_of,
     gap_rate,
+    hand_on,
     pull_together,
+    slip_rate,
 )
-from eventpound.tolerances import NO_SPEED, QUIET, STILL_GAP_RATE
+from eventpound.tolerances import GAINED_IN_STEP, NO_SPEED, QUIET, STILL_GAP_RATE
 
 MOST_ITERATIONS = 60
 RELAXED_AFTER = 15
 """Iterations after which Newton's steps are halved: by then they swing between branches."""
 
 
+class Rubbed(NamedTuple):
+    """What friction at each contact has done so far, (K,) each.
+
+    path: way slid while closed (m). work: energy taken, in impacts too (J). impulse, tangential:
+    largest normal and tangential impulse of an impact (N s).
+    """
+
+    path: Floats
+    work: Floats
+    impulse: Floats
+    tangential: Floats
+
+
 class Active(NamedTuple):
     """Room for the contacts that take part in a step, and what they did in the last one.
 
     contacts (K,): their numbers, in front. marked (K,): who they are. struck, resting (K,): who
-    took an impulse, who rested. column (N,): for ``Â⁻¹ W`` of one of them.
+    took an impulse, who rested. column (N + D,): for ``Â⁻¹ W`` of one of them. rubbed: what
+    friction has done.
     """
 
     contacts: Ints
@@ -74,6 +95,7 @@ class Active(NamedTuple):
     struck: Bools
     resting: Bools
     column: Floats
+    rubbed: Rubbed
 
 
 @step_kernel
@@ -100,25 +122,36 @@ def _take_impulses(sign: float, run: Stepping) -> None:
     """Take ``sign W p`` from the residual."""
     structure, residual = run.structure, run.equations.residual
     for j in range(structure.gap.size):
-        p = run.trial.contact[j]
+        p, p_T = run.trial.contact[j], run.trial.rubbing[j]
         if p != 0.0:
             pull_together(residual, structure.left[j], structure.right[j], sign * p)
+        if p_T != 0.0:
+            pull_together(residual, structure.tangent[j, 0], structure.tangent[j, 1], sign * p_T)
+    hand_on(structure.weights, residual)
+
+
+@step_kernel
+def _answer(left: int, right: int, column: Floats, run: Stepping) -> None:
+    """``Â⁻¹ W`` of one row, (N + D,)."""
+    for b in range(column.size):
+        column[b] = 0.0
+    pull_together(column, left, right, -1.0)
+    hand_on(run.structure.weights, column)
+    solve_banded(run.equations.band, column)
+    place_points(run.structure.weights, column)
 
 
 @step_kernel
 def _strike(active: Active, j: int, run: Stepping) -> None:
     """Impulse of the only active contact, added to the free velocities in `increment`."""
     structure, equations = run.structure, run.equations
-    for b in range(structure.mass.size):
-        active.column[b] = 0.0
-    pull_together(active.column, structure.left[j], structure.right[j], -1.0)
-    solve_banded(equations.band, active.column)
+    _answer(structure.left[j], structure.right[j], active.column, run)
     q = gap_rate(structure, j, equations.increment)
     q += structure.restitution[j] * gap_rate(structure, j, run.state.v)
     # Newton's law in Moreau's form: γ₁ + ε γ₀ = 0, unless that would pull.
     p = max(0.0, -q / gap_rate(structure, j, active.column))
     run.trial.contact[j] = p
-    for b in range(structure.mass.size):
+    for b in range(active.column.size):
         equations.increment[b] += active.column[b] * p
 
 
@@ -139,7 +172,7 @@ def _strike_together(active: Ints, run: Stepping) -> bool:
             # What decays at rest without forces would underflow on the way through the problem.
             if abs(q[a]) < NO_SPEED * structure.speed:
                 q[a] = 0.0
-        p, change, solved = _impulses(structure, active, q, equations.band)
+        p, change, solved = _impulses(active, q, run)
         if solved:
             put_numbers(p, active, run.trial.contact)
             for b in range(change.size):
@@ -149,14 +182,53 @@ def _strike_together(active: Ints, run: Stepping) -> bool:
 
 
 @kernel
-def _impulses(
-    structure: Structure, active: Ints, q: Floats, band: Floats
-) -> tuple[Floats, Floats, bool]:
+def _rub_together(active: Ints, run: Stepping) -> int:
+    """The same for contacts some of which have friction; an outcome.
+
+    What friction does is first order whatever θ is: the way of slip is that of the end of the step.
+    """
+    structure, equations, k = run.structure, run.equations, active.size
+    ends = np.concatenate((structure.tangent[active], structure.tangent[active]))
+    ends[:k, 0], ends[:k, 1] = structure.left[active], structure.right[active]
+    columns, G = np.zeros((2 * k, equations.increment.size)), np.empty((2 * k, 2 * k))
+    for a in range(2 * k):
+        _answer(ends[a, 0], ends[a, 1], columns[a], run)
+        for b in range(2 * k):
+            G[a, b] = difference(columns[a], ends[b, 0], ends[b, 1])
+    x, w, q, free = np.zeros(2 * k), np.zeros(2 * k), np.empty(2 * k), np.zeros(k, np.int64)
+    state = np.zeros(k, np.int64)
+    for share in (1.0, 0.0):
+        for a in range(2 * k):
+            q[a] = difference(equations.increment, ends[a, 0], ends[a, 1])
+            if a < k:
+                before = gap_rate(structure, active[a], run.state.v)
+                q[a] += share * structure.restitution[active[a]] * before
+            if abs(q[a]) < NO_SPEED * structure.speed:
+                q[a] = 0.0
+        noise = np.full(2 * k, QUIET * np.max(np.abs(q)))
+        problem = Rubbing(G, q, structure.friction[active], free, noise)
+        found = solve_rubbing(problem, x, w, state)
+        if found == SEVERAL:
+            return NOT_UNIQUE
+        if found == NO_ANSWER:
+            continue
+        put_numbers(x[:k], active, run.trial.contact)
+        put_numbers(x[k:], active, run.trial.rubbing)
+        for a in range(2 * k):
+            for b in range(equations.increment.size):
+                equations.increment[b] += columns[a, b] * x[a]
+        return DONE
+    return NOT_SOLVED
+
+
+@kernel
+def _impulses(active: Ints, q: Floats, run: Stepping) -> tuple[Floats, Floats, bool]:
     """Impulses p with ``0 <= G p + q ⊥ p >= 0``, ``Â⁻¹ W p``, and whether they were found."""
+    structure, band = run.structure, run.equations.band
     left, right = structure.left[active], structure.right[active]
-    change = np.zeros(structure.mass.size)
+    change = np.zeros(run.equations.increment.size)
     noise = QUIET * np.max(np.abs(q))
-    if np.all(band[:, 1:] == 0.0):
+    if structure.weights.size == 0 and np.all(band[:, 1:] == 0.0):
         # No link between bodies: masses of their own, and a row of contacts is quickly solved.
         inverse = 1.0 / band[:, 0]
         joints = Joints(left, right, inverse, np.zeros((0, 0)))
@@ -167,8 +239,7 @@ def _impulses(
     # Rows of `columns` are those of Â⁻¹ W transposed (k, N); G = Wᵀ Â⁻¹ W (k, k).
     columns, G = np.zeros((left.size, change.size)), np.empty((left.size, left.size))
     for a in range(left.size):
-        pull_together(columns[a], left[a], right[a], -1.0)
-        solve_banded(band, columns[a])
+        _answer(left[a], right[a], columns[a], run)
         for b in range(left.size):
             G[a, b] = difference(columns[a], left[b], right[b])
     p, _, solved = solve_dense(G, q, noise)
@@ -180,11 +251,13 @@ def _impulses(
 @step_kernel
 def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
     """Newton's iteration for the end of the step; an outcome."""
-    trial, equations = run.trial, run.equations
+    structure, trial, equations = run.structure, run.trial, run.equations
     count = _find_active(step.h, active, run)
     predict(step, run)
+    rubs = False
     for j in range(trial.contact.size):
-        trial.contact[j] = 0.0
+        trial.contact[j] = trial.rubbing[j] = 0.0
+        rubs |= active.marked[j] and structure.friction[j] > 0.0
     for iteration in range(MOST_ITERATIONS):
         end_of_step(step.h, run)
         momentum_residual(step, run)
@@ -199,10 +272,15 @@ def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
             return NOT_CONVERGED
         copy_values(equations.residual, equations.increment)
         solve_banded(equations.band, equations.increment)
-        for b in range(trial.v.size):
+        for b in range(structure.mass.size):
             # Free velocities, which the impulses then change.
             equations.increment[b] = trial.v[b] - equations.increment[b]
-        if count == 1:
+        place_points(structure.weights, equations.increment)
+        if rubs:
+            outcome = _rub_together(active.contacts[:count], run)
+            if outcome != DONE:
+                return outcome
+        elif count == 1:
             _strike(active, active.contacts[0], run)
         elif count > 1 and not _strike_together(active.contacts[:count], run):
             return NOT_SOLVED
@@ -213,19 +291,57 @@ def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
 
 
 @step_kernel
-def _close_step(step: FixedStep, active: Active, run: Stepping) -> None:
-    """Write the events of a step, and make forces of its impulses."""
-    structure, state, trial, resting = run.structure, run.state, run.trial, active.resting
-    now, events, t = run.record.now[0], run.record.events, step.start
-    still = STILL_GAP_RATE * structure.speed
-    lost, impacts, group = 0.0, 0, -1
+def _keep_rubbing(j: int, h: float, struck: bool, rubbed: Rubbed, run: Stepping) -> float:
+    """Keep what the friction of a contact has done in a step; the energy it took (J)."""
+    structure, p_T = run.structure, run.trial.rubbing[j]
+    rates = slip_rate(structure, j, run.state.v) + slip_rate(structure, j, run.trial.v)
+    lost = -0.5 * p_T * rates
+    rubbed.work[j] += lost
+    if struck:
+        rubbed.impulse[j] = max(rubbed.impulse[j], run.trial.contact[j])
+        rubbed.tangential[j] = max(rubbed.tangential[j], abs(p_T))
+    elif run.trial.contact[j] > 0.0:
+        rubbed.path[j] += 0.5 * h * abs(rates)
+    return lost
+
+
+@step_kernel
+def _take_losses(h: float, still: float, rubbed: Rubbed, run: Stepping) -> tuple[float, int, bool]:
+    """Keep what the impulses of a step took; what impacts lost (J), how many, and if they gained.
+
+    still: gap rate that counts as none (m/s).
+    """
+    structure, state, trial, work = run.structure, run.state, run.trial, run.record.work
+    lost, by_friction, passed, impacts = 0.0, 0.0, 0.0, 0
     for j in range(structure.gap.size):
         before, after = gap_rate(structure, j, state.v), gap_rate(structure, j, trial.v)
         # An impulse takes -p (γ₀ + γ₁)/2.
         lost -= 0.5 * trial.contact[j] * (before + after)
         if trial.contact[j] > 0.0 and before < -still:
+            passed -= trial.contact[j] * before
             impacts += 1
-    run.record.work[CONTACT] += lost
+    for j in range(structure.gap.size):
+        if structure.friction[j] > 0.0:
+            by_friction += _keep_rubbing(j, h, impacts > 0, rubbed, run)
+    gained = False
+    if impacts > 0:
+        # Without friction only what restitutions contradict each other in could.
+        gained = by_friction != 0.0 and lost + by_friction < -GAINED_IN_STEP * passed
+        lost, by_friction = lost + by_friction, 0.0
+    work[CONTACT] += lost
+    work[FRICTION] += by_friction
+    return lost, impacts, gained
+
+
+@step_kernel
+def _close_step(step: FixedStep, active: Active, run: Stepping) -> int:
+    """Write the events of a step, and make forces of its impulses; an outcome."""
+    structure, state, trial, resting = run.structure, run.state, run.trial, active.resting
+    now, events, t = run.record.now[0], run.record.events, step.start
+    still, group = STILL_GAP_RATE * structure.speed, -1
+    lost, impacts, gained = _take_losses(step.h, still, active.rubbed, run)
+    if gained:
+        return GAINED
     for j in range(structure.gap.size):
         p = trial.contact[j]
         before, after = gap_rate(structure, j, state.v), gap_rate(structure, j, trial.v)
@@ -245,21 +361,20 @@ def _close_step(step: FixedStep, active: Active, run: Stepping) -> None:
         resting[j] = rests
         active.struck[j] = p > 0.0
         if not rests:
-            trial.contact[j] = 0.0
+            trial.contact[j] = trial.rubbing[j] = 0.0
         elif impacts > 0:
             # Its impulse answers the impact elsewhere, so p/h is no force.
-            trial.contact[j] = state.contact[j]
+            trial.contact[j], trial.rubbing[j] = state.contact[j], state.rubbing[j]
         else:
-            trial.contact[j] = p / step.h
+            trial.contact[j], trial.rubbing[j] = p / step.h, trial.rubbing[j] / step.h
+    return DONE
 
 
 @step_kernel
 def _take_step(step: FixedStep, active: Active, run: Stepping) -> int:
     """The rule; an outcome."""
     outcome = _solve_step(step, active, run)
-    if outcome == DONE:
-        _close_step(step, active, run)
-    return outcome
+    return _close_step(step, active, run) if outcome == DONE else outcome
 
 
 @scalar_kernel.but(recipe=SMALL)

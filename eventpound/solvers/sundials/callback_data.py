@@ -97,10 +97,13 @@ def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int
     gaps, forces = np.zeros((2, contacts), np.bool_)
     (least, most), (low, high) = np.zeros((2, contacts)), np.zeros((2, links))
     turns, at = np.zeros(links, np.bool_), in_python(places_of)(0, 0, 0)
+    presses, friction = np.full(contacts, -1), np.zeros(contacts)
     return with_address(
         Roots(
             np.zeros(1, np.bool_),
-            Watched(gaps, forces, False, least, most, low, high, turns, 0.0, at),
+            Watched(
+                *(gaps, forces, False, least, most, low, high, turns, 0.0, at, presses, friction)
+            ),
             np.zeros(0),
             np.zeros(0),
             np.zeros((0, 2)),

@@ -29,9 +29,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from eventpound.mechanics.elements import link_force, pull_per_z, z_slopes
+from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.loads import LOADED, add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import step_kernel
 from eventpound.solvers.timestepping.stepping import (
@@ -40,10 +42,14 @@ from eventpound.solvers.timestepping.stepping import (
     INPUT,
     NO_ROOM,
     VISCOUS,
+    Equations,
     Span,
     Stepping,
+    Structure,
     add_to_ends,
     copy_values,
+    hand_on,
+    hand_on_sizes,
     pull_together,
     record_step,
 )
@@ -133,8 +139,10 @@ def _step_of(i: int, span: Span, ground: float, forcing: Forcing, theta: float) 
 def predict(step: FixedStep, run: Stepping) -> None:
     """Velocities at the end of the step if the forces of the links stayed."""
     state, mass = run.state, run.structure.mass
+    load = run.equations.load[0]
     for b in range(mass.size):
-        run.trial.v[b] = state.v[b] + step.h * (state.f[b] / mass[b] - step.ground)
+        run.trial.v[b] = state.v[b] + step.h * ((state.f[b] + load[b]) / mass[b] - step.ground)
+    place_points(run.structure.weights, run.trial.v)
 
 
 @step_kernel
@@ -148,8 +156,9 @@ def end_of_step(h: float, run: Stepping) -> None:
     run.record.progress[0].evaluations += 1
     for b in range(structure.mass.size):
         trial.u[b] = state.u[b] + h * ((1.0 - theta) * state.v[b] + theta * trial.v[b])
-        trial.f[b] = 0.0
-        equations.terms[b] = 0.0
+    for b in range(trial.f.size):
+        trial.f[b] = equations.terms[b] = 0.0
+    place_points(structure.weights, trial.u)
     for link in range(structure.bound.size):
         first, second = structure.ends[link, 0], structure.ends[link, 1]
         x = difference(trial.u, first, second) - elastic.offset[link]
@@ -170,6 +179,8 @@ def end_of_step(h: float, run: Stepping) -> None:
         force += law.damping[link] * rate
         pull_together(trial.f, first, second, force)
         add_to_ends(equations.terms, first, second, abs(force))
+    hand_on(structure.weights, trial.f)
+    hand_on_sizes(structure.weights, equations.terms)
 
 
 @step_kernel
@@ -179,10 +190,10 @@ def momentum_residual(step: FixedStep, run: Stepping) -> None:
     theta, h = structure.theta, step.h
     for b in range(structure.mass.size):
         m = structure.mass[b]
-        f = (1.0 - theta) * state.f[b] + theta * trial.f[b]
+        f = (1.0 - theta) * state.f[b] + theta * trial.f[b] + equations.load[0, b]
         equations.residual[b] = m * (trial.v[b] - state.v[b]) - h * (f - m * step.ground)
         equations.terms[b] = m * (abs(trial.v[b]) + abs(state.v[b])) + h * (
-            equations.terms[b] + abs(state.f[b]) + m * abs(step.ground)
+            equations.terms[b] + abs(state.f[b]) + abs(equations.load[0, b]) + m * abs(step.ground)
         )
 
 
@@ -211,6 +222,22 @@ def couple(band: Floats, first: int, second: int, value: float) -> None:
 
 
 @step_kernel
+def _couple_at_points(
+    structure: Structure, first: int, second: int, value: float, equations: Equations
+) -> None:
+    """The same of a link with an end at a point, the band being the whole lower triangle."""
+    # A row of it, in the room of what is solved for later.
+    row = equations.increment
+    for b in range(row.size):
+        row[b] = 0.0
+    pull_together(row, first, second, 1.0)
+    hand_on(structure.weights, row)
+    for b in range(structure.mass.size):
+        for c in range(b + 1):
+            equations.band[b, b - c] += value * row[b] * row[c]
+
+
+@step_kernel
 def fill_newton_matrix(h: float, run: Stepping) -> None:
     """``M + h θ (C + h θ K)`` at the trial state, contacts apart."""
     structure, equations = run.structure, run.equations
@@ -221,7 +248,11 @@ def fill_newton_matrix(h: float, run: Stepping) -> None:
     for link in range(structure.bound.size):
         # ∂u₁/∂v₁ = h θ.
         value = reach * (structure.law.damping[link] + reach * equations.slope[link])
-        couple(equations.band, structure.ends[link, 0], structure.ends[link, 1], value)
+        first, second = structure.ends[link, 0], structure.ends[link, 1]
+        if max(first, second) < structure.mass.size:
+            couple(equations.band, first, second, value)
+        else:
+            _couple_at_points(structure, first, second, value, equations)
 
 
 @step_kernel
@@ -233,6 +264,7 @@ def _add_work(step: FixedStep, run: Stepping) -> None:
         # With the mean velocity M (v₁ - v₀) does exactly the change of the kinetic energy.
         mean = 0.5 * (state.v[b] + trial.v[b])
         work[INPUT] -= h * structure.mass[b] * mean * step.ground
+        work[INPUT] += h * run.equations.load[0, b] * mean
     for link in range(structure.bound.size):
         first, second = structure.ends[link, 0], structure.ends[link, 1]
         before, after = difference(state.v, first, second), difference(trial.v, first, second)
@@ -256,8 +288,21 @@ def _end_step(step: FixedStep, run: Stepping) -> None:
     copy_values(trial.z, state.z)
     copy_values(trial.link, state.link)
     copy_values(trial.contact, state.contact)
+    copy_values(trial.rubbing, state.rubbing)
     run.record.progress[0].steps += 1
     record_step(step.end, step.ground_end, run)
+
+
+@step_kernel
+def _take_loads(t: float, forcing: Forcing, run: Stepping) -> None:
+    """Loads of the step that ends at t (s), those at its start being known."""
+    load, theta = run.equations.load, run.structure.theta
+    for b in range(load.shape[1]):
+        load[0, b], load[1, b] = (1.0 - theta) * load[1, b], 0.0
+    # None of them drives a support.
+    add_body_loads(forcing, t, load[1], run.equations.terms)
+    for b in range(load.shape[1]):
+        load[0, b] += theta * load[1, b]
 
 
 @step_kernel
@@ -282,11 +327,16 @@ def take_steps(
     """
     now = run.record.now[0]
     ground = ground_acceleration(forcing, forcing.start + span.first * span.h)
+    loaded = forcing.family == LOADED
+    if loaded:
+        _take_loads(forcing.start + span.first * span.h, forcing, run)
     for i in range(span.first, span.last):
         # No step begins whose events may find no room, as none can be taken back.
         if now.events + most_events > run.record.events.shape[0]:
             return i, NO_ROOM
         step = _step_of(i, span, ground, forcing, run.structure.theta)
+        if loaded:
+            _take_loads(step.end, forcing, run)
         outcome = take(step, contacts, run)
         if outcome != DONE:
             return i, outcome

@@ -13,16 +13,19 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.reduced import Forcing, forcing_of
+from eventpound.motion.base import Family
+from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
-from eventpound.solvers.events.recorder import energy_ledger, history_of, kept
+from eventpound.solvers.events.recorder import energy_ledger, history_of, kept, own_recording
 from eventpound.solvers.events.run import Laws
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.timestepping.equations import end_of_step
 from eventpound.solvers.timestepping.stepping import (
     CONTACT,
     DONE,
+    FRICTION,
     MESSAGES,
     NO_ROOM,
     Span,
@@ -89,7 +92,13 @@ def prepared(task: Task, theta: float) -> FixedStepRun:
     return FixedStepRun(task, model, scales, work, laws_of(model), task.start, clock)
 
 
-def carry_to_end(run: FixedStepRun, time_step: float, advance: Advance, contacts: Any) -> Recording:
+def carry_to_end(
+    run: FixedStepRun,
+    time_step: float,
+    advance: Advance,
+    contacts: Any,
+    taking_part: Callable[[], str] = str,
+) -> Recording:
     """Take all steps.
 
     Parameters
@@ -102,6 +111,8 @@ def carry_to_end(run: FixedStepRun, time_step: float, advance: Advance, contacts
         The method.
     contacts
         What it knows of contacts.
+    taking_part : callable
+        Says which contacts take part in a step that fails.
 
     Raises
     ------
@@ -117,7 +128,7 @@ def carry_to_end(run: FixedStepRun, time_step: float, advance: Advance, contacts
             stopped.recording = recording_of(run, str(stopped), success=False)
             raise
         if outcome != DONE:
-            message = MESSAGES[outcome].format(step=segment.step)
+            message = MESSAGES[outcome].format(step=segment.step, contacts=taking_part())
             raise ComputationError(message, run.t, recording_of(run, message, success=False))
     run.t = task.end
     # The last output time may lie a rounding error after the last step.
@@ -132,9 +143,12 @@ def carry_to_end(run: FixedStepRun, time_step: float, advance: Advance, contacts
 def _take_start(run: FixedStepRun) -> None:
     """Forces of the initial state, and its place in the record."""
     state, trial = run.work.state, run.work.trial
+    start, load = run.task.start, run.work.equations.load
+    piece = next(each for each in run.task.scene.motion.pieces() if each.end > start)
+    if piece.family is Family.LOADED:
+        add_body_loads(forcing_of(piece, start), start, load[1], load[0])
     end_of_step(0.0, run.work)
     state.f[:], state.link[:] = trial.f, trial.link
-    start = run.task.start
     ground = float(run.task.scene.motion.acceleration(np.array([start]))[0])
     record_step(start, ground, run.work)
 
@@ -172,7 +186,7 @@ def recording_of(run: FixedStepRun, message: str, *, success: bool) -> Recording
     events = events_of(record.events[: now.events])
     events = with_unfinished(events, model, laws, state.v, int(now.groups))
     table, unique = np.stack(record.running[:5]), np.ones(model.contacts, np.bool_)
-    return Recording(
+    recording = Recording(
         success,
         message,
         run.t,
@@ -192,6 +206,7 @@ def recording_of(run: FixedStepRun, message: str, *, success: bool) -> Recording
         laws=law_recording(model, laws, run.t, table),
         **kept(table, events, run.t, model),
     )
+    return own_recording(recording, model)
 
 
 def _energy(run: FixedStepRun) -> Energy | None:
@@ -199,6 +214,6 @@ def _energy(run: FixedStepRun) -> Energy | None:
     if not run.task.energy:
         return None
     state, work = run.work.state, run.work.record.work
-    return energy_ledger(
-        run.model, run.scales, state.u, state.v, work[:CONTACT], float(work[CONTACT])
-    )
+    lost, by_friction = float(work[CONTACT]), float(work[FRICTION])
+    found = run.model, run.scales, state.u, state.v, work[:CONTACT], lost
+    return energy_ledger(*found, friction=by_friction)

@@ -12,6 +12,7 @@ import numpy as np
 
 from eventpound.contact.event_rows import EVENT_WIDTH
 from eventpound.contact.state import Now
+from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import (
@@ -32,9 +33,11 @@ from eventpound.solvers.events.scales import SceneScales
 
 
 class Structure(NamedTuple):
-    """N bodies, L links (S of them springs), H hysteretic ones, K contacts.
+    """N bodies, D points, L links (S of them springs), H hysteretic ones, K contacts.
 
-    The links pull as `elastic` and `law` have it; `z_of_link`
+    The masses are those of the bodies; points, which are coordinates behind them, move by `weights`
+    (D, N + D). A contact with `friction` (K,) slides along the coordinates `tangent` (K, 2).
+    The links pull as `elastic` and `law` have it, and a part `on_ground` at the ground; `z_of_link`
     is -1 without hysteresis, `bound` (L,) the largest |z| that loading can reach. `theta` is
     that of the time-stepping rule; `bandwidth` the number of sub-diagonals of the coupling;
     `speed` the scene's own (m/s).
@@ -42,14 +45,18 @@ class Structure(NamedTuple):
 
     mass: Floats
     ends: Ints
+    on_ground: Floats
     elastic: ElasticLaws
     law: LinkLaw
     bound: Floats
     z_of_link: Ints
+    weights: Floats
     left: Ints
     right: Ints
     gap: Floats
     restitution: Floats
+    friction: Floats
+    tangent: Ints
     springs: int
     bandwidth: int
     theta: float
@@ -59,9 +66,9 @@ class Structure(NamedTuple):
 class FixedStepState(NamedTuple):
     """What is known at one end of a step.
 
-    u, v, f (N,): displacement (m), velocity (m/s), force of the links on each
+    u, v, f (N + D,): displacement (m), velocity (m/s), force of the links on each
     body (N). z (H,). link (L,): force of each link without its dashpot (N).
-    contact (K,): contact forces (N).
+    contact, rubbing (K,): contact forces, and those of friction (N).
     """
 
     u: Floats
@@ -70,15 +77,17 @@ class FixedStepState(NamedTuple):
     z: Floats
     link: Floats
     contact: Floats
+    rubbing: Floats
 
 
 class Equations(NamedTuple):
     """Room for the equations of a step.
 
-    residual, terms (N,): what is missing in the balance of momentum, and the sum of
-    the sizes of its terms (N s). increment (N,), band (N, b + 1): Newton's
+    residual, terms (N + D,): what is missing in the balance of momentum, and the sum of
+    the sizes of its terms (N s). increment (N + D,), band (N, b + 1): Newton's
     equations. slope (L,): ∂F/∂x of each link. pressing (K,): ∂(h θ force)/∂(closing speed) of
-    each contact (N s²/m).
+    each contact (N s²/m). load (2, N + D): loads on the bodies by the rule of the step and at its
+    end (N).
     """
 
     residual: Floats
@@ -87,6 +96,7 @@ class Equations(NamedTuple):
     band: Floats
     slope: Floats
     pressing: Floats
+    load: Floats
 
 
 def structure_of(model: Model, scales: SceneScales, theta: float) -> Structure:
@@ -104,20 +114,27 @@ def structure_of(model: Model, scales: SceneScales, theta: float) -> Structure:
     bound = np.ones(model.links)
     bound[model.hysteretic] = scales.z_bound
     pairs = np.concatenate((model.link_ends, np.column_stack((model.left, model.right))))
-    pairs = pairs[(pairs >= 0).all(axis=1)]
+    # What acts on a point acts on all bodies that carry it.
+    wide = bool((model.link_ends >= model.bodies).any())
+    pairs = pairs[((pairs >= 0) & (pairs < model.bodies)).all(axis=1)]
+    reach = model.bodies - 1 if wide else np.abs(pairs[:, 0] - pairs[:, 1]).max(initial=0)
     return Structure(
-        mass=model.mass,
+        mass=model.mass[: model.bodies],
         ends=model.link_ends,
+        on_ground=model.on_ground,
         elastic=model.elastic,
         law=model.law,
         bound=bound,
         z_of_link=model.z_of_link,
+        weights=model.weights,
         left=model.left,
         right=model.right,
         gap=model.gap,
         restitution=model.restitution,
+        friction=model.friction,
+        tangent=model.tangent,
         springs=model.springs,
-        bandwidth=int(np.abs(pairs[:, 0] - pairs[:, 1]).max(initial=0)),
+        bandwidth=int(reach),
         theta=theta,
         speed=scales.speed,
     )
@@ -127,28 +144,32 @@ def initial_instant(model: Model) -> FixedStepState:
     """The start, forces not yet computed."""
     N, L, K, _ = model.counts
     u, v, z = model.u0.copy(), model.v0.copy(), model.z0.copy()
-    return FixedStepState(u, v, np.zeros(N), z, np.zeros(L), np.zeros(K))
+    return FixedStepState(u, v, np.zeros(N), z, np.zeros(L), np.zeros(K), np.zeros(K))
 
 
 def blank_equations(model: Model, bandwidth: int) -> Equations:
     """Room for a step."""
     N, L, K, _ = model.counts
     residual, terms, increment = np.zeros((3, N))
-    band = np.zeros((N, bandwidth + 1))
-    return Equations(residual, terms, increment, band, np.zeros(L), np.zeros(K))
+    band, load = np.zeros((model.bodies, bandwidth + 1)), np.zeros((2, N))
+    return Equations(residual, terms, increment, band, np.zeros(L), np.zeros(K), load)
 
 
-DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED = range(4)
+DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED, NOT_UNIQUE, GAINED = range(6)
 """All steps taken; too little room for the events of the next; Newton's iteration or the
-complementarity problem of the next fails."""
+complementarity problem of the next fails, or has several answers, or one that gains energy."""
 MESSAGES = {
     DONE: "reached the end of the run in steps of at most {step:.6g} s",
     NOT_CONVERGED: "Newton's iteration of a step of {step:.6g} s does not converge; "
     "try a smaller time_step",
     NOT_SOLVED: "the complementarity problem of a step of {step:.6g} s is not solved; "
     "try a smaller time_step",
+    NOT_UNIQUE: "what follows is not unique in a step of {step:.6g} s at {contacts}; less friction "
+    "has one answer",
+    GAINED: "an impact of a step of {step:.6g} s gains kinetic energy, as Newton's law with "
+    "friction may, at {contacts}; less friction or restitution does not",
 }
-INPUT, VISCOUS, HYSTERETIC, CONTACT = range(4)
+INPUT, VISCOUS, HYSTERETIC, CONTACT, FRICTION = range(5)
 """Places of `FixedStepRecord.work` (J)."""
 
 
@@ -164,7 +185,7 @@ class FixedStepRecord(NamedTuple):
     """Room for a run: events (e, EVENT_WIDTH), output times (n,), rows and the last two steps.
 
     A row (w,) is that of `eventpound.solvers.events.recorder`; `observed` holds views of the last
-    one; `running` are the extremes. work (4,): energies (J). now (1,): a `Now`, of
+    one; `running` are the extremes. work (5,): energies (J). now (1,): a `Now`, of
     which the events count only; progress (1,).
     """
 
@@ -215,7 +236,7 @@ def blank_record(model: Model, times: Floats, scales: Sizes, room: int) -> Fixed
         last,
         Observed(*observed, np.zeros((0, 0))),
         in_python(running_of)(blank_extremes(at, scales), at),
-        np.zeros(4),
+        np.zeros(5),
         np.zeros(1, Now.layout),
         np.zeros(1, FixedStepProgress.layout),
     )
@@ -238,6 +259,26 @@ def pull_together(values: Floats, first: int, second: int, force: float) -> None
 
 
 @step_kernel
+def hand_on(weights: Floats, force: Floats) -> None:
+    """Put what acts on points, the last D of N + D coordinates, on the bodies that carry them."""
+    first = force.size - weights.shape[0]
+    for d in range(weights.shape[0]):
+        for b in range(first):
+            force[b] += weights[d, b] * force[first + d]
+        force[first + d] = 0.0
+
+
+@step_kernel
+def hand_on_sizes(weights: Floats, size: Floats) -> None:
+    """The same of sizes of forces."""
+    first = size.size - weights.shape[0]
+    for d in range(weights.shape[0]):
+        for b in range(first):
+            size[b] += abs(weights[d, b]) * size[first + d]
+        size[first + d] = 0.0
+
+
+@step_kernel
 def add_to_ends(values: Floats, first: int, second: int, value: float) -> None:
     """Add a value at both ends."""
     if first >= 0:
@@ -253,6 +294,12 @@ def gap_rate(structure: Structure, j: int, v: Floats) -> float:
 
 
 @step_kernel
+def slip_rate(structure: Structure, j: int, v: Floats) -> float:
+    """Rate at which a contact slides (m/s)."""
+    return difference(v, structure.tangent[j, 0], structure.tangent[j, 1])
+
+
+@step_kernel
 def gap_of(structure: Structure, j: int, u: Floats) -> float:
     """A gap (m)."""
     return structure.gap[j] + difference(u, structure.left[j], structure.right[j])
@@ -260,9 +307,14 @@ def gap_of(structure: Structure, j: int, u: Floats) -> float:
 
 @step_kernel
 def _observe_present(
-    t: float, ground: float, structure: Structure, state: FixedStepState, record: FixedStepRecord
+    t: float,
+    ground: float,
+    load: Floats,
+    structure: Structure,
+    state: FixedStepState,
+    record: FixedStepRecord,
 ) -> None:
-    """Fill `observed`, and so the last row, from the present state."""
+    """Fill `observed`, and so the last row, from the present state and its loads (N)."""
     observed, acceleration = record.observed, record.observed.acceleration[0]
     record.last[1, 0], observed.ground[0], observed.shear[0] = t, ground, 0.0
     copy_values(state.u, observed.u)
@@ -274,18 +326,23 @@ def _observe_present(
         observed.gap[0, j] = gap_of(structure, j, state.u)
         # A contact pushes its bodies apart.
         pull_together(acceleration, structure.left[j], structure.right[j], -state.contact[j])
+        first, second = structure.tangent[j, 0], structure.tangent[j, 1]
+        pull_together(acceleration, first, second, -state.rubbing[j])
+    hand_on(structure.weights, acceleration)
     for b in range(structure.mass.size):
-        acceleration[b] /= structure.mass[b]
+        acceleration[b] = (acceleration[b] + load[b]) / structure.mass[b]
+    place_points(structure.weights, acceleration)
     for link in range(structure.bound.size):
         first, second = structure.ends[link, 0], structure.ends[link, 1]
         if link < structure.springs:
             observed.elongation[0, link] = difference(state.u, first, second)
             observed.force[0, link] = state.link[link]
-        if first < 0 or second < 0:
+        part = structure.on_ground[link]
+        if part != 0.0:
             rate = difference(state.v, first, second)
             force = state.link[link] + structure.law.damping[link] * rate
             # What a link pulls at the ground, from either end.
-            observed.shear[0] += force if first < 0 else -force
+            observed.shear[0] += part * force
 
 
 @step_kernel
@@ -304,7 +361,7 @@ def record_step(t: float, ground: float, run: Stepping) -> None:
     record = run.record
     before, now = record.last[0], record.last[1]
     copy_values(now, before)
-    _observe_present(t, ground, run.structure, run.state, record)
+    _observe_present(t, ground, run.equations.load[1], run.structure, run.state, record)
     update_extremes(record.observed, t, record.running)
     i = record.progress[0].rows
     while i < record.times.size and record.times[i] <= t:

@@ -27,7 +27,8 @@ from eventpound.errors import InputError
 from eventpound.mechanics.link_law import yielding
 from eventpound.mechanics.model import Model
 from eventpound.motion.base import Family, Piece
-from eventpound.motion.forcing import next_sample
+from eventpound.motion.forcing import next_sample, places_of
+from eventpound.motion.loads import rows_of
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales
@@ -100,19 +101,25 @@ def largest_stiffness(model: Model) -> Floats:
 
 def _elastic_period(model: Model) -> float:
     """Gershgorin's lower bound of the shortest period (s), inf where nothing is stiff."""
-    row = np.zeros(model.bodies)
-    for (first, second), k in zip(model.link_ends, largest_stiffness(model), strict=True):
+    row, pulls = np.zeros(model.coordinates), model.elongations(np.eye(model.bodies))
+    for link, ((first, second), k) in enumerate(
+        zip(model.link_ends, largest_stiffness(model), strict=True)
+    ):
+        if max(first, second) >= model.bodies:
+            own = np.abs(pulls[:, link])
+            row[: model.bodies] += own.sum() * k * own
+            continue
         both = 2.0 if first >= 0 and second >= 0 else 1.0
         for b in (first, second):
             if b >= 0:
                 row[b] += both * k
-    highest = math.sqrt(float((row / model.mass).max()))
+    highest = math.sqrt(float((row[: model.bodies] / model.mass[: model.bodies]).max()))
     return 2.0 * math.pi / highest if highest > 0.0 else math.inf
 
 
 def _motion_period(task: Task, scales: SceneScales) -> float:
     """Period of a motion given by a formula (s), inf for a record or none."""
-    families = {piece.family for piece in task.scene.motion.pieces()}
+    families = {family for piece in task.scene.motion.pieces() for family, _ in signals_in(piece)}
     if families & {Family.SINUSOIDS, Family.GAUSSIAN}:
         return 2.0 * math.pi * scales.time
     return math.inf
@@ -122,12 +129,22 @@ def _sampling_interval(task: Task) -> float:
     """Sampling interval of a record (s), inf for another motion."""
     return min(
         (
-            float(piece.coefficients[1])
+            float(numbers[1])
             for piece in task.scene.motion.pieces()
-            if piece.family is Family.SAMPLES
+            for family, numbers in signals_in(piece)
+            if family is Family.SAMPLES
         ),
         default=math.inf,
     )
+
+
+def signals_in(piece: Piece) -> list[tuple[Family, Floats]]:
+    """Families and coefficients of all signals of a piece, of the ground the first."""
+    if piece.family is not Family.LOADED:
+        return [(piece.family, piece.coefficients)]
+    rows = 1 + rows_of(piece.coefficients)
+    places = [places_of(row, piece.coefficients) for row in range(rows)]
+    return [(Family(place[0]), piece.coefficients[place[1] : place[2]]) for place in places]
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,9 +179,10 @@ def segments(pieces: list[Piece], start: float, end: float, longest: float) -> I
         stop = min(piece.end, end)
         if stop <= t:
             continue
-        sampled = piece.family is Family.SAMPLES
-        if sampled and longest <= piece.coefficients[1] * (1.0 + SAME_SAMPLE):
-            yield from _between_samples(piece, t, stop, longest)
+        sampled = [numbers for family, numbers in signals_in(piece) if family is Family.SAMPLES]
+        if sampled and longest <= sampled[0][1] * (1.0 + SAME_SAMPLE):
+            # Records of one scene have the same samples; of others the first tells.
+            yield from _between_samples(piece, sampled[0], t, stop, longest)
         else:
             yield _equal(piece, t, stop, longest)
         t = stop
@@ -176,11 +194,11 @@ def _equal(piece: Piece, start: float, stop: float, longest: float) -> EqualStep
 
 
 def _between_samples(
-    piece: Piece, start: float, stop: float, longest: float
+    piece: Piece, record: Floats, start: float, stop: float, longest: float
 ) -> Iterator[EqualSteps]:
     """Up to the first sample, from there in parts of the sampling interval, and what is left."""
-    dt = float(piece.coefficients[1])
-    first = next_sample(piece.coefficients, start, stop)
+    dt = float(record[1])
+    first = next_sample(record, start, stop)
     on_sample = abs(first - dt - start) <= SAME_SAMPLE * dt
     if not on_sample:
         yield _equal(piece, start, first, longest)

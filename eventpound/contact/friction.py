@@ -1,0 +1,430 @@
+"""What an instant demands of contacts with Coulomb friction.
+
+A contact that is closed slips one way or the other, or sticks; its friction is in impacts
+
+    0 <= γ_N⁺ + ε γ_N⁻ ⊥ Λ_N >= 0,   Λ_T ∈ -μ Λ_N Sgn(γ_T⁺)
+
+over all closed contacts that do not separate, and between them
+
+    0 <= γ_N' ⊥ λ_N >= 0,   λ_T = -μ λ_N sgn γ_T;   |λ_T| <= μ λ_N and γ_T' = 0 where γ_T = 0
+
+(`eventpound.numerics.coulomb`). Where no contact is about to move in a first rate, the first one in
+which one is tells the same of that. One whose force has just vanished opens, and one whose friction
+has just come to its bound slips that way, unless they cannot.
+
+Along each contact with friction is a contact that rests while it sticks, whose gap counts as
+infinite otherwise, and a link, whose branch is the way of a slip, 0 where there is none.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from eventpound.contact.impacts import (
+    DONE,
+    NO_FORCES,
+    NO_IMPACT,
+    PROBLEM,
+    close_collapsed,
+    close_several,
+    clusters_of,
+    list_impacts,
+    next_problem,
+    open_last,
+    put_as_one,
+    still_several,
+)
+from eventpound.contact.instant import begin_instant, end_instant, take_rests
+from eventpound.contact.kinks import still_rate
+from eventpound.contact.rest import ORDER, Touching, accelerations, system_of, touching_of
+from eventpound.contact.rounding import noise_of, round_as_the_scene
+from eventpound.contact.state import Instant, between_now
+from eventpound.mechanics.contact_problem import Joints, answer, coupling
+from eventpound.mechanics.impact import rates_after
+from eventpound.mechanics.observables import difference
+from eventpound.mechanics.reduced import Forcing
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
+from eventpound.numerics.coulomb import (
+    BACKWARD,
+    FORWARD,
+    NO_ANSWER,
+    OPEN,
+    SEVERAL,
+    STICK,
+    Rubbing,
+    solve_rubbing,
+)
+from eventpound.tolerances import CANCELLED, GAINED, QUIET
+
+NOT_UNIQUE, GAINS = 13, 14
+"""How settling an instant ends besides: several answers; an impact that gains energy."""
+FRICTION_MEANING = {
+    NO_IMPACT: "an impact has no solution",
+    NO_FORCES: "no forces go with the motion (Painlevé's paradox)",
+    NOT_UNIQUE: "what follows is not unique",
+    GAINS: "an impact gains kinetic energy, as Newton's law with friction may",
+}
+"""What these are told as, with the contacts behind."""
+PATH, WORK, IMPULSE, TANGENTIAL, PLACE = range(5)
+"""Rows of what is kept of friction: way slid (m); energy taken in impacts (J); largest normal and
+tangential impulse (N s); where it was at the last instant (m)."""
+
+
+class Rubs(NamedTuple):
+    """F contacts with friction of K; their holding contacts and links are the last F.
+
+    contact (F,): which. friction (K,): μ. kept (5, F): see above.
+    """
+
+    contact: Ints
+    friction: Floats
+    kept: Floats
+
+
+class Sliding(NamedTuple):
+    """Contacts that take part in a problem (k,) as rows of it.
+
+    members (k,): which. rows (2k,): the members, and the contacts that hold them, -1 without
+    friction.
+    """
+
+    members: Ints
+    rows: Ints
+
+
+@kernel
+def _sliding(members: Ints, rubs: Rubs) -> Sliding:
+    """Rows of some contacts."""
+    first = rubs.friction.size - rubs.contact.size
+    rows = np.full(2 * members.size, -1)
+    for i in range(members.size):
+        rows[i] = members[i]
+        for f in range(rubs.contact.size):
+            if rubs.contact[f] == members[i]:
+                rows[members.size + i] = first + f
+    return Sliding(members, rows)
+
+
+@kernel
+def _matrix(rows: Ints, at: Instant) -> Floats:
+    """``G = Wᵀ M⁻¹ W`` of rows, with nothing for those that are -1."""
+    joints = Joints(at.left, at.right, 1.0 / at.mass, at.compliance)
+    G = np.zeros((rows.size, rows.size))
+    for a in range(rows.size):
+        for b in range(rows.size):
+            if rows[a] >= 0 and rows[b] >= 0:
+                G[a, b] = coupling(joints, int(rows[a]), int(rows[b]))
+    return G
+
+
+@deferred_kernel
+def begin_beside_friction(force: Floats, kinked: Bools, rubs: Rubs, at: Instant) -> None:
+    """Keep how far contacts have slid, stop slips that have ended, and let sticks slip that have.
+
+    force (K,): of the contacts as the instant begins (N). kinked (L,): links whose rate vanishes.
+    """
+    K, L = at.gap.size, at.branch.size
+    own, first, stopped = K - rubs.contact.size, L - rubs.contact.size, False
+    held = at.resting.copy()
+    for f in range(rubs.contact.size):
+        t, a = own + f, first + f
+        x = difference(at.u, at.left[t], at.right[t])
+        if at.resting[rubs.contact[f]] and at.branch[a] != 0:
+            rubs.kept[PATH, f] += abs(x - rubs.kept[PLACE, f])
+        rubs.kept[PLACE, f] = x
+        if at.now[0].here > 0:
+            continue
+        if at.released[t]:
+            at.branch[a] = -1 if force[t] > 0.0 else 1
+        held[t] |= kinked[a]
+        stopped |= kinked[a]
+    if stopped:
+        put_as_one(clusters_of(held, at.resting, at), False, at.mass, at.v)
+    for f in range(rubs.contact.size):
+        t = own + f
+        at.gap[t] = np.inf
+        at.gap_rate[t] = 0.0 if held[t] else difference(at.v, at.left[t], at.right[t])
+    _still_slides(rubs, at)
+
+
+@scalar_kernel
+def _still_slides(rubs: Rubs, at: Instant) -> None:
+    """Let contacts that slide so slowly that it has no direction not slide."""
+    still = still_rate(at.length, at.time)
+    for t in range(at.gap.size - rubs.contact.size, at.gap.size):
+        at.gap_rate[t] = at.gap_rate[t] if abs(at.gap_rate[t]) > still else 0.0
+
+
+@deferred_kernel
+def settle_with_friction(rubs: Rubs, at: Instant) -> int:
+    """Impacts of an instant; ends as `settle_impacts`, or NOT_UNIQUE or GAINS."""
+    begin_instant(at)
+    close_collapsed(at)
+    close_several(at)
+    ended = _impacts(rubs, at)
+    _still_slides(rubs, at)
+    if ended == DONE and at.now[0].here > 0:
+        own = at.gap.size - rubs.contact.size
+        for f in range(rubs.contact.size):
+            j, t = rubs.contact[f], own + f
+            closed = at.gap[j] == 0.0 and at.gap_rate[j] == 0.0
+            at.gap[t] = 0.0 if closed and at.gap_rate[t] == 0.0 else np.inf
+        still_several(at)
+        at.gap[own:] = np.inf
+    return end_instant(ended, at)
+
+
+@kernel
+def _impacts(rubs: Rubs, at: Instant) -> int:
+    """Impact problems until no closed contact approaches."""
+    shut = at.gap == 0.0
+    while True:
+        ended, plastic = next_problem(shut, at)
+        if ended != PROBLEM:
+            return ended
+        ended = _impact(plastic, shut, rubs, at)
+        if ended != DONE:
+            return ended
+
+
+@kernel
+def _impact(plastic: bool, shut: Bools, rubs: Rubs, at: Instant) -> int:
+    """One impact problem; DONE, or how it fails."""
+    before = at.gap_rate.copy()
+    involved = shut & (before <= 0.0)
+    sliding = _sliding(np.flatnonzero(involved), rubs)
+    members, rows, k = sliding.members, sliding.rows, sliding.members.size
+    eps = np.zeros(before.size) if plastic else at.restitution
+    q = np.zeros(2 * k)
+    for a in range(2 * k):
+        if rows[a] >= 0:
+            q[a] = (1.0 + eps[rows[a]] if a < k else 1.0) * before[rows[a]]
+    noise = QUIET * np.max(-before[members])
+    G, friction = _matrix(rows, at), rubs.friction[members]
+    problem = Rubbing(G, q, friction, np.zeros(k, np.int64), np.full(2 * k, noise))
+    x, w, state = np.zeros(2 * k), np.zeros(2 * k), np.zeros(k, np.int64)
+    found = solve_rubbing(problem, x, w, state)
+    if found in (NO_ANSWER, SEVERAL):
+        return NO_IMPACT if found == NO_ANSWER else NOT_UNIQUE
+    impulse, opening, passed = np.zeros(before.size), np.zeros(k), 0.0
+    rounding = _take_impulses(x, rows, shut, at)
+    for i in range(k):
+        impulse[members[i]] = x[i]
+        opening[i] = w[i] if w[i] > rounding[members[i]] else 0.0
+    lost = rates_after(members, before[members], eps, noise, impulse, opening, at.gap_rate)
+    for i in range(k):
+        passed -= x[i] * before[members[i]]
+        t = rows[k + i]
+        if t >= 0:
+            at.gap_rate[t] = w[k + i]
+            by_friction = -0.5 * x[k + i] * (before[t] + w[k + i])
+            lost += by_friction
+            _keep_impact(t - at.gap.size + rubs.contact.size, x[i], x[k + i], by_friction, rubs)
+    if lost < -GAINED * passed:
+        return GAINS
+    open_last(plastic, shut, at)
+    list_impacts(plastic, before, impulse, involved, lost, at)
+    return DONE
+
+
+@kernel
+def _take_impulses(x: Floats, rows: Ints, shut: Bools, at: Instant) -> Floats:
+    """Give the coordinates what impulses (2k,) in rows make; the rounding of the gap rates (K,).
+
+    What is closed, and neither opens nor approaches but for that, stands still.
+    """
+    joints = Joints(at.left, at.right, 1.0 / at.mass, at.compliance)
+    change, size = np.zeros(at.v.size), np.zeros(at.v.size)
+    rounding = np.zeros(at.gap.size)
+    for a in range(rows.size):
+        for b in range(at.v.size if rows[a] >= 0 else 0):
+            own = answer(joints, b, at.left[rows[a]], at.right[rows[a]]) * x[a]
+            change[b] += own
+            size[b] += abs(own)
+    for b in range(change.size):
+        # Both ends of an edge that strike alike turn no deck, to the last bit.
+        change[b] = change[b] if abs(change[b]) > CANCELLED * size[b] else 0.0
+        at.v[b] += change[b]
+    for j in range(at.gap.size):
+        terms = abs(at.gap_rate[j])
+        at.gap_rate[j] += difference(change, at.left[j], at.right[j])
+        for end in (at.left[j], at.right[j]):
+            terms += abs(change[end]) if end >= 0 else 0.0
+        rounding[j] = CANCELLED * terms
+        if shut[j] and abs(at.gap_rate[j]) <= rounding[j]:
+            at.gap_rate[j] = 0.0
+    return rounding
+
+
+@scalar_kernel
+def _keep_impact(f: int, normal: float, tangential: float, lost: float, rubs: Rubs) -> None:
+    """Keep what friction took (J) in an impact with such impulses (N s)."""
+    rubs.kept[WORK, f] += lost
+    rubs.kept[IMPULSE, f] = max(rubs.kept[IMPULSE, f], normal)
+    rubs.kept[TANGENTIAL, f] = max(rubs.kept[TANGENTIAL, f], abs(tangential))
+
+
+@deferred_kernel
+def decide_friction(z: Floats, forcing: Forcing, noise: float, rubs: Rubs, at: Instant) -> int:
+    """Who rests, sticks or slips after the impacts of an instant; ends as `take_rests`.
+
+    Parameters
+    ----------
+    z : ndarray, shape (H,)
+        Hysteretic variables.
+    forcing : Forcing
+        The ground motion from now on.
+    noise : float
+        Contact forces below this (N) have no meaningful sign.
+    rubs : Rubs
+        The contacts with friction.
+    at : Instant
+        The instant, its impacts over.
+    """
+    K = at.gap.size
+    resting, pressed = np.zeros(K, np.bool_), np.zeros(K, np.bool_)
+    at.now[0].stale = True
+    touching = touching_of(between_now(at), z, forcing, at)
+    sliding = _sliding(np.flatnonzero(touching.undecided), rubs)
+    ways = _ways(sliding, rubs, at)
+    ended, x, w, state, level = _solve(sliding, ways, touching, rubs, at)
+    k = sliding.members.size
+    for i in range(k):
+        j, closed = sliding.members[i], state[i] != OPEN
+        pressed[j] = closed and x[i] > noise
+        resting[j] = closed or (w[i] <= level[i] and not at.released[j])
+    _take_ways(sliding, state, resting, pressed, rubs, at)
+    if ended == SEVERAL:
+        return NOT_UNIQUE
+    return take_rests(resting, pressed, ended != NO_ANSWER, at)
+
+
+@kernel
+def _ways(sliding: Sliding, rubs: Rubs, at: Instant) -> Ints:
+    """Ways of slip (k,) that are known: from a rate, or from friction that came to its bound."""
+    k, K, L = sliding.members.size, at.gap.size, at.branch.size
+    ways = np.zeros(k, np.int64)
+    for i in range(k):
+        t = sliding.rows[k + i]
+        if t < 0:
+            continue
+        if at.gap_rate[t] != 0.0:
+            ways[i] = 1 if at.gap_rate[t] > 0.0 else -1
+        elif at.released[t]:
+            ways[i] = at.branch[L - K + t]
+    return ways
+
+
+@kernel
+def _solve(
+    sliding: Sliding, ways: Ints, touching: Touching, rubs: Rubs, at: Instant
+) -> tuple[int, Floats, Floats, Ints, Floats]:
+    """Forces, accelerations and states of contacts that touch, and the noise of the second.
+
+    They are those of the first order in which one is about to move.
+    """
+    rows, k = sliding.rows, sliding.members.size
+    G, friction = _matrix(rows, at), rubs.friction[sliding.members]
+    x, w, state = np.zeros(2 * k), np.zeros(2 * k), np.full(k, STICK)
+    q, level = np.zeros(2 * k), np.zeros(2 * k)
+    for highest in (1, ORDER):
+        found, noise = _free(highest, touching)
+        for order in range(highest):
+            moves = False
+            for a in range(2 * k):
+                if rows[a] >= 0:
+                    left, right = at.left[rows[a]], at.right[rows[a]]
+                    q[a], level[a] = difference(found[order], left, right), 0.0
+                    for end in (left, right):
+                        level[a] = max(level[a], noise[order, end] if end >= 0 else 0.0)
+                    moves |= abs(q[a]) > level[a]
+            if moves:
+                problem = Rubbing(G, q, friction, ways, level)
+                return _answer(sliding, problem, at, x, w, state), x, w, state, level
+    # Nothing moves at all, and stays so.
+    return 0, x, w, state, level
+
+
+@kernel
+def _answer(
+    sliding: Sliding, problem: Rubbing, at: Instant, x: Floats, w: Floats, state: Ints
+) -> int:
+    """Solve a problem in which those just released are open, or slip, where they can."""
+    k = sliding.members.size
+    kept, ways = np.ones(k, np.bool_), problem.way
+    for i in range(k):
+        kept[i] = not at.released[sliding.members[i]]
+    while True:
+        outcome = _solve_some(np.flatnonzero(kept), problem, x, w, state)
+        again = False
+        for i in range(k):
+            t = sliding.rows[k + i]
+            if not kept[i] and w[i] < -problem.noise[i]:
+                # Others press it down again.
+                kept[i] = again = True
+            elif kept[i] and t >= 0 and at.gap_rate[t] == 0.0 and ways[i] != 0:
+                # It does not go the way in which friction has come to its bound.
+                slips = state[i] in (FORWARD, BACKWARD)
+                if outcome == NO_ANSWER or (slips and ways[i] * w[k + i] < -problem.noise[k + i]):
+                    ways[i], again = 0, True
+        if not again:
+            return outcome
+
+
+@kernel
+def _solve_some(members: Ints, problem: Rubbing, x: Floats, w: Floats, state: Ints) -> int:
+    """Solve the problem of some of k contacts, the others open."""
+    k, m = problem.way.size, members.size
+    rows = np.concatenate((members, k + members))
+    G = np.empty((2 * m, 2 * m))
+    for a in range(2 * m):
+        for b in range(2 * m):
+            G[a, b] = problem.G[rows[a], rows[b]]
+    friction, way = problem.friction[members], problem.way[members]
+    own = Rubbing(G, problem.q[rows], friction, way, problem.noise[rows])
+    force, rate, states = np.zeros(2 * m), np.zeros(2 * m), np.zeros(m, np.int64)
+    outcome = solve_rubbing(own, force, rate, states)
+    x[:], state[:] = 0.0, OPEN
+    x[rows], state[members] = force, states
+    for a in range(2 * k):
+        w[a] = problem.q[a]
+        for b in range(2 * k):
+            w[a] += problem.G[a, b] * x[b]
+    w[rows] = rate
+    return outcome
+
+
+@kernel
+def _free(highest: int, touching: Touching) -> tuple[Floats, Floats]:
+    """Taylor coefficients of accelerations without contacts, (highest, N), and their noise."""
+    none = np.zeros(touching.undecided.size, np.bool_)
+    system, y, _ = system_of(touching, none)
+    found = accelerations(y, system, highest, touching)
+    rough, nothing = round_as_the_scene(system, touching.forcing), np.zeros(touching.at.mass.size)
+    noise = noise_of(found, nothing, rough, y, system, touching.forcing, touching.at)
+    return found, noise
+
+
+@kernel
+def _take_ways(
+    sliding: Sliding, state: Ints, resting: Bools, pressed: Bools, rubs: Rubs, at: Instant
+) -> None:
+    """Branches, and who sticks (K,) where, from the states of the contacts that touch."""
+    K, L, k = at.gap.size, at.branch.size, sliding.members.size
+    own = K - rubs.contact.size
+    for t in range(own, K):
+        at.branch[L - K + t], at.gap[t] = 0, np.inf
+    for i in range(k):
+        t, a = sliding.rows[k + i], L - K + sliding.rows[k + i]
+        if t < 0 or not resting[sliding.members[i]]:
+            continue
+        if state[i] == STICK:
+            resting[t] = pressed[t] = True
+            at.gap[t], at.gap_rate[t] = 0.0, 0.0
+            if not at.resting[t]:
+                at.opening[t] = -difference(at.u, at.left[t], at.right[t])
+        elif state[i] != OPEN:
+            at.branch[a] = 1 if state[i] == FORWARD else -1

@@ -1,0 +1,187 @@
+"""Slip at contacts with friction, which makes the motion of a mode an oblique projection.
+
+Of a mode with the constraints W of all that rests and sticks, ``q'' = A f`` with A of
+`eventpound.mechanics.followers`, and λ = F r gives contact forces from what these put on the
+coordinates, ``r = M q'' - f``. While contacts slip, each adds ``w_s λ_s`` with
+``w_s = -σ μ W_T`` of its tangential row and λ_s its normal force, so that
+
+    λ_s = -H f,   H = (I + P w)⁻¹ P,   P = F_s (I - M A)
+    q'' = A (f - w H f),   λ = F r - F w (I + F_s w)⁻¹ F_s r
+
+and friction takes the power ``Σ_s (w_s · v) (H_s · f)``. Where ``I + P w`` has no inverse, friction
+presses as much as it lifts (Painlevé); the acceleration problem has said so before.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from eventpound.mechanics.clusters import Clusters
+from eventpound.mechanics.observables import difference
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import in_python, kernel
+from eventpound.numerics.small_systems import invert
+from eventpound.tolerances import DEPENDENT
+
+
+class Slips(NamedTuple):
+    """Contacts that slip in a mode, of F with friction.
+
+    which (S,): which of the F. rest (S,): place of each among the resting contacts. left, right
+    (S,): coordinates along which it slides. drag (S,): ``-σ μ``.
+    """
+
+    which: Ints
+    rest: Ints
+    left: Ints
+    right: Ints
+    drag: Floats
+
+
+@kernel
+def _forces(slips: Slips, coordinates: int) -> Floats:
+    """``w`` of each slip for a normal force of 1, (S, N)."""
+    rows = np.zeros((slips.rest.size, coordinates))
+    for s in range(slips.rest.size):
+        if slips.right[s] >= 0:
+            rows[s, slips.right[s]] += slips.drag[s]
+        if slips.left[s] >= 0:
+            rows[s, slips.left[s]] -= slips.drag[s]
+    return rows
+
+
+@kernel
+def _of_clusters(rows: Floats, clusters: Clusters) -> Floats:
+    """Sums of each row (S, N) over the coordinates of every cluster, (S, C)."""
+    found = np.zeros((rows.shape[0], clusters.count))
+    for b in range(rows.shape[1]):
+        if clusters.of_body[b] >= 0:
+            found[:, clusters.of_body[b]] += rows[:, b]
+    return found
+
+
+@kernel
+def _pressing(slips: Slips, clusters: Clusters, mass: Floats) -> Floats:
+    """``P`` of each slip, (S, N): its normal force for forces on coordinates, with a minus."""
+    S, N = slips.rest.size, mass.size
+    found = np.empty((S, N))
+    for s in range(S):
+        held = clusters.force_map[slips.rest[s]]
+        weighted = np.zeros(clusters.count)
+        for b in range(N):
+            if clusters.of_body[b] >= 0:
+                weighted[clusters.of_body[b]] += held[b] * mass[b]
+        for b in range(N):
+            found[s, b] = held[b]
+            if clusters.of_body[b] >= 0:
+                for c in range(clusters.count):
+                    found[s, b] -= weighted[c] * clusters.compliance[c, clusters.of_body[b]]
+    return found
+
+
+@kernel
+def _solved(rows: Floats, forces: Floats) -> Floats:
+    """``(I + rows forcesᵀ)⁻¹ rows``, (S, N)."""
+    S = rows.shape[0]
+    matrix, inverse = np.eye(S), np.empty((S, S))
+    for s in range(S):
+        for t in range(S):
+            for b in range(rows.shape[1]):
+                matrix[s, t] += rows[s, b] * forces[t, b]
+    found = np.full(rows.shape, np.nan)
+    if invert(matrix, inverse, DEPENDENT):
+        found[:] = 0.0
+        for s in range(S):
+            for t in range(S):
+                found[s] += inverse[s, t] * rows[t]
+    return found
+
+
+@kernel
+def _oblique(
+    slips: Slips, contacts: int, clusters: Clusters, mass: Floats
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Compliance and force map with slip; ``w`` and H of F `contacts` with friction, (F, C)."""
+    C, N = clusters.count, mass.size
+    forces = _forces(slips, N)
+    pressing = _solved(_pressing(slips, clusters, mass), forces)
+    carried = _solved(clusters.force_map[slips.rest].copy(), forces)
+    moved = _of_clusters(forces, clusters)
+    # What acts on a cluster acts on its first coordinate: none that a link pulls at touches others.
+    press, slide = np.zeros((contacts, C)), np.zeros((contacts, C))
+    for b in range(N - 1, -1, -1):
+        if clusters.of_body[b] >= 0:
+            for s in range(slips.rest.size):
+                press[slips.which[s], clusters.of_body[b]] = pressing[s, b]
+    compliance, force_map = clusters.compliance.copy(), clusters.force_map.copy()
+    for s in range(slips.rest.size):
+        slide[slips.which[s]] = moved[s]
+        for c in range(C):
+            along = 0.0
+            for d in range(C):
+                along += clusters.compliance[c, d] * moved[s, d]
+            compliance[c] -= along * press[slips.which[s]]
+        for i in range(force_map.shape[0]):
+            along = 0.0
+            for b in range(N):
+                along += clusters.force_map[i, b] * forces[s, b]
+            force_map[i] -= along * carried[s]
+    return compliance, force_map, slide, press
+
+
+def _with_standing(clusters: Clusters, mass: Floats) -> Clusters:
+    """Clusters with one, which nothing moves, for each body that stands still.
+
+    What pushes it presses contacts, and so has to do with what these slow down.
+    """
+    standing = np.flatnonzero((clusters.of_body < 0) & (mass > 0.0))
+    of_body, count = clusters.of_body.copy(), clusters.count + standing.size
+    of_body[standing] = np.arange(clusters.count, count)
+    compliance = np.zeros((count, count))
+    compliance[: clusters.count, : clusters.count] = clusters.compliance
+    carried = np.append(clusters.carried, np.zeros(standing.size))
+    return clusters._replace(of_body=of_body, count=count, compliance=compliance, carried=carried)
+
+
+def with_slips(clusters: Clusters, slips: Slips, contacts: int, mass: Floats) -> Clusters:
+    """Clusters of a mode of a scene in which so many `contacts` have friction, some of them slip.
+
+    Parameters
+    ----------
+    clusters : Clusters
+        As if nothing had friction.
+    slips : Slips
+        Who slips.
+    contacts : int
+        F.
+    mass : ndarray, shape (N,)
+        Of the coordinates (kg), none of points.
+    """
+    nothing = np.zeros((contacts, clusters.count))
+    if slips.rest.size == 0:
+        return clusters._replace(slide=nothing, press=nothing)
+    clusters = _with_standing(clusters, mass)
+    found = in_python(_oblique)(slips, contacts, clusters, mass)
+    return clusters._replace(
+        compliance=found[0], force_map=found[1], slide=found[2], press=found[3]
+    )
+
+
+@kernel
+def are_tied(left: Ints, right: Ints, clusters: Clusters) -> Bools:
+    """Pairs of coordinates (S,) whose distance no force changes in a mode."""
+    tied = np.zeros(left.size, np.bool_)
+    for s in range(left.size):
+        ends = np.full(2, -1)
+        for i, b in ((0, left[s]), (1, right[s])):
+            ends[i] = clusters.of_body[b] if b >= 0 else -1
+        apart, size = 0.0, 0.0
+        for c in range(clusters.count):
+            column = clusters.compliance[:, c]
+            apart = max(apart, abs(difference(column, ends[0], ends[1])))
+            for end in ends:
+                size = max(size, abs(column[end]) if end >= 0 else 0.0)
+        tied[s] = apart <= DEPENDENT * size
+    return tied

@@ -1,0 +1,232 @@
+"""Coulomb friction at contacts: closed forms, energy, and a program of SciPy alone."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from eventpound import simulate
+from eventpound.errors import ComputationError
+from eventpound.motion import Harmonic
+from eventpound.numerics.arrays import Floats
+from eventpound.scene import Deck, Scene
+from eventpound.scene.deck import DeckStart
+from eventpound.scene.joint import Joint
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import Recording, Task
+from tests.solvers.friction_oracle import rubbing_plan
+from tests.solvers.friction_scenes import (
+    GRAVITY,
+    MASS,
+    block,
+    corner_contacts,
+    slid,
+    struck_corner,
+)
+from tests.solvers.plan_oracle import LeftAloneError
+from tests.solvers.plan_scenes import random_plan
+
+SEEDS = (1, 3, 7, 16, 22, 28, 35, 62, 63, 74, 81, 86)
+"""Scenes, most of which slip and stick; of 150 those that the other program follows agree."""
+
+
+def _run(scene: Scene, end: float, solver: str = "cvode", **settings: object) -> Recording:
+    times = np.linspace(0.0, end, 26)
+    task = Task(scene, 0.0, end, 1e-12, output_times=times, energy=True, settings=settings)
+    return solver_named(solver).solve(task)
+
+
+@pytest.mark.parametrize("events", ["own", "sundials"])
+@pytest.mark.parametrize(
+    ("friction", "slope", "speed"),
+    [(0.3, 0.1, 0.0), (0.3, 0.5, 0.0), (0.3, 0.1, 2.0), (0.3, 0.1, -2.0), (0.3, 0.5, -3.0)],
+)
+def test_a_block_on_a_slope(friction: float, slope: float, speed: float, events: str) -> None:
+    recording = _run(block(friction, slope, speed), 1.0, events=events)
+    exact = slid(friction, slope, speed, 1.0)
+    np.testing.assert_allclose(recording.u, [exact, 0.0, 0.0], atol=1e-12)
+    drives, holds = GRAVITY * math.sin(slope), GRAVITY * friction * math.cos(slope)
+    way = abs(exact) if drives < holds else exact + speed**2 / (drives + holds) * (speed < 0.0)
+    assert recording.friction is not None
+    np.testing.assert_allclose(recording.friction.path, way, rtol=1e-12, atol=1e-15)
+    # All of the weight presses, and friction works with μ times that.
+    assert recording.energy.friction == pytest.approx(MASS * holds * way, rel=1e-11, abs=1e-9)
+    assert abs(recording.energy.closure) < 1e-12
+
+
+def test_a_shaken_block_sticks_and_slips() -> None:
+    """Slips begin where the ground has μ g and end where speeds are one: in closed form."""
+    friction, amplitude, period, end = 0.2, 4.0, 0.8, 1.5
+    scene = block(friction, motion=Harmonic(amplitude, period))
+    exact = _slid_under(amplitude, 2.0 * math.pi / period, friction * GRAVITY, end)
+    recording = _run(scene, end)
+    assert recording.u[0] == pytest.approx(exact, abs=1e-11)
+    assert abs(recording.energy.closure) < 1e-11
+    # Moreau–Jean comes to it at first order.
+    errors = []
+    for step in (4e-3, 1e-3, 2.5e-4):
+        task = Task(scene, 0.0, end, 1e-9, settings={"time_step": step})
+        errors.append(abs(solver_named("moreau").solve(task).u[0] - exact))
+    assert errors[-1] < 0.2 * errors[0]
+    assert errors[-1] < 2.5e-4 * amplitude
+
+
+def _slid_under(amplitude: float, omega: float, most: float, end: float) -> float:
+    """Displacement of a mass that friction accelerates by at most so much, slip by slip."""
+    t, x, v = 0.0, 0.0, 0.0
+    while t < end:
+        if v == 0.0:
+            # It sticks until the ground has the acceleration of friction.
+            s = np.linspace(t, end, 200001)[1:]
+            beyond = np.flatnonzero(np.abs(amplitude * np.sin(omega * s)) > most)
+            if beyond.size == 0:
+                break
+            phase = math.asin(most / amplitude)
+            first = [(k * math.pi + phase) / omega for k in range(20)]
+            t = max(t, min(each for each in first if each > s[beyond[0]] - 1e-4))
+            way = -math.copysign(1.0, amplitude * math.sin(omega * t))
+        else:
+            way = math.copysign(1.0, v)
+
+        def speed(s: float, t: float = t, v: float = v, way: float = way) -> float:
+            waves = amplitude / omega * (math.cos(omega * s) - math.cos(omega * t))
+            return way * (v + waves) - most * (s - t)
+
+        # It slides while that is above zero: to the first sample below, then by halving.
+        s = np.linspace(t, end, 20001)[1:]
+        below = next((i for i, each in enumerate(s) if speed(each) < 0.0 and i > 0), None)
+        stop = end
+        if below is not None:
+            low, high = s[below - 1], s[below]
+            for _ in range(100):
+                middle = 0.5 * (low + high)
+                low, high = (middle, high) if speed(middle) > 0.0 else (low, middle)
+            stop = high
+        h = stop - t
+        x += v * h - 0.5 * way * most * h * h
+        x += amplitude / omega**2 * (math.sin(omega * stop) - math.sin(omega * t))
+        x -= amplitude / omega * math.cos(omega * t) * h
+        v = 0.0 if below is not None else way * speed(stop)
+        t = stop
+    return x
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_one_corner_strikes(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    deck = Deck("B", MASS, rng.uniform(2.0, 6.0), rng.uniform(1.0, 4.0))
+    friction, restitution = rng.uniform(0.1, 0.5), rng.uniform(0.0, 0.6)
+    start = DeckStart((0.0, 0.0), (rng.uniform(-2.0, 2.0), -1.0), 0.0, rng.uniform(-0.1, 0.1))
+    contacts = corner_contacts(deck, 1, friction, restitution)
+    recording = _run(Scene(deck.bodies(start), contacts=contacts, decks=[deck]), 0.01)
+    v = np.array([*start.velocity, start.spin])
+    expected, (normal, tangential) = struck_corner(deck, v, friction, restitution)
+    event = recording.events[0]
+    assert event.impulse == pytest.approx(normal, rel=1e-12)
+    assert recording.friction is not None
+    assert recording.friction.tangential[0] == pytest.approx(abs(tangential), rel=1e-12)
+    inertia = np.array([deck.mass, deck.mass, deck.inertia_about_centre])
+    assert event.energy_lost == pytest.approx(0.5 * inertia @ (v**2 - expected**2), rel=1e-10)
+    if restitution > 0.0 and len(recording.events) == 1:
+        np.testing.assert_allclose(recording.v / [1.0, 1.0, deck.radius], expected, rtol=1e-12)
+
+
+def _rubbing(seed: int) -> tuple[Scene, list[Joint], float]:
+    scene, joints, end = random_plan(seed)
+    friction = float(np.random.default_rng(seed + 10000).choice([0.1, 0.3, 0.5, 0.8]))
+    return (
+        replace(scene, contacts=[replace(c, friction=friction) for c in scene.contacts]),
+        joints,
+        end,
+    )
+
+
+@cache
+def _by_scipy(seed: int) -> Floats | None:
+    """States in metres, as the package has them; None of a scene that is left alone."""
+    scene, joints, end = _rubbing(seed)
+    plan = rubbing_plan(scene, joints)
+    unit = np.ones(plan.plan.mass.size)
+    unit[2::3] = [math.sqrt(J / m) for m, J in plan.plan.mass.reshape(-1, 3)[:, 1:]]
+    both = np.concatenate((unit, unit))
+    start = [b.displacement for b in scene.bodies] + [b.velocity for b in scene.bodies]
+    try:
+        return plan.at_times(np.array(start) / both, np.linspace(0.0, end, 26)) * both
+    except LeftAloneError:
+        return None
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_random_decks_against_scipy(seed: int) -> None:
+    expected = _by_scipy(seed)
+    assert expected is not None
+    scene, _, end = _rubbing(seed)
+    recording = _run(scene, end)
+    h = recording.history
+    i = np.searchsorted(h.t, np.linspace(0.0, end, 26), "right") - 1
+    found = np.hstack((h.u[i], h.v[i]))
+    size = np.maximum(np.abs(expected).max(axis=0), 1e-3)
+    # The largest of 97 scenes is 1.1e-10, one of 62 impacts apart.
+    assert (np.abs(found - expected) <= 1e-9 * size).all()
+    assert abs(recording.energy.closure) < 1e-10
+
+
+def test_friction_none_is_as_if_none_were_given() -> None:
+    scene, _, end = random_plan(16)
+    given = replace(scene, contacts=[replace(c, friction=0.0) for c in scene.contacts])
+    assert _run(given, end).u.tobytes() == _run(scene, end).u.tobytes()
+
+
+def test_a_mirrored_scene_has_the_mirrored_motion() -> None:
+    """Turned about x: what slides upwards slides downwards, by as much."""
+    deck = Deck("B", "10 t", "20 m", "8 m", "30 deg")
+    other = replace(deck, skew=-deck.skew)
+    joint = Joint("wall", ("B", "barrier"), (0.01, 0.02), 0.5)
+    turned = Joint("wall", ("B", "barrier"), (0.02, 0.01), 0.5)
+    start = DeckStart((0.0, 0.0), (0.4, 0.2), 0.0, 0.01)
+    back = DeckStart((0.0, 0.0), (0.4, -0.2), 0.0, -0.01)
+    found = []
+    for each, way, begins in ((deck, joint, start), (other, turned, back)):
+        contacts = [replace(c, friction=0.4) for c in way.contacts({"B": each})]
+        scene = Scene(each.bodies(begins), contacts=contacts, decks=[each])
+        found.append(_run(scene, 0.5))
+    np.testing.assert_allclose(found[1].v * [1.0, -1.0, -1.0], found[0].v, rtol=1e-11)
+    one, two = (recording.friction for recording in found)
+    assert one is not None
+    assert two is not None
+    np.testing.assert_allclose(two.tangential[::-1], one.tangential, rtol=1e-11)
+
+
+def test_what_gains_energy_ends_the_run() -> None:
+    deck = Deck("B", 1.0, 5.390649732448921, 3.721012615946246)
+    start = DeckStart((0.0, 0.0), (0.72328432, -1.0), 0.0, 0.31032001)
+    contacts = corner_contacts(deck, 1, 0.24545278407384907, 0.9930182703461161)
+    scene = Scene(deck.bodies(start), contacts=contacts, decks=[deck])
+    with pytest.raises(ComputationError, match=r"gains kinetic energy.*'c0' \(friction 0.245"):
+        _run(scene, 0.01)
+
+
+def test_the_paradox_of_painleve_ends_the_run() -> None:
+    """A tall block pushed over its edge: friction presses more than it lifts."""
+    deck = Deck("B", MASS, 1.0, 4.0)
+    pulls = block(0.0).forces
+    scene = Scene(
+        deck.bodies(DeckStart((0.0, 0.0), (1.0, 0.0))),
+        contacts=corner_contacts(deck, 2, 3.0)[1:],
+        forces=pulls,
+        decks=[deck],
+    )
+    with pytest.raises(ComputationError, match=r"Painlev|not unique"):
+        _run(scene, 0.1)
+
+
+def test_what_a_response_tells() -> None:
+    response = simulate(block(0.3, 0.1, 2.0), duration=1.0, energy=True)
+    summary = response.summary
+    assert summary["contacts.c0.sliding_path"] == pytest.approx(slid(0.3, 0.1, 2.0, 1.0))
+    assert summary["contacts.c0.friction_work"] > 0.0
+    assert summary["energy.friction"] > 0.0
