@@ -312,7 +312,8 @@ class EventLoop:
         slips = run.state.branch[run.model.links - rubbing.size :] != 0
         x = run.model.elongations(run.state.u)[run.model.links - rubbing.size :]
         path += np.where(slips, np.abs(x - place), 0.0)
-        work += run.state.ledger[run.state.ledger.size - rubbing.size :]
+        known = run.state.ledger[run.state.ledger.size - rubbing.size :]
+        work += known if run.task.energy else np.nan
         table = np.zeros((4, run.model.own_contacts))
-        table[:, rubbing] = path, work if run.task.energy else np.nan, *impulses
+        table[:, rubbing] = path, work, *impulses
         return FrictionRecording(*table)
