@@ -83,3 +83,14 @@ def struck_corner(
         N, T = np.array([[b, -c], [-c, a]]) @ np.array([approach, -slip]) / (a * b - c * c)
     impulses = np.array([N, T])
     return v + (impulses * [1.0, -1.0]) @ rows / np.array([m, m, J]), impulses
+
+
+def slid_under(amplitude: float, period: float, most: float, end: float) -> float:
+    """Displacement of a mass whose friction accelerates it by at most so much, to some 1e-7 m."""
+    h, x, v = 1e-6, 0.0, 0.0
+    for i in range(round(end / h)):
+        a = -amplitude * math.sin(2.0 * math.pi * (i + 0.5) * h / period)
+        free = v + h * a
+        new = math.copysign(max(0.0, abs(free) - h * most), free)
+        x, v = x + 0.5 * h * (v + new), new
+    return x

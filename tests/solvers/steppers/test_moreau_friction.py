@@ -34,6 +34,7 @@ from tests.solvers.friction_scenes import (
     block,
     corner_contacts,
     slid,
+    slid_under,
     struck_corner,
 )
 
@@ -66,21 +67,10 @@ def test_a_shaken_block_sticks_and_slips() -> None:
     """Beside the balance of a sliding mass by tiny steps of its own; first order in h."""
     friction, amplitude, period = 0.2, 4.0, 0.8
     scene = block(friction, motion=Harmonic(amplitude, period))
-    exact = _slid_under(amplitude, period, friction * GRAVITY, 1.5)
+    exact = slid_under(amplitude, period, friction * GRAVITY, 1.5)
     errors = [abs(_run(scene, 1.5, 0.01 / n).u[0] - exact) for n in (1, 4, 16)]
     assert errors[0] < 5e-3
     assert errors[2] < errors[0] / 4.0
-
-
-def _slid_under(amplitude: float, period: float, most: float, end: float) -> float:
-    """Displacement of a mass whose friction accelerates it by at most so much, to some 1e-7 m."""
-    h, x, v = 1e-6, 0.0, 0.0
-    for i in range(round(end / h)):
-        a = -amplitude * math.sin(2.0 * math.pi * (i + 0.5) * h / period)
-        free = v + h * a
-        new = math.copysign(max(0.0, abs(free) - h * most), free)
-        x, v = x + 0.5 * h * (v + new), new
-    return x
 
 
 @pytest.mark.parametrize("corner", range(6))
