@@ -31,6 +31,7 @@ from eventpound.scene.spring import (
     Law,
     Linear,
     Series,
+    Slider,
     Spring,
 )
 from eventpound.scene.stability import unstable
@@ -411,7 +412,7 @@ def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
             yield from _contact_law_problems(element, contact, contact.law)
         yield from element.numbers(contact)
         if contact.friction > 0.0:
-            yield from _friction_problems(element, contact)
+            yield from _friction_problems(element, contact, scene)
         if i in penetrated:
             accepted = (
                 "a gap that is not penetrated at the start; with the initial displacements it "
@@ -420,13 +421,18 @@ def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
             yield element.problem("gap", contact.gap, accepted)
 
 
-def _friction_problems(element: _Element, contact: Contact) -> Iterator[Problem]:
+def _friction_problems(element: _Element, contact: Contact, scene: Scene) -> Iterator[Problem]:
     """What friction at a contact asks for."""
     if not all(isinstance(end, PlanPoint) or end == BARRIER for end in contact.sides):
         accepted = "0 but between places of decks in plan: nothing else slides along a contact"
         yield element.problem("friction", contact.friction, accepted)
-    if contact.law is not None:
-        accepted = f"0 beside a law of contact; friction is of {NEWTON}'s law"
+    laws = [repr(c.name) for c in scene.contacts if c.law is not None]
+    if laws:
+        accepted = f"0 beside a law of contact ({', '.join(laws)}); friction is of {NEWTON}'s law"
+        yield element.problem("friction", contact.friction, accepted)
+    sliders = [repr(s.name) for s in scene.springs if isinstance(s.law, Slider)]
+    if sliders:
+        accepted = f"0 beside sliders ({', '.join(sliders)})"
         yield element.problem("friction", contact.friction, accepted)
 
 

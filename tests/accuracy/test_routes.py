@@ -14,6 +14,7 @@ from eventpound.accuracy.routes import (
     SHARED,
     SHARED_AT_POINTS,
     SHARED_BY_METHODS,
+    SHARED_WITH_FRICTION,
     SHARED_WITH_LAWS,
     SHARED_WITH_LOADS,
     SHARED_WITH_SLIDERS,
@@ -102,7 +103,7 @@ def test_whatever_computes_in_both_is_listed():
         or module in ("eventpound.numerics.lcp", "eventpound.numerics.polynomial")
     }
     listed = {module for module, _, _ in SHARED}
-    listed |= {*SHARED_AT_POINTS, *SHARED_WITH_LAWS, *SHARED_WITH_LOADS}
+    listed |= {*SHARED_AT_POINTS, *SHARED_WITH_LAWS, *SHARED_WITH_LOADS, *SHARED_WITH_FRICTION}
     listed |= {module for module in SHARED_WITH_SLIDERS if ".contact." in module}
     assert wanted - listed == {f"eventpound.{name}" for name in NEITHER}
 

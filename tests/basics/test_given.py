@@ -117,6 +117,14 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
         {TEXT: "kind", NEEDED: "stiffness", NUMBER: "damping", FLAG: "tension"},
     ),
     "Point": ({"weights": {"a": 1.0}}, {"NBITLOC": "weights"}),
+    "Deck": (
+        {"name": "d", "mass": 1.0, "length": 1.0, "width": 1.0},
+        {TEXT: "name", NEEDED: "mass length width", NUMBER: "inertia", THINGS: "centre"},
+    ),
+    "Joint": (
+        {"name": "j", "between": ("d", "barrier"), "gap": 0.01, "restitution": 0.5},
+        {TEXT: "name", THINGS: "between", NEEDED: "gap restitution friction"},
+    ),
     "Seat": ({"name": "e", "between": ("ground", "a")}, {TEXT: "name", THINGS: "between"}),
     "Support": ({"name": "s"}, {TEXT: "name", NUMBER: "delay", "BITLMOC": "motion"}),
     "Force": ({"body": "a", "history": 1.0}, {TEXT: "body", NEEDED: "history", FLAG: "per_mass"}),

@@ -102,7 +102,11 @@ def with_gap(case: Case, gap: float) -> Case:
 @pytest.mark.parametrize(
     ("text", "solver", "said"),
     [
-        (AT_POINT, "moreau", r"does not take contacts at a point.*accepted: cvode, ida, fast$"),
+        (
+            AT_POINT,
+            "penalty",
+            r"does not take ends at a point.*accepted: cvode, ida, fast, moreau$",
+        ),
         *(
             (
                 WITH_LAW,

@@ -31,7 +31,9 @@ def case_of(folder: Path, text: str):
 
 def test_a_building_is_its_bodies_and_springs(tmp_path):
     scene = case_of(tmp_path, FRAME + 'height = [4, "3.2 m", 3.2]\n').scene
-    assert scene.bodies == (Body("A1", 2e5), Body("A2", 1.8e5), Body("A3", 1e5))
+    assert scene.bodies == tuple(
+        Body(name, mass, structure="A") for name, mass in (("A1", 2e5), ("A2", 1.8e5), ("A3", 1e5))
+    )
     ends = [GROUND, "A1", "A2", "A3"]
     assert scene.springs == tuple(
         Spring(f"storey-{ends[i + 1]}", (ends[i], ends[i + 1]), Linear(3e8), height)

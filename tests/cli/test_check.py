@@ -211,7 +211,7 @@ def test_check_refuses_what_run_refuses_of_every_solver(solver, added, case, cap
         "cvode": {"step"},
         "ida": laws | {"step"},
         "fast": laws | {"step"},
-        "moreau": unknown | laws | {"step"},
+        "moreau": unknown - {"force", "point"} | laws | {"step"},
         "penalty": unknown | {"step"},
     }
     assert (checked == 2) == (added in not_taken[solver])
@@ -253,10 +253,10 @@ def test_a_dashpot_where_stiffness_times_mass_is_no_double(tmp_path, capsys):
 @pytest.mark.parametrize("command", ["check", "run"])
 def test_a_solver_that_takes_no_forces_is_refused(command, tmp_path, capsys):
     text = (CASES / "bead-column" / "case.toml").read_text()
-    (tmp_path / "case.toml").write_text(text + '\n[solver]\nname = "moreau"\n')
+    (tmp_path / "case.toml").write_text(text + '\n[solver]\nname = "penalty"\n')
     assert main([command, str(tmp_path)]) == 2
     found = capsys.readouterr().err
-    assert "'moreau' cannot take forces; accepted: cvode, ida, fast" in found
+    assert "'penalty' cannot take forces; accepted: cvode, ida, fast, moreau" in found
     assert not (tmp_path / "results").exists()
 
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from eventpound import simulate
-from eventpound.errors import ComputationError
+from eventpound.errors import ComputationError, InputError
 from eventpound.motion import Harmonic
 from eventpound.numerics.arrays import Floats
-from eventpound.scene import BARRIER, Deck, Scene
+from eventpound.scene import BARRIER, Contact, ContactLaw, Deck, Scene, Slider, Spring
 from eventpound.scene.deck import DeckStart
 from eventpound.scene.joint import Joint
 from eventpound.solvers import solver_named
@@ -194,3 +194,15 @@ def test_what_a_response_tells() -> None:
     assert summary["contacts.c0.sliding_path"] == pytest.approx(slid(0.3, 0.1, 2.0, 1.0))
     assert summary["contacts.c0.friction_work"] > 0.0
     assert summary["energy.friction"] > 0.0
+
+
+def test_friction_is_refused_beside_what_has_an_instant_of_its_own():
+    """Sliders and laws of contact: nothing decides both at once."""
+    scene = block(0.3)
+    rail = Spring("rail", ("ground", "B.x"), Slider(0.1, MASS * GRAVITY))
+    stop = Contact("stop", "B.x", BARRIER, 0.5, law=ContactLaw("linear", 1e8))
+    for solver in ("cvode", "moreau"):
+        with pytest.raises(InputError, match=r"friction: found 0\.3; accepted: 0 beside sliders"):
+            simulate(replace(scene, springs=(rail,)), solver, duration=0.1)
+        with pytest.raises(InputError, match=r"accepted: 0 beside a law of contact \('stop'\)"):
+            simulate(replace(scene, contacts=(*scene.contacts, stop)), solver, duration=0.1)
