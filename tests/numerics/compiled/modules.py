@@ -8,6 +8,8 @@ from pathlib import Path
 from types import ModuleType
 
 KERNELS = """\
+from __future__ import annotations
+
 import numpy as np
 
 from eventpound.numerics.compiled import kernel, scalar_kernel

@@ -17,6 +17,8 @@ pytestmark = pytest.mark.skipif(
 )
 
 KERNELS = """\
+from __future__ import annotations
+
 from eventpound.numerics.compiled import deferred_kernel, kernel
 
 

@@ -12,6 +12,8 @@ from tests.numerics.compiled.modules import imported, in_a_process
 pytestmark = pytest.mark.skipif(PLAIN, reason="Numba compiles in its own way here")
 
 KERNELS = """\
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
