@@ -225,9 +225,8 @@ def _closed_in(recording: Recording, task: Task) -> ComputationError | None:
     speed = {s.name: support_motion(s, scene.motion, soon)[1] for s in scene.supports}
     fastest = max(np.abs(v).max() for v in (said[: first + 1], *speed.values()))
     shut = _shut(u[max(0, first - LINES) : first + 1], scene, np.abs(u).max())
-    held = _squeezed(shut, {name: v / (fastest or 1.0) for name, v in speed.items()})
-    if not held and recording.success:
-        held = [c.name for c in shut]
+    given = {name: v / (fastest or 1.0) for name, v in speed.items()}
+    held = _squeezed(shut, given, recording.success)
     if not held:
         return None
     return ComputationError(
@@ -251,24 +250,25 @@ def _shut(u: Floats, scene: Scene, largest: float) -> list[Contact]:
     ]
 
 
-def _squeezed(shut: list[Contact], speed: Mapping[str, Floats]) -> list[str]:
+def _squeezed(shut: list[Contact], speed: Mapping[str, Floats], moved: bool) -> list[str]:
     """Contacts that supports close in on; none where bodies have a way out.
 
     There is none just where some pressures x >= 0, in balance on all bodies, are worked against:
     ``Σ x_j W_j = 0`` on these, and of the speeds that are given, parts of the largest at some
-    instants, ``Σ x_j W_j v < 0`` (Farkas).
+    instants, ``Σ x_j W_j v < 0`` (Farkas). Where a support was `moved` off its way pressures in
+    balance are enough: rounding may have hidden the speed.
     """
     from scipy.optimize import nnls
 
     bodies = sorted({name for c in shut for name in c.ends} - {BARRIER, GROUND, *speed})
     rows = np.zeros((len(bodies) + 1, len(shut)))
-    for instant in range(2 if shut else 0):
-        rows[:] = 0.0
+    for instant in range(2 + moved if shut else 0):
+        rows[:], rows[-1] = 0.0, -1.0 if instant == 2 else 0.0
         for j, contact in enumerate(shut):
             for name, weight in contact.direction:
                 if name in bodies:
                     rows[bodies.index(name), j] += weight
-                elif name in speed:
+                elif name in speed and instant < 2:
                     rows[-1, j] += weight * speed[name][instant]
         x, missed = nnls(rows, np.append(np.zeros(len(bodies)), -1.0))
         # What cannot be worked against is missed whole; what is not found has no digits.

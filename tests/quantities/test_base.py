@@ -21,6 +21,7 @@ def test_units_of_pi_terms_are_products_of_mass_length_and_time():
         Dimension.IMPULSE: mass * length / time,
         Dimension.ENERGY: mass * length**2 / time**2,
         Dimension.NUMBER: 1.0,
+        Dimension.ANGLE: 1.0,
     }
     for dimension, unit in expected.items():
         assert pi_unit(dimension, scales, mass) == pytest.approx(unit, rel=1e-14)

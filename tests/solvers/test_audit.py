@@ -27,8 +27,8 @@ def _watched(*, rests: bool) -> Watched:
     none = np.array([np.inf])
     marks = np.array([not rests]), np.array([rests])
     forces, turns = (np.zeros(1), none), np.zeros(1, np.bool_)
-    at = places_in(assemble(SCENE))
-    return Watched(*marks, False, *forces, -none, none, turns, FORCE_NOISE, at)
+    at, rubs = places_in(assemble(SCENE)), (np.full(1, -1), np.zeros(1))
+    return Watched(*marks, False, *forces, -none, none, turns, FORCE_NOISE, at, *rubs)
 
 
 def _check(t: float, observed: Observed, watched: Watched) -> None:
