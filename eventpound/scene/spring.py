@@ -51,6 +51,10 @@ _WIDER = Accepted("a length of at least gap (m), or 0", lambda s, g: g in (0.0, 
 _Stiffness = Annotated[Number, Dimension.STIFFNESS, _NOT_BELOW]
 _PULL = Accepted("a positive force (N)", above_zero)
 _Force = Annotated[Number, Dimension.FORCE, _PULL]
+_PUSH = Accepted(
+    "a positive force (N), by which initial_stiffness has a yield displacement",
+    lambda soil, f: f > _TINY * max(soil.initial_stiffness, 0.0),
+)
 _Loss = Annotated[Number, Dimension.NUMBER, Accepted("a number >= 0", not_negative)]
 _BEYOND = 0.1
 """Part of its bound by which z may exceed it at the end of a run of the largest tolerance."""
@@ -463,7 +467,7 @@ class Backfill(Hysteretic):
     )
     has_branches: ClassVar[bool] = True
     initial_stiffness: Annotated[Number, Dimension.STIFFNESS, _STIFF]
-    ultimate_force: _Force
+    ultimate_force: Annotated[Number, Dimension.FORCE, _PUSH]
     failure_ratio: Annotated[Number, Dimension.NUMBER, _SHARE]
     gap: Annotated[Number, Dimension.LENGTH, _GAP] = default(0.0)
     initial_gap: Annotated[Number, Dimension.LENGTH, _WIDER] = default(0.0)

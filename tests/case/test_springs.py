@@ -103,6 +103,8 @@ def test_backfill():
     said = problems(spring=[spring(**soil, failure_ratio=1.2, gap=-1.0)])
     assert "[[spring]] 1: failure_ratio: found 1.2; accepted: a number above 0, at most 1" in said
     assert "[[spring]] 1: gap: found -1.0; accepted: a length >= 0 (m)" in said
+    said = problems(spring=[spring(**{**soil, "ultimate_force": 5e-324}, failure_ratio=0.7)])
+    assert "[[spring]] 1: ultimate_force: found 5e-324; accepted: a positive force (N), by" in said
 
 
 def test_soil_behind_a_wall_is_that_of_caltrans_sdc():
