@@ -274,8 +274,12 @@ def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
     unknown = unknown_springs(solver, scene).items()
     springs = ", ".join(f"{spring!r} ({law})" for spring, law in unknown)
     points = ", ".join(scene.at_points)
-    rubbing = ", ".join(repr(c.name) for c in scene.contacts if c.friction > 0.0)
-    kinds = (("supports", scene.supports), ("forces", scene.forces))
+    rubbing = ", ".join(map(repr, scene.rubbing))
+    kinds = (
+        ("supports", scene.supports),
+        ("forces", scene.forces),
+        ("decks in plan", scene.in_plan),
+    )
     loads = " and ".join(word for word, given in kinds if given)
     name = solver.name
     problems = {

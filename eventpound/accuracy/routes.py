@@ -228,7 +228,7 @@ def shared_code(routes: tuple[Route, ...], scene: Scene) -> dict[str, str]:
         shared |= SHARED_WITH_LAWS
     if any(isinstance(spring.law, Slider) for spring in scene.springs):
         shared |= SHARED_WITH_SLIDERS
-    if any(contact.friction for contact in scene.contacts):
+    if scene.rubbing:
         shared |= SHARED_WITH_FRICTION
     if scene.supports or scene.forces:
         shared |= SHARED_WITH_LOADS

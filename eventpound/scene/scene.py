@@ -94,6 +94,11 @@ class Scene:
         return found + [f"dashpot {d.label!r}" for d in self.dashpots if d.at_point]
 
     @property
+    def rubbing(self) -> list[str]:
+        """Names of the contacts with friction."""
+        return [contact.name for contact in self.contacts if contact.friction > 0.0]
+
+    @property
     def memory(self) -> list[tuple[str, str]]:
         """Spring and name of each internal variable, in the order of z."""
         found = [(name, "z") for name in self.hysteretic_springs]

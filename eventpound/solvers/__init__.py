@@ -46,8 +46,7 @@ def takes_loads(solver: Solver, scene: Scene) -> bool:
 
 def takes_friction(solver: Solver, scene: Scene) -> bool:
     """Whether a solver takes the friction of contacts, if there is any."""
-    rubs = any(contact.friction > 0.0 for contact in scene.contacts)
-    return not rubs or getattr(solver, "takes_friction", False)
+    return not scene.rubbing or getattr(solver, "takes_friction", False)
 
 
 def knows_laws(solver: Solver, scene: Scene) -> bool:

@@ -206,3 +206,8 @@ def test_friction_is_refused_beside_what_has_an_instant_of_its_own():
             simulate(replace(scene, springs=(rail,)), solver, duration=0.1)
         with pytest.raises(InputError, match=r"accepted: 0 beside a law of contact \('stop'\)"):
             simulate(replace(scene, contacts=(*scene.contacts, stop)), solver, duration=0.1)
+
+
+def test_a_solver_that_takes_no_decks_says_so():
+    with pytest.raises(InputError, match="'penalty' cannot take forces and decks in plan; acc"):
+        simulate(block(0.3), "penalty", duration=0.1)
