@@ -38,11 +38,10 @@ from eventpound.contact.impacts import (
 )
 from eventpound.contact.instant import begin_instant, end_instant, take_rests
 from eventpound.contact.kinks import still_rate
-from eventpound.contact.rest import ORDER, Touching, accelerations, system_of, touching_of
-from eventpound.contact.rounding import noise_of, round_as_the_scene
+from eventpound.contact.rest import ORDER, Touching, free_accelerations, touching_of
 from eventpound.contact.state import Instant, between_now
-from eventpound.mechanics.contact_problem import Joints, answer, coupling
-from eventpound.mechanics.impact import rates_after
+from eventpound.mechanics.contact_problem import Joints, coupling
+from eventpound.mechanics.impact import rates_after, take_impulses
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -57,7 +56,7 @@ from eventpound.numerics.coulomb import (
     Rubbing,
     solve_rubbing,
 )
-from eventpound.tolerances import CANCELLED, GAINED, QUIET
+from eventpound.tolerances import GAINED, QUIET
 
 NOT_UNIQUE, GAINS = 13, 14
 """How settling an instant ends besides: several answers; an impact that gains energy."""
@@ -109,9 +108,15 @@ def _sliding(members: Ints, rubs: Rubs) -> Sliding:
 
 
 @kernel
+def _joints(at: Instant) -> Joints:
+    """What impulses of all contacts act on."""
+    return Joints(at.left, at.right, 1.0 / at.mass, at.compliance)
+
+
+@kernel
 def _matrix(rows: Ints, at: Instant) -> Floats:
     """``G = Wᵀ M⁻¹ W`` of rows, with nothing for those that are -1."""
-    joints = Joints(at.left, at.right, 1.0 / at.mass, at.compliance)
+    joints = _joints(at)
     G = np.zeros((rows.size, rows.size))
     for a in range(rows.size):
         for b in range(rows.size):
@@ -210,7 +215,8 @@ def _impact(plastic: bool, shut: Bools, rubs: Rubs, at: Instant) -> int:
     if found in (NO_ANSWER, SEVERAL):
         return NO_IMPACT if found == NO_ANSWER else NOT_UNIQUE
     impulse, opening, passed = np.zeros(before.size), np.zeros(k), 0.0
-    rounding = _take_impulses(x, rows, shut, at)
+    joints, real = _joints(at), rows >= 0
+    rounding = take_impulses(joints, at.mass, rows[real], x[real], shut, at.gap_rate, at.v)
     for i in range(k):
         impulse[members[i]] = x[i]
         opening[i] = w[i] if w[i] > rounding[members[i]] else 0.0
@@ -228,35 +234,6 @@ def _impact(plastic: bool, shut: Bools, rubs: Rubs, at: Instant) -> int:
     open_last(plastic, shut, at)
     list_impacts(plastic, before, impulse, involved, lost, at)
     return DONE
-
-
-@kernel
-def _take_impulses(x: Floats, rows: Ints, shut: Bools, at: Instant) -> Floats:
-    """Give the coordinates what impulses (2k,) in rows make; the rounding of the gap rates (K,).
-
-    What is closed, and neither opens nor approaches but for that, stands still.
-    """
-    joints = Joints(at.left, at.right, 1.0 / at.mass, at.compliance)
-    change, size = np.zeros(at.v.size), np.zeros(at.v.size)
-    rounding = np.zeros(at.gap.size)
-    for a in range(rows.size):
-        for b in range(at.v.size if rows[a] >= 0 else 0):
-            own = answer(joints, b, at.left[rows[a]], at.right[rows[a]]) * x[a]
-            change[b] += own
-            size[b] += abs(own)
-    for b in range(change.size):
-        # Both ends of an edge that strike alike turn no deck, to the last bit.
-        change[b] = change[b] if abs(change[b]) > CANCELLED * size[b] else 0.0
-        at.v[b] += change[b]
-    for j in range(at.gap.size):
-        terms = abs(at.gap_rate[j])
-        at.gap_rate[j] += difference(change, at.left[j], at.right[j])
-        for end in (at.left[j], at.right[j]):
-            terms += abs(change[end]) if end >= 0 else 0.0
-        rounding[j] = CANCELLED * terms
-        if shut[j] and abs(at.gap_rate[j]) <= rounding[j]:
-            at.gap_rate[j] = 0.0
-    return rounding
 
 
 @scalar_kernel
@@ -331,7 +308,7 @@ def _solve(
     x, w, state = np.zeros(2 * k), np.zeros(2 * k), np.full(k, STICK)
     q, level = np.zeros(2 * k), np.zeros(2 * k)
     for highest in (1, ORDER):
-        found, noise = _free(highest, touching)
+        found, noise = free_accelerations(highest, touching)
         for order in range(highest):
             moves = False
             for a in range(2 * k):
@@ -395,17 +372,6 @@ def _solve_some(members: Ints, problem: Rubbing, x: Floats, w: Floats, state: In
             w[a] += problem.G[a, b] * x[b]
     w[rows] = rate
     return outcome
-
-
-@kernel
-def _free(highest: int, touching: Touching) -> tuple[Floats, Floats]:
-    """Taylor coefficients of accelerations without contacts, (highest, N), and their noise."""
-    none = np.zeros(touching.undecided.size, np.bool_)
-    system, y, _ = system_of(touching, none)
-    found = accelerations(y, system, highest, touching)
-    rough, nothing = round_as_the_scene(system, touching.forcing), np.zeros(touching.at.mass.size)
-    noise = noise_of(found, nothing, rough, y, system, touching.forcing, touching.at)
-    return found, noise
 
 
 @kernel

@@ -258,6 +258,17 @@ def accelerations(y: Floats, system: Reduced, highest: int, touching: Touching) 
 
 
 @kernel
+def free_accelerations(highest: int, touching: Touching) -> tuple[Floats, Floats]:
+    """The same of all coordinates without contacts, (highest, N), and their noise."""
+    none = np.zeros(touching.undecided.size, np.bool_)
+    system, y, _ = system_of(touching, none)
+    found = accelerations(y, system, highest, touching)
+    rough, nothing = round_as_the_scene(system, touching.forcing), np.zeros(touching.at.mass.size)
+    noise = noise_of(found, nothing, rough, y, system, touching.forcing, touching.at)
+    return found, noise
+
+
+@kernel
 def _left_over(now: Pressed, acceleration: Floats, touching: Touching) -> Floats:
     """What is left of the accelerations (C,) of released contacts.
 

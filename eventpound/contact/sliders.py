@@ -31,12 +31,10 @@ from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import (
     ORDER,
     Touching,
-    accelerations,
+    free_accelerations,
     rest_contacts,
-    system_of,
     touching_of,
 )
-from eventpound.contact.rounding import noise_of, round_as_the_scene
 from eventpound.contact.state import Instant, between_now
 from eventpound.mechanics.clusters import ContactEnds
 from eventpound.mechanics.followers import is_support, rows_of
@@ -169,14 +167,10 @@ def _accelerations(touching: Touching, bodies: int) -> tuple[Floats, Floats]:
     Behind the first row stand the Taylor coefficients of those of supports, where not all vanish:
     they may be less than the rounding of a sum, and still tell who gives way.
     """
-    mass, none = touching.at.mass, np.zeros(touching.undecided.size, np.bool_)
-    system, y, _ = system_of(touching, none)
-    supports = 0
+    mass, supports = touching.at.mass, 0
     for b in range(mass.size):
         supports += is_support(b, mass)
-    found = accelerations(y, system, ORDER if supports > 0 else 1, touching)
-    rough = round_as_the_scene(system, touching.forcing)
-    noise = noise_of(found, np.zeros(mass.size), rough, y, system, touching.forcing, touching.at)
+    found, noise = free_accelerations(ORDER if supports > 0 else 1, touching)
     rows, count = np.zeros((1 + found.shape[0], bodies)), 1
     rows[0] = found[0, :bodies]
     for k in range(found.shape[0]):

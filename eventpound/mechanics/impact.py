@@ -58,13 +58,34 @@ def impact_law(
     q = (1.0 + restitution[members]) * before
     noise = QUIET * np.max(-before)
     x, w, solved = solve_contacts(of_members(joints, members), q, noise)
+    impulse[members] = x
+    rounding = take_impulses(joints, mass, members, x, closed, gap_rate, v)
+    opening = np.where(w > rounding[members], w, 0.0)
+    lost = rates_after(members, before, restitution, noise, impulse, opening, gap_rate)
+    return impulse, involved, lost, solved
+
+
+@kernel
+def take_impulses(
+    joints: Joints,
+    mass: Floats,
+    members: Ints,
+    x: Floats,
+    closed: Bools,
+    gap_rate: Floats,
+    v: Floats,
+) -> Floats:
+    """Change velocities (N,) and rates of gaps (K,) by impulses x (k,) of some of the joints.
+
+    Returned is the rounding of these rates. What is closed, and neither opens nor approaches but
+    for that, stands still.
+    """
     # Changes of velocities stand by themselves. Rates of gaps are variables of their own and take
     # these alone: so one far below the rounding of velocities keeps its digits.
     change, left, right = np.zeros(v.size), joints.left, joints.right
     size = np.zeros(v.size if joints.compliance.size > 0 else 0)
     for i in range(members.size):
         j = members[i]
-        impulse[j] = x[i]
         if joints.compliance.size > 0:
             for b in range(v.size):
                 own = answer(joints, b, left[j], right[j]) * x[i]
@@ -88,12 +109,9 @@ def impact_law(
                 gap_rate[j] += sign * change[end]
                 terms += abs(change[end])
         rounding[j] = CANCELLED * terms
-        # A closed contact that neither opens nor approaches but for rounding stands still.
         if closed[j] and abs(gap_rate[j]) <= rounding[j]:
             gap_rate[j] = 0.0
-    opening = np.where(w > rounding[members], w, 0.0)
-    lost = rates_after(members, before, restitution, noise, impulse, opening, gap_rate)
-    return impulse, involved, lost, solved
+    return rounding
 
 
 @scalar_kernel
