@@ -99,8 +99,8 @@ def _check_study(options: Options, case: StudyCase) -> int:
     print(f"axes      {', '.join(study.columns)}")
     print(f"keeps     {', '.join(study.quantities)}")
     scenes = [base.case.scene for base in study.bases]
-    counts = {number_of_terms(s) for s in scenes if s.bodies and s.motion.scales() is not None}
-    if counts:
+    numbers_of = (number_of_terms(scene) for scene in scenes if scene.bodies)
+    if counts := {count for count in numbers_of if count is not None}:
         numbers = " or ".join(map(str, sorted(counts)))
         print(f"Pi-terms  dimensionless numbers, {numbers} with the peak's")
     print(f"solver    {study.solver}, rtol {study.rtol:g}")

@@ -201,6 +201,7 @@ def _keep_partial(case: Case, error: BaseException, response: Response | None, o
 
 def _summary(response: Response) -> Iterator[str]:
     """Contacts and what they need, peaks and cost of a run, to be read."""
+    from eventpound.quantities.decks import rotation_of, translates
     from eventpound.results.tables import aligned
 
     recording, scene = response.recording, response.scene
@@ -214,12 +215,16 @@ def _summary(response: Response) -> Iterator[str]:
         yield f"impacts   {counted}{rested}"
     yield from _demands(response)
     x = recording.displacement
-    columns = (x.maximum, x.time_of_maximum, x.minimum, x.time_of_minimum)
-    rows = (
-        (body.name, f"{high:.6e}", f"{at:.4f}", f"{low:.6e}", f"{then:.4f}")
-        for body, high, at, low, then in zip(scene.bodies, *columns, strict=True)
-    )
-    yield aligned(("body", "max (m)", "at (s)", "min (m)", "at (s)"), rows, {0})
+    moved = [(b.name, x.at(i)) for i, b in enumerate(scene.bodies) if translates(scene, i)]
+    turned = [(d.name, rotation_of(response.runs, i).at((0, 0))) for i, d in enumerate(scene.decks)]
+    for kind, unit, found in (("body", "m", moved), ("deck", "rad", turned)):
+        rows = [
+            (name, f"{e.maximum:.6e}", f"{e.time_of_maximum:.4f}", f"{e.minimum:.6e}",
+             f"{e.time_of_minimum:.4f}")
+            for name, e in found
+        ]  # fmt: skip
+        if rows:
+            yield aligned((kind, f"max ({unit})", "at (s)", f"min ({unit})", "at (s)"), rows, {0})
     for shock in response.shock_rows:
         told = shock["failed"]
         if not told:

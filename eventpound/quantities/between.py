@@ -25,6 +25,7 @@ from eventpound.quantities.owners import owners_of
 from eventpound.quantities.plan_signals import signals_in_plan
 from eventpound.quantities.rows import Rerun, close_times, first_step, settled, warn_unsettled
 from eventpound.scene.ends import Joining, opening
+from eventpound.scene.plan_point import TURN
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
 from eventpound.scene.structures import structure_names, structures_of
@@ -139,7 +140,11 @@ def _around(t: Floats, places: Ints, way: int) -> Floats:
 def signals_of(scene: Scene, run: Recording) -> dict[str, Floats]:
     """Values at every row of what no solver locates (SI), by names."""
     h = run.history
-    found = {f"velocity.{body.name}.*": h.v[:, i] for i, body in enumerate(scene.bodies)}
+    found = {
+        f"velocity.{body.name}.*": h.v[:, i]
+        for i, body in enumerate(scene.bodies)
+        if body.direction != TURN
+    }
     for i, spring in enumerate(scene.springs):
         if isinstance(spring.law, Hysteretic):
             found[f"springs.{spring.name}.*_force"] = h.force[:, i]
@@ -149,11 +154,12 @@ def signals_of(scene: Scene, run: Recording) -> dict[str, Floats]:
     for seat in scene.seats:
         left, right = seat.between
         found[f"seats.{seat.name}.*_opening"] = u[right] - u[left]
-    for name, group in zip(structure_names(scene), structures_of(scene), strict=True):
-        shear = link_force_on(ground, scene, h.force, rate, group)
-        found[f"structures.{name}.*_base_shear"] = shear
     if scene.in_plan:
         found |= dict(signals_in_plan(scene, h, rate))
+    else:
+        for name, group in zip(structure_names(scene), structures_of(scene), strict=True):
+            shear = link_force_on(ground, scene, h.force, rate, group)
+            found[f"structures.{name}.*_base_shear"] = shear
     for support in scene.supports:
         shear = link_force_on({support.name}, scene, h.force, rate)
         found[f"supports.{support.name}.*_shear"] = shear

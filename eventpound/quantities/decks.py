@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.runs import Runs
+from eventpound.quantities.values import stands_apart
 from eventpound.scene.plan_point import TURN, coordinate_of
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Extremes
@@ -18,6 +19,21 @@ def on_a_line(scene: Scene, _i: int) -> bool:
 def in_plan(scene: Scene, _i: int) -> bool:
     """Whether something does."""
     return scene.in_plan
+
+
+def translates(scene: Scene, i: int) -> bool:
+    """Whether what body i does is no turn of a deck: of that `rotation_of` tells."""
+    return scene.bodies[i].direction != TURN
+
+
+def translates_in_plan(scene: Scene, i: int) -> bool:
+    """Whether it is no turn, in a scene in plan."""
+    return scene.in_plan and translates(scene, i)
+
+
+def stands_apart_in_plan(scene: Scene, i: int) -> bool:
+    """Whether structure i has a base shear of its own, across too."""
+    return scene.in_plan and stands_apart(scene, i)
 
 
 def rotation_of(many: Runs, i: int) -> Extremes:

@@ -26,12 +26,12 @@ LISTED: tuple[Quantity, ...] = (
             "displacement", TakenFrom.EXTREMES, symbol="$u_{max}$"),
     Quantity("residual.<body>", "residual displacement", D.LENGTH,
              "Displacement when the run ends: what is left if the motion has died down by then.",
-             column("u")),
+             column("u"), only=decks.translates),
     *six_of("acceleration.<body>.*", "absolute acceleration", D.ACCELERATION,
             " between impacts (in an impact it is not finite)",
             "acceleration", TakenFrom.ACCELERATIONS, decks.on_a_line),
     *six_of("acceleration.<body>.*", "absolute acceleration", D.ACCELERATION,
-            " between impacts, in plan", only=decks.in_plan),
+            " between impacts, in plan", only=decks.translates_in_plan),
     *six_of("decks.<deck>.*_rotation", "rotation", D.ANGLE,
             " of a deck in plan, counter-clockwise", decks.rotation_of, TakenFrom.EXTREMES),
     Quantity("decks.<deck>.residual_rotation", "residual rotation", D.ANGLE,
@@ -82,10 +82,13 @@ LISTED: tuple[Quantity, ...] = (
     Quantity("supports.<support>.work", "work", D.ENERGY,
              "Work of a support on what stands on it and touches it, impulses included.",
              v.work_of_support, TakenFrom.ENERGY),
-    *six_of("velocity.<body>.*", "velocity", D.VELOCITY, " relative to the ground"),
+    *six_of("velocity.<body>.*", "velocity", D.VELOCITY, " relative to the ground",
+            only=decks.translates),
     *six_of("structures.<structure>.*_base_shear", "base shear", D.FORCE,
             " of one of several structures (bodies joined by springs or dashpots), by the name of "
-            "its building or frame, else of its first body", only=v.stands_apart),
+            "its building, frame or deck, else of its first body", only=v.stands_apart),
+    *six_of("structures.<structure>.*_base_shear_across", "base shear across", D.FORCE,
+            " of one of several structures in plan", only=decks.stands_apart_in_plan),
     Quantity(_SPRING + "ductility", "ductility", D.NUMBER,
              "Largest elongation of either sign over the yield displacement (Bouc-Wen springs).",
              v.ductility, only=v.law_is(BoucWen)),
@@ -230,11 +233,11 @@ LISTED: tuple[Quantity, ...] = (
           ("friction", "that friction takes where bodies touch, between impacts"))),
     *(Quantity("pi_um" + owner, "$u_{max}/L_e$", D.NUMBER,
                f"Largest displacement of either sign over L_e (eq. 8), {whose}.", v.peak_term,
-               tabled=False)
+               only=decks.translates, tabled=False)
       for owner, whose in _EACH),
     *(Quantity("amplification" + owner, "peak with contact / without", D.NUMBER,
                f"Peak displacement over that of the same scene without contact, {whose}.",
-               v.amplification, TakenFrom.FREE, tabled=False)
+               v.amplification, TakenFrom.FREE, decks.translates, tabled=False)
       for owner, whose in _EACH),
     Quantity("demand_over_capacity", "demand over capacity", D.NUMBER,
              "The largest demand over its capacity, of all that have one in the case: above 1 one "

@@ -9,9 +9,10 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.deck import CORNERS, Deck
 from eventpound.scene.ends import Joining, opening
-from eventpound.scene.plan_point import ACROSS, ALONG, PlanPoint
+from eventpound.scene.plan_point import ACROSS, ALONG, TURN, PlanPoint
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
+from eventpound.scene.structures import structure_names, structures_of
 from eventpound.solvers.base import History
 
 WAYS = {"along": (1.0, 0.0), "across": (0.0, 1.0)}
@@ -62,14 +63,20 @@ def signals_in_plan(
         Velocities of all ends (m/s).
     """
     for b, body in enumerate(scene.bodies):
-        yield f"acceleration.{body.name}.*", h.a[:, b]
+        if body.direction != TURN:
+            yield f"acceleration.{body.name}.*", h.a[:, b]
     pulls = [h.force[:, i] for i in range(len(scene.springs))]
     pulls += [np.asarray(d.coefficient * opening(d, 0.0, rate)) for d in scene.dashpots]
-    for name, direction in (("base_shear", ALONG), ("base_shear_across", ACROSS)):
-        total = np.zeros(h.t.size)
-        for link, pull in zip((*scene.springs, *scene.dashpots), pulls, strict=True):
-            total += part_on_ground(link, direction, scene) * pull
-        yield f"{name}.*", total
+    structures = zip(structure_names(scene), structures_of(scene), strict=True)
+    groups: list[tuple[str, set[str] | None]] = [("base_shear{}.*", None)]
+    groups += [(f"structures.{name}.*_base_shear{{}}", {GROUND, *own}) for name, own in structures]
+    for name, among in groups:
+        for word, direction in (("", ALONG), ("_across", ACROSS)):
+            total = np.zeros(h.t.size)
+            for link, pull in zip((*scene.springs, *scene.dashpots), pulls, strict=True):
+                if among is None or among.issuperset(link.ends):
+                    total += part_on_ground(link, direction, scene) * pull
+            yield name.format(word), total
     for corner, deck, at in corners_of(scene):
         for word, direction_of in WAYS.items():
             signal = displacement_at(deck.toward(at, direction_of), scene, h.u)

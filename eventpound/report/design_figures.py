@@ -18,6 +18,8 @@ from eventpound.report.markers import draw_circles, draw_shocks
 from eventpound.report.view import View
 from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact
+from eventpound.scene.ends import End, label_of, weights_of
+from eventpound.scene.plan_point import PlanPoint
 from eventpound.scene.scene import Scene
 from eventpound.study.demands import NEEDED
 from eventpound.study.design import FRACTILES
@@ -129,7 +131,7 @@ def governing_figure(view: View, contact: Contact | None, body: str, trade: Trad
     trade : Trade
         Units.
     """
-    ends = [body] if contact is None else [end for end in contact.ends if end in view.bodies]
+    ends: list[End] = [body] if contact is None else _drawn_ends(contact, view)
     view = view.within(_strong(view, ends))
     figure = style.new_figure(_WIDE, 3.6 if contact else 2.6)
     heights = [1.0, 1.6, 1.2] if contact else [1.0, 1.6]
@@ -143,7 +145,9 @@ def governing_figure(view: View, contact: Contact | None, body: str, trade: Trad
     unit, size = trade.unit(Dimension.LENGTH.unit)
     for name, color in zip(ends, style.colors(len(ends)), strict=True):
         line = view.displacement(name) / size
-        motion.plot(view.t, line, color=color, label=style.literal(name))
+        where = " normal to the edge" * isinstance(name, PlanPoint)
+        label = style.literal(f"{label_of(name)}{where}")
+        motion.plot(view.t, line, color=color, label=label)
         if contact is not None:
             draw_circles(motion, view, contact.name, (view.t, line), color)
     motion.set_ylabel(f"displacement ({unit})")
@@ -157,6 +161,15 @@ def governing_figure(view: View, contact: Contact | None, body: str, trade: Trad
     return figure
 
 
+def _drawn_ends(contact: Contact, view: View) -> list[End]:
+    """Ends of a contact that move: bodies, or places of decks in its direction."""
+    found = list[End]()
+    for end in contact.sides:
+        names: list[End] = [name for name, _ in weights_of(end) if name in view.bodies]
+        found += [end] if isinstance(end, PlanPoint) else names
+    return found
+
+
 def _draw_gap(axes: Axes, view: View, contact: Contact, trade: Trade) -> None:
     unit, size = trade.unit(Dimension.LENGTH.unit)
     gap, name = view.column(f"gap.{contact.name}") / size, style.literal(contact.name)
@@ -167,9 +180,9 @@ def _draw_gap(axes: Axes, view: View, contact: Contact, trade: Trade) -> None:
     axes.legend(**_ABOVE)
 
 
-def _strong(view: View, bodies: Sequence[str]) -> tuple[float, float]:
+def _strong(view: View, ends: Sequence[End]) -> tuple[float, float]:
     """The stretch of time in which what is drawn moves by more than a twentieth of its peak (s)."""
-    u = np.max([np.abs(view.displacement(name)) for name in bodies], axis=0)
+    u = np.max([np.abs(view.displacement(name)) for name in ends], axis=0)
     moving = np.flatnonzero(u > 0.05 * u.max(initial=0.0))
     if not moving.size:
         return float(view.t[0]), float(view.t[-1])

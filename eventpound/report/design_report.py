@@ -138,7 +138,8 @@ def governing_record(scene: Scene, design: pd.DataFrame) -> str:
     if scene.contacts:
         worst = scene.contacts[lacking_contacts(scene, design)[0]]
         return str(rows.loc[NEEDED.replace("<contact>", worst.name), "under"])
-    peaks = rows.loc[[f"peaks.{body.name}.abs_max" for body in scene.bodies]]
+    moved = (f"peaks.{body.name}.abs_max" for body in scene.bodies)
+    peaks = rows.loc[[name for name in moved if name in rows.index]]
     return str(peaks.loc[peaks["largest"].idxmax(), "under"])
 
 

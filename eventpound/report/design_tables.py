@@ -14,6 +14,7 @@ from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact
 from eventpound.scene.ends import weights_of
 from eventpound.scene.joints import joints_of
+from eventpound.scene.plan_point import PlanPoint
 from eventpound.scene.scene import Scene
 from eventpound.study.demands import NEEDED
 from eventpound.study.design import FRACTILES
@@ -163,8 +164,10 @@ def _under(row: _Row, names: Mapping[str, str]) -> str:
 
 def contact_words(contact: Contact, rows: pd.DataFrame, trade: Trade) -> str:
     """A contact, its ends and gap, and how often it is struck, by the table of its numbers."""
-    ends = (contact.left, contact.right)
-    names = " | ".join(" + ".join(name for name, _ in weights_of(end)) for end in ends)
+    names = " | ".join(
+        end.label if isinstance(end, PlanPoint) else " + ".join(name for name, _ in weights_of(end))
+        for end in contact.sides
+    )
     text = f"{contact.name}: {names}, gap {trade.words(contact.gap, 'm')}"
     rows = rows[(rows["kind"] == _CONTACTS) & (rows["of"] == contact.name)]
     if rows.empty:

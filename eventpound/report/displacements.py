@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,10 +18,12 @@ from matplotlib.lines import Line2D
 from eventpound.report import style
 from eventpound.report.markers import draw_circles, draw_rests, draw_shocks, event_legend
 from eventpound.report.towers import storeys_of
-from eventpound.report.view import Beside, View, view_of
+from eventpound.report.view import Beside, Traces, View, traces_of, view_of
 from eventpound.results import StoredResults
 from eventpound.results.trade import Unit
 from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.ends import End
+from eventpound.scene.plan_point import PlanPoint
 from eventpound.scene.spring import GROUND
 
 _ROWS_WITH_NAMES = 40
@@ -43,7 +47,7 @@ def draw_gaps(axes: Axes, view: View, marked: bool) -> None:
     style.zero_lines(axes)
     for contact in view.contacts:
         name = contact.name
-        label = f"{name}: {contact.left} | {contact.right}"
+        label = f"{name}: {' | '.join(map(_end_words, contact.sides))}"
         axes.plot(view.t, gaps[name] / unit.size, color=shades[name], label=label, zorder=3)
     handles = axes.get_lines()[1:] if len(gaps) <= len(style.PALETTE) else []
     if marked:
@@ -52,6 +56,11 @@ def draw_gaps(axes: Axes, view: View, marked: bool) -> None:
     axes.set_ylabel(f"gap ({unit.name})")
     show_zero(axes)
     style.legend_beside(axes, [*handles, *(event_legend(view, [*gaps]) if marked else [])])
+
+
+def _end_words(end: End) -> str:
+    """An end, of a place of a deck the deck."""
+    return end.label if isinstance(end, PlanPoint) else str(end)
 
 
 def draw_contact_rows(axes: Axes, view: View) -> None:
@@ -102,6 +111,7 @@ _FAMILIES = ("Blues", "Oranges", "Greens", "Purples", "Greys")
 _INK = "#444444"
 _PALE: Any = {"linewidth": 0.7, "alpha": 0.45}
 _LEVEL: Any = style.DASHED | {"linewidth": 1.0}
+_MRAD = Unit("mrad", 1e-3)
 
 
 @style.styled()
@@ -109,7 +119,8 @@ def displacement_figure(results: StoredResults | View, beside: Beside | None = N
     """Draw the motion of a run.
 
     Panels share the time: ground acceleration (where there is one), the
-    displacements of the bodies, the drifts of storeys that stand on one another
+    displacements of the bodies (of decks in plan those along, those across, and rotations),
+    the drifts of storeys that stand on one another
     and the gaps of the contacts (where there are some), and with many contacts
     a row of events for each.
 
@@ -123,9 +134,10 @@ def displacement_figure(results: StoredResults | View, beside: Beside | None = N
     view = view_of(results)
     contacts = len(view.contacts)
     many = contacts > _CONTACTS_IN_ONE_PANEL
+    traces = {each.name: each for each in traces_of(view)}
     parts = {
         "ground": (style.largest_size(view.column("a_g")) > 0.0, 1.3),
-        "displacements": (True, 3.0),
+        **dict.fromkeys(traces, (True, 3.0 if len(traces) == 1 else 2.0)),
         "drifts": (bool(storeys_of(view)), 1.8),
         "gaps": (contacts > 0, 2.2),
         "events": (many, 0.5 + 0.2 * min(contacts, 40)),
@@ -134,9 +146,9 @@ def displacement_figure(results: StoredResults | View, beside: Beside | None = N
     figure = style.new_figure(9.5, 0.8 + sum(heights.values()), _title(view))
     ratios = list(heights.values())
     panels = figure.subplot_mosaic([[name] for name in heights], height_ratios=ratios, sharex=True)
-    draw = {
+    draw: dict[str, Callable[[Axes, View], None]] = {
         "ground": _draw_ground,
-        "displacements": lambda axes, view: _draw_displacements(axes, view, beside),
+        **{n: partial(_draw_displacements, own=own, beside=beside) for n, own in traces.items()},
         "drifts": _draw_drifts,
         "gaps": lambda axes, view: draw_gaps(axes, view, marked=not many),
         "events": draw_contact_rows,
@@ -172,18 +184,19 @@ def _draw_ground(axes: Axes, view: View) -> None:
     axes.set_ylabel(f"ground\nacceleration ({unit.name})")
 
 
-def _draw_displacements(axes: Axes, view: View, beside: Beside | None) -> None:
-    """Draw u(t) of every body with its barriers and the events of its contacts."""
-    u = {name: view.displacement(name) for name in view.bodies}
+def _draw_displacements(axes: Axes, view: View, own: Traces, beside: Beside | None) -> None:
+    """Draw u(t) of bodies with their barriers and the events of their contacts."""
+    u = {name: values for name, (_, values) in own.curves.items()}
     largest = style.largest_size(*u.values())
-    unit = view.length_unit(largest)
+    unit = _MRAD if own.turned else view.length_unit(largest)
     shades = shades_of(view)
     style.zero_lines(axes)
-    for name, values in u.items():
-        axes.plot(view.t, values / unit.size, color=shades[name], label=name, zorder=3)
+    for name, (label, values) in own.curves.items():
+        axes.plot(view.t, values / unit.size, color=shades[name], label=label, zorder=3)
     if beside is not None:
-        for name in [name for name in u if name in beside.view.bodies]:
-            other = beside.view.displacement(name) / unit.size
+        others = {k: v for each in traces_of(beside.view) for k, v in each.curves.items()}
+        for name in [name for name in u if name in others]:
+            other = others[name][1] / unit.size
             axes.plot(beside.view.t, other, color=shades[name], zorder=2, **_PALE)
     barriers: list[str] = []
     for contact in view.contacts:
@@ -194,8 +207,9 @@ def _draw_displacements(axes: Axes, view: View, beside: Beside | None) -> None:
         if len(ends) == 1 and not contact.at_point and contact.gap <= _BARRIER_IN_SIGHT * largest:
             _draw_barrier(axes, contact, view, unit, shades[ends[0]])
             barriers.append(str(contact.left if contact.right in u else contact.right))
-    axes.set_ylabel(f"displacement ({unit.name})")
-    _name_bodies(axes, view.bodies, barriers, "" if beside is None else beside.name)
+    axes.set_ylabel(f"{own.name} ({unit.name})")
+    called = [name for name, _ in own.curves.values()]
+    _name_bodies(axes, called, barriers, "" if beside is None else beside.name)
 
 
 def _draw_drifts(axes: Axes, view: View) -> None:
@@ -245,6 +259,12 @@ def _name_bodies(axes: Axes, bodies: list[str], barriers: list[str], beside: str
 
 def shades_of(view: View) -> dict[str, style.Color]:
     """Colour of each body: of the palette, or, of many, a family of shades for each structure."""
+    if view.scene is not None and view.scene.decks:
+        # What moves along, across and turns is one deck or pier, in one colour.
+        owners = [name.rpartition(".")[0] or name for name in view.bodies]
+        named = list(dict.fromkeys(owners))
+        shades = dict(zip(named, style.colors(len(named)), strict=True))
+        return {b: shades[owner] for b, owner in zip(view.bodies, owners, strict=True)}
     bodies = view.bodies
     groups = view.structures
     if len(bodies) <= len(style.PALETTE) or not 1 < len(groups) <= len(_FAMILIES):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.results.tables import Cells, cell_text, headed
 from eventpound.results.trade import Trade
+from eventpound.scene.plan_point import TURN
 from eventpound.study.records import FAILED, SA, sa_of_suite
 from eventpound.units import Dimension
 
@@ -66,6 +67,7 @@ def all_records(case: Case, runs: pd.DataFrame, trade: Trade) -> Cells:
     peaks = [
         (f"peaks.{body.name}.abs_max", f"|u| of {body.name}", Dimension.LENGTH.unit)
         for body in case.scene.bodies[:_MOST_BODIES]
+        if body.direction != TURN
     ]
     length = "L_e", "L_e", Dimension.LENGTH.unit
     heads, rows = _sizes_of(

@@ -19,6 +19,8 @@ from eventpound.report.run_figures import figures
 from eventpound.results import StoredResults
 from eventpound.results.jsontext import read_json
 from eventpound.results.tables import Cells, cell_text, headed
+from eventpound.scene.plan_point import TURN
+from eventpound.scene.scene import Scene
 from eventpound.study.response_spectrum import response_spectrum
 
 _SAME = 1e-2
@@ -27,6 +29,7 @@ _CAPTIONS = {
     "displacements.png": "Ground acceleration, displacements and gaps. Open circles are impacts, "
     "filled ones detachments, dashed lines barriers.",
     "loops.png": "Force against elongation of every nonlinear spring.",
+    "plan.png": "The bridge from above when a joint is open the most.",
     "profiles.png": "Extremes of displacements and storey drifts over the height.",
 }
 _MOST_EVENTS = 200
@@ -63,26 +66,30 @@ def run_sections(
     drawn = figures(results, pi=case.pi is not None)
     certificate = _certificate(directory, results)
     return [
-        ("Summary", [_summary(results, certificate)]),
+        ("Summary", [_summary(case.scene, results, certificate)]),
         ("Model", html.model_of(case)),
         ("Ground motion", _motion(case)),
         ("Response", [html.figure_of(figure, _CAPTIONS[name]) for name, figure in drawn.items()]),
         ("Contacts and events", _events(results)),
-        ("Quantities", _quantities(results.summary)),
+        ("Quantities", _quantities(case.scene, results.summary)),
         ("Accuracy", _accuracy(results, certificate, comparison / "work-precision.png")),
         ("Origin", [html.origin_of(results.manifest)]),
     ]
 
 
-def _summary(results: StoredResults, certificate: str) -> html.Part:
+def _summary(scene: Scene, results: StoredResults, certificate: str) -> html.Part:
     """What an engineer wants first: how it ended, the largest numbers, how sure they are."""
     summary = results.summary
-    body, peak = max(summary["peaks"].items(), key=lambda item: item[1]["abs_max"])
+    moved = _moved(scene, summary["peaks"])
+    body, peak = max(moved.items(), key=lambda item: item[1]["abs_max"])
+    turns = summary.get("decks", {}).items()
+    rotations = (f"{deck['abs_max_rotation']:.4g} rad of {name}" for name, deck in turns)
     estimate = summary["error_estimate"]
     drift = "{max_drift:.6g} m, {max_drift_ratio:.4g} of the height of a storey"
     lines = {
         "run": f"{summary['solver']}: {summary['message']}, t = {summary['t_final']:.6g} s",
         "largest": f"|u| = {peak['abs_max']:.6g} m of {body} at {peak['t_abs_max']:.5g} s",
+        "rotation": ", ".join(rotations),
         "drift": drift.format_map(summary) if "max_drift" in summary else "",
         "impacts": str(summary["impacts"]) if summary["contacts"] else "",
         "certificate": certificate,
@@ -91,18 +98,24 @@ def _summary(results: StoredResults, certificate: str) -> html.Part:
     return html.list_of({word: text for word, text in lines.items() if text})
 
 
+def _moved(scene: Scene, peaks: Mapping[str, Any]) -> dict[str, Any]:
+    """Peaks of what moves along a line; the table of decks tells how far they turn."""
+    turning = {body.name for body in scene.bodies if body.direction == TURN}
+    return {name: peak for name, peak in peaks.items() if name not in turning}
+
+
 def _motion(case: Case) -> Iterator[html.Part]:
-    motion = case.scene.motion
-    if not moves(motion):
-        return
-    try:
-        spectrum = response_spectrum(motion, DAMPING)
-    except InputError:
-        # A motion without end has none.
-        return
-    yield html.figure_of(
-        spectrum_figure(spectrum, DAMPING), "Response spectrum of the ground motion."
-    )
+    components = (case.scene.motion, ""), (case.scene.across, ", of the second component")
+    for motion, which in components:
+        if not moves(motion):
+            continue
+        try:
+            spectrum = response_spectrum(motion, DAMPING)
+        except InputError:
+            # A motion without end has none.
+            continue
+        caption = f"Response spectrum of the ground motion{which}."
+        yield html.figure_of(spectrum_figure(spectrum, DAMPING), caption)
 
 
 def _events(results: StoredResults) -> Iterator[html.Part]:
@@ -117,12 +130,14 @@ def _events(results: StoredResults) -> Iterator[html.Part]:
     yield html.folded(f"{listed} events", html.table_of(table))
 
 
-def _quantities(summary: Mapping[str, Any]) -> Iterator[html.Part]:
+def _quantities(scene: Scene, summary: Mapping[str, Any]) -> Iterator[html.Part]:
     """Every table of the summary that has a row a body, spring or contact, and single numbers."""
     for kind in _KINDS:
         if rows := summary.get(kind):
+            rows = _moved(scene, rows) if kind == "peaks" else rows
             yield html.table_of(_by_owner(kind, rows))
     single = {"residual": summary["residual"], "base shear": summary.get("base_shear", {})}
+    single["base shear across"] = summary.get("base_shear_across", {})
     single |= {key: summary[key] for key in ("amplification", "pi") if key in summary}
     if energy := dict(summary.get("energy") or {}):
         works = energy.pop("supports", {})

@@ -18,6 +18,7 @@ from eventpound.results.trade import Unit, unit_by_size
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.ends import End, Joining, direction_of, point_of
+from eventpound.scene.plan_point import ACROSS, ALONG, TURN, coordinate_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, LawName
 from eventpound.scene.structures import joined_groups
@@ -268,6 +269,45 @@ class Beside:
 
     view: View
     name: str
+
+
+@dataclass(frozen=True)
+class Traces:
+    """Displacements that share an axis.
+
+    Parameters
+    ----------
+    name : str
+        What the axis calls them.
+    curves : dict
+        Of each body the name and the values, lengths (m) or rotations (rad), shape (n,).
+    turned : bool
+        Whether they are rotations.
+    """
+
+    name: str
+    curves: dict[str, tuple[str, Floats]]
+    turned: bool = False
+
+
+def traces_of(view: View) -> list[Traces]:
+    """Displacements of all bodies; with decks in plan those along, those across, and rotations."""
+    scene = view.scene
+    if scene is None or not scene.decks:
+        return [Traces("displacement", {b: (b, view.displacement(b)) for b in view.bodies})]
+    radius = {coordinate_of(deck.name, TURN): deck.radius for deck in scene.decks}
+    found = []
+    for way, name in ((ALONG, "along"), (ACROSS, "across"), (TURN, "rotation")):
+        curves = {
+            body.name: (
+                body.name.removesuffix(f".{way}"),
+                view.displacement(body.name) / radius.get(body.name, 1.0),
+            )
+            for body in scene.bodies
+            if body.direction == way
+        }
+        found.append(Traces(name, curves, way == TURN))
+    return found
 
 
 def view_of(source: StoredResults | View) -> View:

@@ -17,7 +17,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.report.html import document
 from eventpound.report.loops import nonlinear_springs
 from eventpound.report.style import PALETTE
-from eventpound.report.view import View
+from eventpound.report.view import View, traces_of
 from eventpound.results.jsontext import canonical
 from eventpound.results.trade import Trade
 from eventpound.units import Dimension
@@ -102,16 +102,17 @@ def _short(values: Floats) -> list[float | None]:
 def _panels(view: View, kept: Ints, trade: Trade) -> Iterator[dict[str, Any]]:
     """The ground, the bodies and the gaps over time."""
     contacts = [contact.name for contact in view.contacts]
-    for name, dimension, columns in (
-        ("ground", Dimension.ACCELERATION, {"a_g": "a_g"}),
-        ("displacement", Dimension.LENGTH, {body: f"u.{body}" for body in view.bodies}),
-        ("gap", Dimension.LENGTH, {contact: f"gap.{contact}" for contact in contacts}),
+    traces = (
+        (each.name, Dimension.ANGLE if each.turned else Dimension.LENGTH, each.curves.values())
+        for each in traces_of(view)
+    )
+    for name, dimension, curves in (
+        ("ground", Dimension.ACCELERATION, [("a_g", view.column("a_g"))]),
+        *traces,
+        ("gap", Dimension.LENGTH, [(name, view.column(f"gap.{name}")) for name in contacts]),
     ):
         unit, size = trade.unit(dimension.unit)
-        lines = [
-            {"name": own, "y": _short(view.column(column)[kept] / size)}
-            for own, column in columns.items()
-        ]
+        lines = [{"name": own, "y": _short(values[kept] / size)} for own, values in curves]
         if lines:
             yield {"name": name, "unit": unit, "lines": lines, "marks": name == "gap"}
 

@@ -177,15 +177,15 @@ def _modes(structure: Mapping[str, Any]) -> Cells:
         if later:
             row |= {f"{key}.later": value for key, value in later[number - 1].items()}
         rows.append(row)
-    columns: list[_Column] = [
-        ("number", "mode of " + _some(structure["bodies"]), ""),
-        ("period", "T initial", "s"),
-        ("share", "mass", "%"),
-        ("damping", "damping", "%"),
-        ("period.later", "T post-yield", "s"),
-        ("share.later", "mass", "%"),
-        ("damping.later", "damping", "%"),
-    ]
+    along = "mass along" if "share_across" in initial[0] else "mass"
+    columns: list[_Column] = [("number", "mode of " + _some(structure["bodies"]), "")]
+    for suffix, head in (("", "T initial"), (".later", "T post-yield")):
+        columns += [
+            (f"period{suffix}", head, "s"),
+            (f"share{suffix}", along, "%"),
+            (f"share_across{suffix}", "mass across", "%"),
+            (f"damping{suffix}", "damping", "%"),
+        ]
     cells = _cells(rows, columns, {})
     return Cells(cells.headings, cells.rows, cells.words, max(0, len(initial) - _MOST_MODES))
 

@@ -92,7 +92,7 @@ def inputs_of(case: Case) -> dict[str, Any]:
         "run": _run(case.run),
         "solver": {"name": case.solver.name, "rtol": case.solver.rtol, **case.solver.settings},
         "pi": pi_terms(scene) if scene.bodies else {},
-        "pi_number": None if scene.motion.scales() is None else number_of_terms(scene),
+        "pi_number": number_of_terms(scene),
     }
     for kind, sources in sources_of(case.understood).items():
         rows = found["bodies" if kind == "body" else f"{kind}s"]
@@ -263,12 +263,11 @@ def _structure(scene: Scene, group: list[str]) -> Row:
             modes = modes_of(scene, group, yielded)
         except InputError:
             continue
-        row[key] = [
-            {"period": _finite(t), "share": s, "damping": _finite(d)}
-            for t, s, d in zip(
-                modes.period.tolist(), modes.share.tolist(), modes.damping.tolist(), strict=True
-            )
-        ]
+        numbers = {"period": modes.period, "share": modes.share, "damping": modes.damping}
+        if modes.share_across is not None:
+            numbers["share_across"] = modes.share_across
+        each = zip(*(values.tolist() for values in numbers.values()), strict=True)
+        row[key] = [dict(zip(numbers, map(_finite, mode), strict=True)) for mode in each]
     return row
 
 

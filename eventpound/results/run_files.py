@@ -136,9 +136,8 @@ def _pi(scene: Scene, runs: BatchResponse) -> dict[str, float]:
     """Π-terms seen from the first body, and Π_um of every body."""
     terms = pi_terms(scene)
     for i, body in enumerate(scene.bodies if runs.scales else ()):
-        named = find(scene, f"pi_um.{body.name}")
-        assert named is not None
-        terms["um" if i == 0 else f"um.{body.name}"] = float(named.of(runs)[0])
+        if (named := find(scene, f"pi_um.{body.name}")) is not None:
+            terms["um" if i == 0 else f"um.{body.name}"] = float(named.of(runs)[0])
     return terms
 
 

@@ -136,7 +136,7 @@ class Deck:
             (TURN, r * at.rotation, r * at.spin),
         )
         x, y, turn = (
-            Body(coordinate_of(self.name, word), self.mass, u, v, direction=word)
+            Body(coordinate_of(self.name, word), self.mass, u, v, self.name, word)
             for word, u, v in states
         )
         return x, y, turn

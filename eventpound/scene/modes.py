@@ -34,7 +34,7 @@ from eventpound.scene.damping import dashpots_beside, rayleigh_coefficients, ray
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import RIGID, joined, over_mass
-from eventpound.scene.plan_point import ALONG
+from eventpound.scene.plan_point import ACROSS, ALONG
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
 from eventpound.scene.structures import joined_groups
@@ -52,11 +52,13 @@ class Modes:
     period : ndarray, shape (n,)
         T (s), infinite where nothing resists.
     share : ndarray, shape (n,)
-        Part of the mass that takes part.
+        Part of the mass that takes part in a motion along the line.
     damping : ndarray, shape (n,)
         Ratio of critical damping, NaN where the period is infinite.
     shape : ndarray, shape (N, n)
         Displacements of the bodies, the largest of a mode is 1.
+    share_across : ndarray, shape (n,), optional
+        Part of the mass that takes part in a motion across; of a structure in plan.
     """
 
     bodies: tuple[str, ...]
@@ -64,6 +66,7 @@ class Modes:
     share: Floats
     damping: Floats
     shape: Floats
+    share_across: Floats | None = None
 
 
 def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Modes:
@@ -103,16 +106,20 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
         period = 2.0 * np.pi / omega
     # Relative to the largest, because the sum of masses may be no double.
     relative = mass / mass.max()
-    # In plan what moves along the ground motion takes part alone.
-    moved = relative * np.array([b.direction == ALONG for b in own])
-    share = (moved @ (shape * root.max())) ** 2 / (moved.sum() or 1.0)
+
+    def taking_part(direction: str) -> Floats:
+        moved = relative * np.array([b.direction == direction for b in own])
+        share = (moved @ (shape * root.max())) ** 2 / (moved.sum() or 1.0)
+        # What rounding leaves of a mode in which the masses balance is nothing, too.
+        return np.where(share > RIGID, share, 0.0)
+
     return Modes(
         tuple(bodies),
         period,
-        # What rounding leaves of a mode in which the masses balance is nothing, too.
-        np.where(share > RIGID, share, 0.0),
+        taking_part(ALONG),
         np.where(omega > 0.0, ratio, np.nan),
         shape / largest,
+        taking_part(ACROSS) if any(b.direction != ALONG for b in own) else None,
     )
 
 

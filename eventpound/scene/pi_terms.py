@@ -26,7 +26,8 @@ with a motion of its own has no term: its numbers stay as they are.
 
 An oscillator's own spring is its only linear or Bouc-Wen spring to the ground or to a support:
 a body with none of them, or with several, has no omega_s, u_y and Q, nor has one with P-Delta or
-in a frame. A perfectly plastic one has Pi_omega_s = 0; a ratio with it is left out.
+in a frame. A perfectly plastic one has Pi_omega_s = 0; a ratio with it is left out. Beside decks
+in plan, which are no oscillators, contacts alone have terms.
 """
 
 from __future__ import annotations
@@ -72,7 +73,7 @@ def pi_terms(scene: Scene, oscillator: str | None = None) -> dict[str, float]:
     first = looked_at(scene, oscillator)
     terms: dict[str, float] = {}
     for body in sorted(scene.bodies, key=lambda body: body is not first):
-        terms |= _oscillator_terms(scene, body, first)
+        terms |= {} if scene.decks else _oscillator_terms(scene, body, first)
     for contact in scene.contacts:
         terms |= _contact_terms(scene, contact)
     scales = scene.motion.scales()
@@ -82,8 +83,10 @@ def pi_terms(scene: Scene, oscillator: str | None = None) -> dict[str, float]:
     return terms
 
 
-def number_of_terms(scene: Scene) -> int:
+def number_of_terms(scene: Scene) -> int | None:
     """How many Π-terms govern the peak of a body, with that of the peak itself.
+
+    None of a scene without scales, or with decks in plan, whose terms are not all known.
 
     5 of an elasto-plastic oscillator beside a barrier (eq. 6), 10 and 14 of two and three bilinear
     ones in a row (eq. 14): a gap or a restitution that all contacts share is one term, and a
@@ -92,8 +95,10 @@ def number_of_terms(scene: Scene) -> int:
     Parameters
     ----------
     scene : Scene
-        With a ground motion that has scales.
+        A checked scene.
     """
+    if scene.decks or scene.motion.scales() is None:
+        return None
     terms = pi_terms(scene)
     shared = {
         (stem, terms[key])

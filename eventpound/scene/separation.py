@@ -30,8 +30,9 @@ from eventpound.scene.structures import structures_of
 
 
 def is_between_bodies(scene: Scene, i: int) -> bool:
-    """Whether both ends of contact i are bodies."""
-    return {body.name for body in scene.bodies}.issuperset(scene.contacts[i].ends)
+    """Whether both ends of contact i are bodies, or points between them; not of decks in plan."""
+    bodies = {body.name for body in scene.bodies}
+    return bodies.issuperset(scene.contacts[i].ends) and not scene.decks
 
 
 def is_between_structures(scene: Scene, i: int) -> bool:

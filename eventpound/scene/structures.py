@@ -62,6 +62,7 @@ def structures_of(scene: Scene) -> list[list[str]]:
     """
     joints = [spring.ends for spring in scene.springs]
     joints += [dashpot.ends for dashpot in scene.dashpots]
+    joints += [tuple(body.name for body in deck.bodies()) for deck in scene.decks]
     return joined_groups([body.name for body in scene.bodies], joints)
 
 

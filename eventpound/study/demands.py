@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from eventpound.case.run_options import Stated
 from eventpound.quantities.base import TakenFrom
+from eventpound.quantities.decks import translates
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import Named, all_of, asked_of, unstated
 from eventpound.quantities.owners import owners_of
@@ -83,9 +84,13 @@ KINDS = (
             "impacts_faster fastest_closing max_impulse estimated_force max_force largest_overlap",
         ),
     ),
-    ElementKind("Structure", ("base_shear.abs_max",)),
+    ElementKind("Structure", ("base_shear.abs_max", "base_shear_across.abs_max")),
     ElementKind(
-        "Structures", _paths("structure", "abs_max_base_shear roof_drift storey_drift_ratio")
+        "Structures",
+        _paths(
+            "structure",
+            "abs_max_base_shear abs_max_base_shear_across roof_drift storey_drift_ratio",
+        ),
     ),
     ElementKind(
         "Piers and other yielding springs",
@@ -133,9 +138,11 @@ KINDS = (
         ),
         is_storey,
     ),
+    ElementKind("Decks", _paths("deck", "abs_max_rotation")),
     ElementKind(
         "Bodies",
         ("peaks.<body>.abs_max", "residual.<body>", "acceleration.<body>.abs_max"),
+        translates,
     ),
 )
 """Kinds of elements, in the order of a report."""

@@ -1,10 +1,15 @@
 """The plan of a bridge: what is drawn where."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from eventpound import simulate
 from eventpound.report.model_figure import model_figure
 from eventpound.report.plan_view import plan_figure
+from eventpound.report.run_appendix import _CAPTIONS
+from eventpound.report.run_figures import figures
 from eventpound.scene import BARRIER, Deck, Joint, Scene
 from eventpound.scene.deck import place_in_a_row
 
@@ -53,3 +58,18 @@ def test_a_state_is_drawn_as_large_whatever_its_size(factor):
     state = dict.fromkeys((b.name for b in scene.bodies), 0.0) | {"A.x": 0.5 * factor}
     times = float(plan_figure(scene, state=state).axes[0].get_title().split()[-3])
     assert times == pytest.approx(min(100.0, 5.0 / factor), rel=0.6)
+
+
+def test_displacements_by_directions_and_rotations():
+    scene = bridge()
+    bodies = [replace(body, velocity=0.3) for body in scene.bodies]
+    drawn = figures(simulate(replace(scene, bodies=bodies), duration=0.5, output_step=0.01))
+    panels = {axes.get_ylabel().split(" (")[0]: axes for axes in drawn["displacements.png"].axes}
+    assert {"along", "across", "rotation", "gap"} <= set(panels)
+    line = next(each for each in panels["rotation"].get_lines() if each.get_label() == "B")
+    # Nothing turns it but an impact: 0.3 m/s of r theta, in mrad.
+    turned = 300.0 / scene.decks[1].radius * line.get_xdata()[1]
+    assert line.get_ydata()[1] == pytest.approx(turned)
+    assert "west.lower: barrier | A" in [each.get_label() for each in panels["gap"].get_lines()]
+    # The report has something to say of each.
+    assert set(drawn) <= set(_CAPTIONS)

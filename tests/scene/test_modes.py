@@ -15,6 +15,7 @@ from eventpound.scene import (
     Body,
     BoucWen,
     Dashpot,
+    Deck,
     Linear,
     Scene,
     Slider,
@@ -191,3 +192,13 @@ def test_a_mode_in_which_masses_balance_has_none_of_them():
     ]
     share = modes_of(Scene(bodies, (*springs, *joined)), ["a", "b", "c"]).share
     assert share.tolist() == [pytest.approx(1.0), 0.0, 0.0]
+
+
+def test_masses_take_part_along_and_across_in_plan():
+    deck = Deck("D", "900 t", "36 m", "11 m", 0.3)
+    held = {"D.x": 4e7, "D.y": 2e7, "D.turn": 1e7}
+    springs = [Spring(name, (GROUND, name), Linear(k)) for name, k in held.items()]
+    modes = modes_of(Scene(deck.bodies(), springs, decks=[deck]), list(held))
+    np.testing.assert_allclose(modes.share, [0.0, 0.0, 1.0], atol=1e-14)
+    assert modes.share_across is not None
+    np.testing.assert_allclose(modes.share_across, [0.0, 1.0, 0.0], atol=1e-14)
