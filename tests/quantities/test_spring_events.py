@@ -18,8 +18,7 @@ from eventpound.response import Response
 from eventpound.scene import Backfill, Body, Linear, Scene, Slider, Spring
 from eventpound.scene.spring import GROUND, LawName
 from tests.models import ROOT
-from tests.solvers.backfill_oracle import solved
-from tests.solvers.test_backfill import BETWEEN_TWO, POUNDING, THROWN_BACK
+from tests.solvers.test_backfill import BETWEEN_TWO, POUNDING, THROWN_BACK, by_scipy
 from tests.solvers.test_backfill import SOLVERS as OF_SOIL
 from tests.solvers.test_sliders import (
     CLOSE,
@@ -100,7 +99,7 @@ def test_soil_is_touched_and_left_as_in_another_program(scene, end, solver, sett
     response = simulate(
         scene, solver, RTOL, duration=end, output_step=end, settings=settings, error_estimate=False
     )
-    found, answer = response.spring_events, solved(scene, end, corners(scene))
+    found, answer = response.spring_events, by_scipy(scene, end)
     names = [spring.name for spring in scene.springs if isinstance(spring.law, Backfill)]
     # What is touched at the start is not touched later.
     touched = [each for each in answer.touched if each[0] > 1e-9]
@@ -111,10 +110,6 @@ def test_soil_is_touched_and_left_as_in_another_program(scene, end, solver, sett
     kinds = {-1: "gap-closed", 1: "gap-opened"}
     assert found["kind"].tolist() == [kinds[way] for way in ways]
     assert set(response.events["contact"]) <= {"joint"}
-
-
-def corners(scene: Scene) -> tuple[float, ...]:
-    return tuple(piece.end for piece in scene.motion.pieces())
 
 
 def shaken() -> Scene:

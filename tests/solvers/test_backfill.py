@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -22,7 +23,8 @@ from eventpound.scene import (
     Support,
 )
 from eventpound.solvers.base import Task
-from tests.solvers.backfill_oracle import Answer, Soil, solved
+from tests.oracle.laws import Soil
+from tests.oracle.line import Answer, solved
 
 SOIL = Backfill("100 MN/m", "5 MN", 0.7, "2 cm")
 GROWING = MavroeidisPapageorgiou(6.0, 0.9, gamma=5.0)
@@ -55,23 +57,30 @@ SOLVERS = [
     ("fast", {}),
 ]
 RTOL = 1e-10
+LENGTH = 0.1
+"""How far a deck moves (m)."""
 # Errors of single steps add up over thousands of them; turns between soils make them grow.
 CLOSE = 100.0 * RTOL
+
+
+@cache
+def by_scipy(scene: Scene, end: float) -> Answer:
+    return solved(scene, end, LENGTH, 1.0, [piece.end for piece in scene.motion.pieces()])
 
 
 def answered(scene: Scene, solver: str, settings: dict, end: float) -> tuple[Response, Answer]:
     response = simulate(
         scene, solver=solver, settings=settings, duration=end, rtol=RTOL, energy=True
     )
-    return response, solved(scene, end, tuple(piece.end for piece in scene.motion.pieces()))
+    return response, by_scipy(scene, end)
 
 
-def lost_and_stored(soil: Soil, u: np.ndarray) -> tuple[float, float]:
+def lost_and_stored(soil: Soil, x: float) -> tuple[float, float]:
     """Work lost in a soil and what it can give back (J), by hand from its deepest point."""
     law, y = soil.law, soil.deepest
     Q = law.ultimate_force / law.failure_ratio
     in_all = Q * (y - Q / law.initial_stiffness * math.log1p(y * law.initial_stiffness / Q))
-    given_back = [soil.backbone(y), max(law.initial_stiffness * (soil.depth(u) - soil.left), 0.0)]
+    given_back = [soil.backbone(y), max(law.initial_stiffness * (soil.depth(x) - soil.left), 0.0)]
     back, now = (F**2 / (2.0 * law.initial_stiffness) for F in given_back)
     return in_all - back, now
 
@@ -95,7 +104,7 @@ def test_motion_is_that_of_soil_which_remembers_its_deepest_point(
     for spring, soil in zip(
         [s for s in scene.springs if isinstance(s.law, Backfill)], answer.soils, strict=True
     ):
-        lost, now = lost_and_stored(soil, answer.u)
+        lost, now = lost_and_stored(soil, float(soil.row @ answer.u))
         name, stored = f"springs.{spring.name}", stored + lost + now
         assert response.quantity(f"{name}.dissipated_energy") == pytest.approx(lost, rel=1e-7)
         gap = response.quantity(f"{name}.residual_gap")
@@ -106,10 +115,10 @@ def test_motion_is_that_of_soil_which_remembers_its_deepest_point(
         assert force == pytest.approx(soil.backbone(soil.deepest), rel=1e-8)
     assert found.energy is not None
     begun = sum(
-        lost_and_stored(replace(soil, deepest=depth), np.zeros(1))[0] + soil.backbone(depth) ** 2
+        lost_and_stored(replace(soil, deepest=depth), 0.0)[0] + soil.backbone(depth) ** 2
         / (2.0 * soil.law.initial_stiffness)
         for soil in answer.soils
-        if (depth := soil.depth(np.array([b.displacement for b in scene.bodies]))) > 0.0
+        if (depth := soil.depth(float(soil.row @ [b.displacement for b in scene.bodies]))) > 0.0
     )  # fmt: skip
     assert found.energy.hysteretic == pytest.approx(stored - begun, rel=1e-7)
 

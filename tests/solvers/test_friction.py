@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -12,13 +11,12 @@ import pytest
 from eventpound import simulate
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion import Harmonic
-from eventpound.numerics.arrays import Floats
 from eventpound.scene import BARRIER, Contact, ContactLaw, Deck, Scene, Slider, Spring
 from eventpound.scene.deck import DeckStart
 from eventpound.scene.joint import Joint
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
-from tests.solvers.friction_oracle import rubbing_plan
+from tests.oracle.plan import states
 from tests.solvers.friction_scenes import (
     GRAVITY,
     MASS,
@@ -28,7 +26,6 @@ from tests.solvers.friction_scenes import (
     slid_under,
     struck_corner,
 )
-from tests.solvers.plan_oracle import LeftAloneError
 from tests.solvers.plan_scenes import random_plan
 
 SEEDS = (1, 3, 7, 16, 22, 28, 35, 62, 63, 74, 81, 86)
@@ -109,26 +106,11 @@ def _rubbing(seed: int) -> tuple[Scene, list[Joint], float]:
     )
 
 
-@cache
-def _by_scipy(seed: int) -> Floats | None:
-    """States in metres, as the package has them; None of a scene that is left alone."""
-    scene, joints, end = _rubbing(seed)
-    plan = rubbing_plan(scene, joints)
-    unit = np.ones(plan.plan.mass.size)
-    unit[2::3] = [math.sqrt(J / m) for m, J in plan.plan.mass.reshape(-1, 3)[:, 1:]]
-    both = np.concatenate((unit, unit))
-    start = [b.displacement for b in scene.bodies] + [b.velocity for b in scene.bodies]
-    try:
-        return plan.at_times(np.array(start) / both, np.linspace(0.0, end, 26)) * both
-    except LeftAloneError:
-        return None
-
-
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_decks_against_scipy(seed: int) -> None:
-    expected = _by_scipy(seed)
+    scene, joints, end = _rubbing(seed)
+    expected = states(scene, joints, np.linspace(0.0, end, 26))
     assert expected is not None
-    scene, _, end = _rubbing(seed)
     recording = _run(scene, end)
     h = recording.history
     i = np.searchsorted(h.t, np.linspace(0.0, end, 26), "right") - 1

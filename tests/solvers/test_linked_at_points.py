@@ -30,8 +30,8 @@ from eventpound.scene.check import check_scene
 from eventpound.scene.spring import Law
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
+from tests.oracle.line import solved
 from tests.solvers.linked_scenes import moved, rows, smooth_scene, touching_scene
-from tests.solvers.slider_oracle import solved
 
 SOLVERS = ("cvode", "ida", "fast")
 

@@ -19,7 +19,7 @@ from eventpound.scene.joint import Joint
 from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
-from tests.solvers.plan_oracle import LeftAloneError, plan_of
+from tests.oracle.plan import states
 from tests.solvers.plan_scenes import random_plan
 
 SOLVERS = ("cvode", "ida", "fast")
@@ -42,17 +42,8 @@ def at_times(recording: Recording, times: Floats) -> Floats:
 
 @cache
 def by_scipy(seed: int) -> Floats | None:
-    """States in metres, as the package has them; None of a scene that is left alone."""
     scene, joints, end = random_plan(seed)
-    plan = plan_of(scene, joints)
-    unit = np.ones(plan.mass.size)
-    unit[2::3] = [math.sqrt(J / m) for m, J in plan.mass.reshape(-1, 3)[:, 1:]]
-    both = np.concatenate((unit, unit))
-    start = [b.displacement for b in scene.bodies] + [b.velocity for b in scene.bodies]
-    try:
-        return plan.at_times(np.array(start) / both, np.linspace(0.0, end, 26)) * both
-    except LeftAloneError:
-        return None
+    return states(scene, joints, np.linspace(0.0, end, 26))
 
 
 @pytest.mark.parametrize("solver", SOLVERS)

@@ -38,10 +38,10 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.from_samples import inferred_impacts
 from eventpound.study.many import simulate_many
+from tests.oracle.line import solved
 from tests.properties.restored import restored
 from tests.properties.transforms import mirrored, scaled
 from tests.solvers.random_scenes import pointed_scene, random_scene
-from tests.solvers.slider_oracle import solved
 from tests.solvers.ways import WAYS, directly_and_by
 
 SOLVERS = ("cvode", "ida", "fast")

@@ -35,7 +35,7 @@ from eventpound.scene import (
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.tolerances import LAST_SPEED_OF_SLIDERS
-from tests.solvers.slider_oracle import solved
+from tests.oracle.line import solved
 
 SOLVERS = [
     ("cvode", "own"),

@@ -1,19 +1,23 @@
-"""Bodies with sliders and contacts, also at points between bodies, by SciPy with events.
+"""Bodies on lines: laws, sliders and Newton contacts, also at points between bodies.
 
 What an instant leaves open is tried in every pattern of slip, stick, rest and opening: in the right
 one slips go along their friction's pull, gaps open, and some forces within their bounds hold the
-rest, unique or not. Nothing here is taken from the package but the numbers of a scene and the
-motions of ground and supports. Rows have a column for each body, then one for each support.
+rest, unique or not. Rows have a column for each body, then one for each support.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import product
+from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 from scipy.optimize import linprog, nnls
 
-from eventpound.scene import Linear, Point, Scene, Slider
+from eventpound.scene import Backfill, Contact, Linear, Point, Scene, Slider
+from tests.oracle.laws import APART, Law, Soil, Touch
+from tests.oracle.pieces import Event, march, stops_of
 
 TOLERANCE = 1e-12
 NOISE = 1e-11
@@ -25,19 +29,24 @@ LAST = 1e-5
 """Part of L/T below which an impact is plastic: a flight after it would be within the noise."""
 PASSED = 1e-8
 """Part of L by which no gap may be below zero."""
-MOST_EVENTS = 400
 MOST_STEPS = 1500
 """A run has more: SciPy does not see what begins and ends within one."""
 
 
 @dataclass
 class Answer:
-    """Final state, times of changes of sliders (s) and of impacts (s), and the way of each slip."""
+    """What a run did.
+
+    Final state; times of turns of sliders and soils, and of impacts (s); when which soil was
+    touched (-1) or left (1); the soils at the end; the way of each slip (m).
+    """
 
     u: np.ndarray
     v: np.ndarray
     turns: list[float] = field(default_factory=list)
     impacts: list[float] = field(default_factory=list)
+    touched: list[tuple[float, int, int]] = field(default_factory=list)
+    soils: list[Soil] = field(default_factory=list)
     path: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
 
@@ -45,41 +54,59 @@ class Program:
     """A scene whose motion has sizes of `length` (m) and `time` (s)."""
 
     def __init__(self, scene: Scene, length: float, time: float) -> None:
-        self.scene, self.speed = scene, length / time
-        names = [body.name for body in scene.bodies]
-        self.n = len(names)
-        self.mass = np.array([body.mass for body in scene.bodies])
-        names += [support.name for support in scene.supports]
-
-        def row(ends: tuple[str | Point, str | Point]) -> np.ndarray:
-            found = np.zeros(len(names))
-            for end, sign in zip(ends, (-1.0, 1.0), strict=True):
-                for name, weight in end.weights if isinstance(end, Point) else ((end, 1.0),):
-                    if name in names:
-                        found[names.index(name)] += sign * weight
-            return found
-
-        self.stiffness, self.damping = np.zeros((2, len(names), len(names)))
-        rows, bounds = [], []
+        self.scene, self.length, self.speed = scene, length, length / time
+        bodies = scene.bodies
+        self.names = [each.name for each in (*bodies, *scene.supports)]
+        self.n, self.mass = len(bodies), np.array([body.mass for body in bodies])
+        self.y = np.array([b.displacement for b in bodies] + [b.velocity for b in bodies])
+        size = len(self.names)
+        self.stiffness, self.damping = np.zeros((2, size, size))
+        self.laws, rows, bounds = list[Law](), [], []
         for spring in scene.springs:
-            B, law = row(spring.between), spring.law
+            B, law = self.row(spring.between), spring.law
+            if isinstance(law, Backfill):
+                self.laws.append(Soil(B, law))
+                continue
             assert isinstance(law, Linear | Slider)
             self.stiffness += law.stiffness * np.outer(B, B)
             if isinstance(law, Slider):
                 rows.append(B)
                 bounds.append(law.friction * law.normal_force)
         for dashpot in scene.dashpots:
-            B = row(dashpot.between)
+            B = self.row(dashpot.between)
             self.damping += dashpot.coefficient * np.outer(B, B)
-        self.B, self.F = np.reshape(rows, (-1, len(names))), np.array(bounds)
-        self.W = np.reshape([row((c.left, c.right)) for c in scene.contacts], (-1, len(names)))
-        self.gap = np.array([c.gap for c in scene.contacts])
-        self.restitution = np.array([c.restitution for c in scene.contacts], float)
+        self.laws += [self._touch(c) for c in scene.contacts if c.law is not None]
+        hard = [c for c in scene.contacts if c.law is None]
+        self.B, self.F = np.reshape(rows, (-1, size)), np.array(bounds)
+        self.W = np.reshape([self.row((c.left, c.right)) for c in hard], (-1, size))
+        self.gap = np.array([c.gap for c in hard])
+        self.restitution = np.array([c.restitution for c in hard], float)
         # Of each slider +1, -1 or 0 where it sticks; of each contact whether it rests.
         self.slip, self.rest = np.zeros(len(bounds), int), np.zeros(self.gap.size, bool)
+        u, v = np.split(self.y, 2)
+        self.answer = Answer(u, v, path=np.zeros(self.F.size))
+        self.answer.soils = [law for law in self.laws if isinstance(law, Soil)]
+        for law in self.laws:
+            law.begin(*self.elongation(law, 0.0, self.y))
+        self.moved = self.B @ self.with_supports(0.0, u, "displacement")
+
+    def row(self, ends: tuple[str | Point, str | Point]) -> np.ndarray:
+        """What bodies and supports move the second end relative to the first."""
+        found = np.zeros(len(self.names))
+        for end, sign in zip(ends, (-1.0, 1.0), strict=True):
+            for name, weight in end.weights if isinstance(end, Point) else ((end, 1.0),):
+                if name in self.names:
+                    found[self.names.index(name)] += sign * weight
+        return found
+
+    def _touch(self, contact: Contact) -> Touch:
+        W = self.row((contact.left, contact.right))
+        return Touch(W, contact, 1.0 / float(W[: self.n] ** 2 @ (1.0 / self.mass)))
 
     def with_supports(self, t: float, values: np.ndarray, what: str) -> np.ndarray:
         """Displacements, velocities or accelerations of the bodies, then those of supports."""
+        if not self.scene.supports:
+            return values
         moved = [
             float(getattr(m, what)(np.array(t)))
             for m in (
@@ -89,14 +116,21 @@ class Program:
         ]
         return np.append(values, np.array(moved[1:]) - moved[0])
 
+    def elongation(self, law: Law, t: float, y: np.ndarray) -> tuple[float, float]:
+        """Of a law, and its rate."""
+        u = self.with_supports(t, y[: self.n], "displacement")
+        return float(law.row @ u), float(law.row @ self.with_supports(t, y[self.n :], "velocity"))
+
     def free(self, t: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Forces on the bodies without friction of sliders that stick, and without contacts."""
         ground, n = float(self.scene.motion.acceleration(np.array(t))), self.n
         force = -self.stiffness @ self.with_supports(t, u, "displacement")
         force -= self.damping @ self.with_supports(t, v, "velocity")
         force -= self.B.T @ (self.F * self.slip)
+        for law in self.laws:
+            force += law.push(*self.elongation(law, t, np.concatenate((u, v)))) * law.row
         for given in self.scene.forces:
-            b = [body.name for body in self.scene.bodies].index(given.body)
+            b = self.names.index(given.body)
             value = float(given.history.acceleration(np.array(t)))
             force[b] += value * (self.mass[b] if given.per_mass else 1.0)
         return force[:n] - self.mass * ground
@@ -109,14 +143,17 @@ class Program:
         """Accelerations of bodies and supports, and some forces of what sticks and rests."""
         force, D, n = self.free(t, u, v), self.held(), self.n
         a = self.with_supports(t, force / self.mass, "acceleration")
+        if D.shape[0] == 0:
+            return a, np.zeros(0)
         G = D[:, :n] / self.mass @ D[:, :n].T
-        found = -np.linalg.lstsq(G, D @ a, 1e-9)[0] if D.shape[0] else np.zeros(0)
+        found = -np.linalg.lstsq(G, D @ a, 1e-9)[0]
         a[:n] += D[:, :n].T @ found / self.mass
         return a, found
 
-    def acceleration(self, t: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Of the bodies."""
-        return self.balanced(t, u, v)[0][: self.n]
+    def rate(self, t: float, y: np.ndarray) -> np.ndarray:
+        """y'."""
+        u, v = y[: self.n], y[self.n :]
+        return np.concatenate((v, self.balanced(t, u, v)[0][: self.n]))
 
     def margin(self, t: float, u: np.ndarray, v: np.ndarray) -> float:
         """How far the forces of what sticks or rests can be inside their bounds, in parts.
@@ -218,59 +255,70 @@ class Program:
         assert best > -1e-9, best
         self.slip, self.rest = found
 
+    def events(self) -> list[Event]:
+        """Ends of slips, of flights, of what is held, and of the states of laws."""
+        n, found = self.n, list[Event]()
+
+        def along(row: np.ndarray, t: float, values: np.ndarray, what: str) -> float:
+            return float(row @ self.with_supports(t, values, what))
+
+        for i in np.flatnonzero(self.slip):
+            found.append((("slip", i), lambda t, y, i=i: self.slip[i] * along(
+                self.B[i], t, y[n:], "velocity") + NOISE * self.speed))  # fmt: skip
+        for j in np.flatnonzero(~self.rest):
+            found.append((("contact", j), lambda t, y, j=j: self.gap[j] + along(
+                self.W[j], t, y[:n], "displacement") + NOISE * self.length))  # fmt: skip
+        if self.held().shape[0]:
+            found.append((("held", 0), lambda t, y: self.margin(t, y[:n], y[n:]) + NOISE))
+        for i, law in enumerate(self.laws):
+            for which, end in enumerate(law.ends(NOISE * self.length)):
+                found.append((("law", i, which), lambda t, y, law=law, end=end: end(
+                    *self.elongation(law, t, y))))  # fmt: skip
+        return found
+
+    def happened(self, t: float, y: np.ndarray, owners: list[Any]) -> np.ndarray:
+        """The state after turns and impacts."""
+        u, v = np.split(y, 2)
+        moved = self.B @ self.with_supports(t, u, "displacement")
+        self.answer.path += np.abs(moved - self.moved) * (self.slip != 0)
+        self.moved = moved
+        gaps = self.gap + self.W @ self.with_supports(t, u, "displacement")
+        if (gaps[~self.rest] < -PASSED * self.length).any():
+            raise ArithmeticError("an impact within a step was not seen")
+        for kind, i, *which in owners:
+            if kind == "law":
+                self._turn(t, y, i, *which)
+            elif kind != "contact":
+                self.answer.turns.append(t)
+        closing = {i for kind, i, *_ in owners if kind == "contact"}
+        if closing:
+            self.answer.impacts += [t] * len(closing)
+            v = self.strike(t, u, v, closing)
+            y = np.concatenate((u, v))
+            for law in self.laws:
+                law.jump(*self.elongation(law, t, y))
+        self.decide(t, u, v)
+        return y
+
+    def _turn(self, t: float, y: np.ndarray, i: int, which: int) -> None:
+        law, now = self.laws[i], self.elongation(self.laws[i], t, y)
+        if not isinstance(law, Soil):
+            law.turn(which, *now)
+            return
+        apart = law.state == APART
+        law.turn(which, *now)
+        self.answer.turns.append(t)
+        if apart != (law.state == APART):
+            way = -1 if apart else 1
+            self.answer.touched.append((t, self.answer.soils.index(law), way))
+
 
 def solved(scene: Scene, end: float, length: float, time: float,
-           corners: tuple[float, ...] = ()) -> Answer:  # fmt: skip
-    """The scene to `end` (s), whose motion has corners at some times."""
-    p = Program(scene, length, time)
-    n = p.n
-    u = np.array([body.displacement for body in scene.bodies])
-    v = np.array([body.velocity for body in scene.bodies])
-    answer = Answer(u, v, path=np.zeros(p.F.size))
-    t = 0.0
-
-    def rate(t: float, y: np.ndarray) -> np.ndarray:
-        return np.concatenate((y[n:], p.acceleration(t, y[:n], y[n:])))
-
-    for stop in [*(c for c in corners if 0.0 < c < end), end]:
-        p.decide(t, u, v)
-        while t < stop:
-            events, owners = [], []
-            for i in np.flatnonzero(p.slip):
-                events.append(lambda t, y, i=i: p.slip[i] * float(
-                    p.B[i] @ p.with_supports(t, y[n:], "velocity")) + NOISE * p.speed)  # fmt: skip
-                owners.append(("slip", i))
-            for j in np.flatnonzero(~p.rest):
-                events.append(lambda t, y, j=j: p.gap[j] + float(p.W[j] @ p.with_supports(
-                    t, y[:n], "displacement")) + NOISE * length)  # fmt: skip
-                owners.append(("contact", j))
-            if p.held().shape[0]:
-                events.append(lambda t, y: p.margin(t, y[:n], y[n:]) + NOISE)
-                owners.append(("held", 0))
-            for function in events:
-                function.terminal, function.direction = True, -1.0  # type: ignore[attr-defined]
-            tolerances = {"rtol": TOLERANCE, "atol": 1e-15 * length, "max_step": end / MOST_STEPS}
-            run = solve_ivp(rate, (t, stop), np.concatenate((u, v)), "DOP853", events=events,
-                            **tolerances)  # fmt: skip
-            before, t = p.with_supports(t, u, "displacement"), float(run.t[-1])
-            u, v = np.split(run.y[:, -1], 2)
-            moved = p.B @ (p.with_supports(t, u, "displacement") - before)
-            answer.path += np.abs(moved) * (p.slip != 0)
-            gaps = p.gap + p.W @ p.with_supports(t, u, "displacement")
-            if (gaps[~p.rest] < -PASSED * length).any():
-                raise ArithmeticError("an impact within a step was not seen")
-            struck, closing = False, set()
-            for (kind, i), times in zip(owners, run.t_events, strict=True):
-                if times.size and kind == "contact":
-                    closing.add(i)
-                    answer.impacts.append(t)
-                elif times.size:
-                    answer.turns.append(t)
-                struck |= times.size > 0
-            v = p.strike(t, u, v, closing) if closing else v
-            if len(answer.impacts) + len(answer.turns) > MOST_EVENTS:
-                raise ArithmeticError("events accumulate")
-            if struck:
-                p.decide(t, u, v)
-    answer.u, answer.v = u, v
-    return answer
+           corners: Iterable[float] = (), steps: int = MOST_STEPS) -> Answer:  # fmt: skip
+    """The scene to `end` (s), whose motion has corners at some times, by so many steps or more."""
+    program = Program(scene, length, time)
+    program.decide(0.0, *np.split(program.y, 2))
+    tolerances = {"rtol": TOLERANCE, "atol": 1e-15 * length, "max_step": end / steps}
+    last = march(program, program.y, stops_of(end, corners), **tolerances)[-1]
+    program.answer.u, program.answer.v = np.split(last, 2)
+    return program.answer
