@@ -55,6 +55,7 @@ from eventpound.numerics.coulomb import (
     STICK,
     Rubbing,
     solve_rubbing,
+    sticks_well,
 )
 from eventpound.tolerances import GAINED, QUIET
 
@@ -144,6 +145,8 @@ def begin_beside_friction(force: Floats, kinked: Bools, rubs: Rubs, at: Instant)
             continue
         if at.released[t]:
             at.branch[a] = -1 if force[t] > 0.0 else 1
+        elif kinked[a]:
+            at.branch[a] = 0
         held[t] |= kinked[a]
         stopped |= kinked[a]
     if stopped:
@@ -266,8 +269,7 @@ def decide_friction(z: Floats, forcing: Forcing, noise: float, rubs: Rubs, at: I
     at.now[0].stale = True
     touching = touching_of(between_now(at), z, forcing, at)
     sliding = _sliding(np.flatnonzero(touching.undecided), rubs)
-    ways = _ways(sliding, rubs, at)
-    ended, x, w, state, level = _solve(sliding, ways, touching, rubs, at)
+    ended, x, w, state, level = _solve(sliding, touching, rubs, at)
     k = sliding.members.size
     for i in range(k):
         j, closed = sliding.members[i], state[i] != OPEN
@@ -280,24 +282,35 @@ def decide_friction(z: Floats, forcing: Forcing, noise: float, rubs: Rubs, at: I
 
 
 @kernel
-def _ways(sliding: Sliding, rubs: Rubs, at: Instant) -> Ints:
-    """Ways of slip (k,) that are known: from a rate, or from friction that came to its bound."""
+def _ways(sliding: Sliding, at: Instant) -> tuple[Ints, Bools]:
+    """Ways of slip (k,) that are known, and whether from friction at its bound, not from a rate.
+
+    Its bound has just been reached, or is that of a contact that slides no more than others let it.
+    """
     k, K, L = sliding.members.size, at.gap.size, at.branch.size
-    ways = np.zeros(k, np.int64)
+    ways, bound = np.zeros(k, np.int64), np.zeros(k, np.bool_)
     for i in range(k):
         t = sliding.rows[k + i]
         if t < 0:
             continue
         if at.gap_rate[t] != 0.0:
             ways[i] = 1 if at.gap_rate[t] > 0.0 else -1
-        elif at.released[t]:
-            ways[i] = at.branch[L - K + t]
-    return ways
+        elif at.released[t] or _is_at_bound(sliding.members[i], t, at):
+            ways[i], bound[i] = at.branch[L - K + t], True
+    return ways, bound
+
+
+@scalar_kernel
+def _is_at_bound(j: int, t: int, at: Instant) -> bool:
+    """Whether contact j, which has not slid, was one of those that slip all the same."""
+    slid = difference(at.before, at.left[t], at.right[t])
+    slips = at.branch[at.branch.size - at.gap.size + t] != 0
+    return at.resting[j] and slips and abs(slid) <= still_rate(at.length, at.time)
 
 
 @kernel
 def _solve(
-    sliding: Sliding, ways: Ints, touching: Touching, rubs: Rubs, at: Instant
+    sliding: Sliding, touching: Touching, rubs: Rubs, at: Instant
 ) -> tuple[int, Floats, Floats, Ints, Floats]:
     """Forces, accelerations and states of contacts that touch, and the noise of the second.
 
@@ -306,7 +319,7 @@ def _solve(
     rows, k = sliding.rows, sliding.members.size
     G, friction = _matrix(rows, at), rubs.friction[sliding.members]
     x, w, state = np.zeros(2 * k), np.zeros(2 * k), np.full(k, STICK)
-    q, level = np.zeros(2 * k), np.zeros(2 * k)
+    q, level, (ways, bound) = np.zeros(2 * k), np.zeros(2 * k), _ways(sliding, at)
     for highest in (1, ORDER):
         found, noise = free_accelerations(highest, touching)
         for order in range(highest):
@@ -320,16 +333,40 @@ def _solve(
                     moves |= abs(q[a]) > level[a]
             if moves:
                 problem = Rubbing(G, q, friction, ways, level)
-                return _answer(sliding, problem, at, x, w, state), x, w, state, level
+                ended = _answer(sliding, bound, problem, at, x, w, state)
+                return ended, x, w, state, level
     # Nothing moves at all, and stays so.
     return 0, x, w, state, level
 
 
 @kernel
 def _answer(
-    sliding: Sliding, problem: Rubbing, at: Instant, x: Floats, w: Floats, state: Ints
+    sliding: Sliding, bound: Bools, problem: Rubbing, at: Instant, x: Floats, w: Floats, state: Ints
 ) -> int:
-    """Solve a problem in which those just released are open, or slip, where they can."""
+    """Solve a problem in which those just released are open, or slip, where they can.
+
+    First it is asked whether those whose friction is at its `bound` (k,) stick with less of it, as
+    others may take it over where friction is not unique.
+    """
+    known = problem.way.copy()
+    if bound.any():
+        problem.way[bound] = 0
+        outcome = _answer_where_open(sliding, bound, problem, at, x, w, state)
+        taken_over = outcome not in (NO_ANSWER, SEVERAL)
+        for i in range(bound.size):
+            well = state[i] == STICK and sticks_well(i, x, problem.friction)
+            taken_over &= well or not bound[i]
+        if taken_over:
+            return outcome
+        problem.way[:] = known
+    return _answer_where_open(sliding, bound, problem, at, x, w, state)
+
+
+@kernel
+def _answer_where_open(
+    sliding: Sliding, bound: Bools, problem: Rubbing, at: Instant, x: Floats, w: Floats, state: Ints
+) -> int:
+    """The same with the ways of slip as they are given, or free where these cannot be."""
     k = sliding.members.size
     kept, ways = np.ones(k, np.bool_), problem.way
     for i in range(k):
@@ -338,11 +375,10 @@ def _answer(
         outcome = _solve_some(np.flatnonzero(kept), problem, x, w, state)
         again = False
         for i in range(k):
-            t = sliding.rows[k + i]
             if not kept[i] and w[i] < -problem.noise[i]:
                 # Others press it down again.
                 kept[i] = again = True
-            elif kept[i] and t >= 0 and at.gap_rate[t] == 0.0 and ways[i] != 0:
+            elif kept[i] and bound[i] and ways[i] != 0:
                 # It does not go the way in which friction has come to its bound.
                 slips = state[i] in (FORWARD, BACKWARD)
                 if outcome == NO_ANSWER or (slips and ways[i] * w[k + i] < -problem.noise[k + i]):

@@ -18,11 +18,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters
+from eventpound.mechanics.clusters import Clusters, ContactEnds
+from eventpound.mechanics.followers import rows_of
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel
-from eventpound.numerics.small_systems import invert
+from eventpound.numerics.small_systems import dot, invert
 from eventpound.tolerances import DEPENDENT
 
 
@@ -167,6 +168,42 @@ def with_slips(clusters: Clusters, slips: Slips, contacts: int, mass: Floats) ->
     return clusters._replace(
         compliance=found[0], force_map=found[1], slide=found[2], press=found[3]
     )
+
+
+@kernel
+def share_out(between: ContactEnds, clusters: Clusters) -> None:
+    """Make contact forces of a mode that are not unique the least ones, in its force map.
+
+    Least weighted by the compliance of each contact, as `eventpound.numerics.coulomb` has them when
+    it decides who sticks: what it found within the cones of friction the mode has, too.
+    """
+    rests, force_map = clusters.resting, clusters.force_map
+    rows = rows_of(between.left[rests], between.right[rests], between.mass.size, between.weights)
+    R, bodies = rows.shape
+    size, idle, count = np.zeros(R), np.zeros((R, R)), 0
+    for i in range(R):
+        for b in range(bodies):
+            size[i] += rows[i, b] * rows[i, b] / between.mass[b]
+        size[i] = np.sqrt(size[i])
+    for i in range(R):
+        if not clusters.redundant[i] or size[i] == 0.0:
+            continue
+        # Forces that do nothing together: that of a redundant contact, and what others take of it.
+        z = idle[count]
+        for a in range(R):
+            z[a] = size[a] * ((a == i) - dot(force_map[a, :bodies], rows[i]))
+        for b in range(count):
+            z -= dot(idle[b], z) * idle[b]
+        z /= np.sqrt(dot(z, z))
+        count += 1
+    for b in range(force_map.shape[1]):
+        for c in range(count):
+            along = 0.0
+            for a in range(R):
+                along += idle[c, a] * size[a] * force_map[a, b]
+            for a in range(R):
+                if size[a] > 0.0:
+                    force_map[a, b] -= along * idle[c, a] / size[a]
 
 
 @kernel

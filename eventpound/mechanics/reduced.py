@@ -397,9 +397,10 @@ def rate_on_ground(
     for c in range(system.mass.size):
         # A support is left out, whose mass is infinite: its work is an entry of its own.
         put_in -= system.own_mass[c] * y[iv[c]] * ground
+    if system.ledger >= 0 and system.slide.shape[0] > 0:
+        # Also where nothing moves, or what stands there before would be its rate.
+        _add_friction(y, rate, system)
     if system.compliance.size > 0:
-        if system.ledger >= 0:
-            _add_friction(y, rate, system)
         _answer_coupled(ground, system, rate)
     else:
         for c in range(system.mass.size):

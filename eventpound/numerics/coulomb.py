@@ -11,10 +11,16 @@ Acad. Sci. Paris 121, 1895; Ch. Glocker, Set-Valued Force Laws, 2001).
 
 A *state* of all contacts, each open, slipping one way or the other, or sticking, makes a linear
 system; its solution answers where it keeps the inequalities. All states of few contacts are gone
-through, and so every answer is known: forces along which nothing moves end, as they are bounded,
-where another state begins, so that states with dependent equations can be left out. Answers with
-the same w are one, since for a G ``Wᵀ M⁻¹ W`` these are the same motion. For many contacts Lemke's
-method finds one answer (`eventpound.numerics.lemke`), and whether it is unique stays unknown.
+through, and so every answer is known. Answers with the same w are one, since for a G ``Wᵀ M⁻¹ W``
+these are the same motion. For many contacts Lemke's method finds one answer
+(`eventpound.numerics.lemke`), and whether it is unique stays unknown.
+
+Friction of contacts that stick is not always unique: the two corners of an edge share what one
+could carry. Any split within the cones has the same motion. Of all splits the least forces are
+tried first; where these leave a cone another one may not, and then a corner of the set of splits
+does not: in it a contact is at the bound of its friction and counts as slipping, though nothing
+slides. Corners are states with independent equations, and so a split is found where there is one
+as long as normal forces are unique.
 """
 
 from __future__ import annotations
@@ -23,12 +29,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.graph import root
 from eventpound.numerics.lemke import solve_lemke
-from eventpound.numerics.small_systems import invert
-from eventpound.tolerances import DEPENDENT, LCP_ROUNDING, SAME_ANSWER
+from eventpound.numerics.small_systems import dot, invert
+from eventpound.tolerances import DEPENDENT, LCP_ROUNDING, SAME_ANSWER, TAKEN_OVER
 
 OPEN, FORWARD, BACKWARD, STICK = range(4)
 """States of a contact: apart, slipping with w_T >= 0 or the other way, sticking."""
@@ -124,43 +130,115 @@ def _solved(matrix: Floats, inverse: Floats, right: Floats) -> Floats:
 
 
 @kernel
+def _are_independent(effect: Floats) -> Bools:
+    """Unknowns (n,) that do what those before them do not, from what each does, (2k, n)."""
+    rest, kept = effect.copy(), np.zeros(effect.shape[1], np.bool_)
+    for a in range(kept.size):
+        # Twice is enough: the first turn leaves the rounding of what it took away.
+        for _ in range(2):
+            for b in range(a):
+                if kept[b]:
+                    rest[:, a] -= dot(rest[:, b], rest[:, a]) * rest[:, b]
+        length = np.sqrt(dot(rest[:, a], rest[:, a]))
+        kept[a] = length > DEPENDENT * np.sqrt(dot(effect[:, a], effect[:, a]))
+        if kept[a]:
+            rest[:, a] /= length
+    return kept
+
+
+@kernel
+def _least_forces(
+    stuck: Bools, matrix: Floats, effect: Floats, right: Floats
+) -> tuple[Floats, float]:
+    """Solve dependent equations with the least forces; spread as `_unknowns` has it.
+
+    Forces of contacts that stick (n,) alone may do nothing together: any other would take part in
+    the motion.
+    """
+    kept = _are_independent(effect)
+    own = np.flatnonzero(kept)
+    m, n = own.size, kept.size
+    part, inverse, found = np.empty((m, m)), np.empty((m, m)), np.zeros(n)
+    for a in range(m):
+        part[a] = matrix[own[a]][own]
+    if not invert(part.copy(), inverse, DEPENDENT):
+        return found, np.inf
+    found[own] = _solved(part, inverse, right[own])
+    idle, count = np.zeros((n - m, n)), 0
+    for a in range(n):
+        if kept[a]:
+            continue
+        z = idle[count]
+        z[own], z[a] = -_solved(part, inverse, matrix[own, a]), 1.0
+        for b in range(n):
+            if not stuck[b] and abs(z[b]) > DEPENDENT:
+                return found, np.inf
+        for b in range(count):
+            z -= dot(idle[b], z) * idle[b]
+        z /= np.sqrt(dot(z, z))
+        found -= dot(z, found) * z
+        count += 1
+    return found, _row_sum(inverse)
+
+
+@scalar_kernel
+def _row_sum(inverse: Floats) -> float:
+    """What equations make, at the most, of the rounding of their right-hand sides, and that."""
+    most = 1.0
+    for a in range(inverse.shape[0]):
+        total = 1.0
+        for b in range(inverse.shape[1]):
+            total += abs(inverse[a, b])
+        most = max(most, total)
+    return most
+
+
+@kernel
+def _unknowns(state: Ints, rows: Ints, effect: Floats, problem: Rubbing) -> tuple[Floats, float]:
+    """Forces (n,) in a state, and how much rounding is multiplied by; inf where there are none."""
+    k, n = state.size, rows.size
+    matrix, inverse, right = np.empty((n, n)), np.empty((n, n)), np.empty(n)
+    stuck = np.empty(n, np.bool_)
+    for a in range(n):
+        matrix[a], right[a] = effect[rows[a]], -problem.q[rows[a]]
+        stuck[a] = state[rows[a] % k] == STICK
+    if invert(matrix.copy(), inverse, DEPENDENT):
+        return _solved(matrix, inverse, right), _row_sum(inverse)
+    return _least_forces(stuck, matrix, effect, right)
+
+
+@kernel
 def solve_state(state: Ints, problem: Rubbing) -> tuple[Floats, Floats, float]:
     """Forces and motion in a state, and how far they are from an answer.
 
     Returns
     -------
     x, w : ndarray, shape (2k,)
-        What solves its equations.
+        What solves its equations; the least forces where those of sticks are not unique.
     excess : float
         By how much an inequality fails, as part of the rounding that is allowed; up to 1 it is an
-        answer, and inf where the equations depend on each other.
+        answer, and inf where the equations depend on each other otherwise.
     """
     k, x, w = state.size, np.zeros(2 * state.size), np.zeros(2 * state.size)
     rows, effect = _columns(state, problem)
-    n = rows.size
-    matrix, inverse, right = np.empty((n, n)), np.empty((n, n)), np.empty(n)
-    for a in range(n):
-        matrix[a], right[a] = effect[rows[a]], -problem.q[rows[a]]
-    if not invert(matrix.copy(), inverse, DEPENDENT):
+    found, spread = _unknowns(state, rows, effect, problem)
+    if spread == np.inf:
         return x, w, np.inf
-    found = _solved(matrix, inverse, right)
-    rounding, spread = 0.0, 1.0
+    rounding, left = 0.0, 0.0
     for i in range(2 * k):
         w[i], terms = problem.q[i], abs(problem.q[i])
-        for a in range(n):
+        for a in range(rows.size):
             w[i] += effect[i, a] * found[a]
             terms += abs(effect[i, a] * found[a])
         rounding = max(rounding, LCP_ROUNDING * terms + problem.noise[i])
-    for a in range(n):
-        # What the equations make of the rounding of their right-hand sides.
-        x[rows[a]], w[rows[a]], total = found[a], 0.0, 1.0
-        for b in range(n):
-            total += abs(inverse[a, b])
-        spread = max(spread, total)
+    for a in range(rows.size):
+        # Of dependent equations those left out hold, too, or there is no such motion.
+        left = max(left, abs(w[rows[a]]))
+        x[rows[a]], w[rows[a]] = found[a], 0.0
     for i in range(k):
         if state[i] == FORWARD or state[i] == BACKWARD:
             x[k + i] = _drag(i, state[i], problem) * x[i]
-    failing = _failing(state, x, w, problem)
+    failing = _failing(state, x, w, problem) if left <= rounding * spread else np.inf
     return x, w, failing / (rounding * spread) if failing > 0.0 else 0.0
 
 
@@ -180,13 +258,29 @@ def _failing(state: Ints, x: Floats, w: Floats, problem: Rubbing) -> float:
     return most
 
 
+@scalar_kernel
+def sticks_well(i: int, x: Floats, friction: Floats) -> bool:
+    """Whether friction of contact i is well below its bound, forces x (2k,)."""
+    bound = friction[i] * x[i]
+    return bound - abs(x[friction.size + i]) > TAKEN_OVER * bound
+
+
+@scalar_kernel
+def _held_well(state: Ints, x: Floats, problem: Rubbing) -> int:
+    """How many contacts stick with less than their bounds."""
+    count = 0
+    for i in range(state.size):
+        count += state[i] == STICK and sticks_well(i, x, problem.friction)
+    return count
+
+
 @kernel
 def _go_through(problem: Rubbing) -> tuple[Floats, Floats, Ints, int]:
-    """Every state; the answer that keeps the inequalities best."""
+    """Every state; of answers with one motion that with most sticks, then the most exact one."""
     k = problem.way.size
     state, best = np.zeros(k, np.int64), np.zeros(k, np.int64)
     x, w, least, outcome = np.zeros(2 * k), np.zeros(2 * k), np.inf, NO_ANSWER
-    going = True
+    most, going = -1, True
     while going:
         force, motion, excess = solve_state(state, problem)
         if excess <= 1.0:
@@ -194,8 +288,9 @@ def _go_through(problem: Rubbing) -> tuple[Floats, Floats, Ints, int]:
                 outcome = UNIQUE
             elif np.max(np.abs(motion - w)) > SAME_ANSWER:
                 outcome = SEVERAL
-            if excess < least:
-                x, w, least = force, motion, excess
+            sticks = _held_well(state, force, problem)
+            if sticks > most or (sticks == most and excess < least):
+                x, w, least, most = force, motion, excess, sticks
                 best[:] = state
         going = _next_state(state, problem)
     return x, w, best, outcome
@@ -244,7 +339,16 @@ def _by_lemke(problem: Rubbing) -> tuple[Floats, Floats, Ints, int]:
             state[i] = BACKWARD if ends else STICK
     # From the state anew, without the rounding of many pivots.
     x, w, excess = solve_state(state, problem)
-    return x, w, state, ANSWERED if solved and excess <= 1.0 else NO_ANSWER
+    if not (solved and excess <= 1.0):
+        return x, w, state, NO_ANSWER
+    # It is a corner of all answers with this motion: rather the one in which what need not slides.
+    still = state.copy()
+    for i in free:
+        still[i] = STICK if state[i] != OPEN and abs(w[k + i]) <= SAME_ANSWER else state[i]
+    force, motion, excess = solve_state(still, problem)
+    if excess <= 1.0 and np.max(np.abs(motion - w)) <= SAME_ANSWER:
+        return force, motion, still, ANSWERED
+    return x, w, state, ANSWERED
 
 
 @kernel

@@ -175,6 +175,23 @@ def test_redundant_contacts_have_one_motion() -> None:
         np.testing.assert_allclose(found, along @ w, atol=1e-5)
 
 
+def test_friction_that_is_not_unique_is_the_least() -> None:
+    """Two corners stick with the least of all forces, or one of them is at its bound."""
+    rows = np.array([[0.0, 1.0, -2.0], [0.0, 1.0, 2.0], [1.0, 0.0, -1.0], [1.0, 0.0, -1.0]])
+    W, friction, both = rows / np.array([1.0, 1.0, 1.5]), np.full(2, 0.4), np.zeros(2, int)
+    scale = np.sqrt(np.diag(W @ W.T))
+    # Either corner of what presses is at the bound last: N_1 + N_2 = 1 carries 0.4 at most.
+    for load, states in ((0.0, "ss"), (0.3, "ss"), (0.39, "s+ +s"), (0.41, "++")):
+        q = W @ [load, -1.0, 0.0]
+        x, w, state, outcome = _solve(W @ W.T, q, friction, both)
+        assert outcome == UNIQUE
+        assert "".join("o+-s"[s] for s in state) in states.split()
+        np.testing.assert_allclose(w, W @ [max(0.0, load - 0.4), 0.0, 0.0], atol=1e-15)
+        if states == "ss":
+            least = np.linalg.lstsq(W.T / scale, [-load, 1.0, 0.0])[0]
+            np.testing.assert_allclose(x * scale, least, atol=1e-15)
+
+
 def test_one_corner_of_a_rectangle() -> None:
     """Slip and stick of a corner that strikes a wall have regions in closed form."""
     rng = np.random.default_rng(9)
@@ -235,6 +252,14 @@ def test_paradox_of_painleve() -> None:
 def test_many_contacts() -> None:
     """More than can be gone through: by Lemke's method, the answers of parts by themselves."""
     rng = np.random.default_rng(3)
+    # Six on one line share what presses and what shears; none needs to slide.
+    rows = np.array([[0.0, 1.0, a - 2.5] for a in range(6)] + [[1.0, 0.0, -1.0]] * 6)
+    q = rows @ [0.1, -1.0, 0.0]
+    x, w, state, outcome = _solve(rows @ rows.T, q, np.full(6, 0.4), np.zeros(6, int))
+    assert outcome == ANSWERED
+    assert _violation(rows @ rows.T, q, np.full(6, 0.4), np.zeros(6, int), x) < 1e-12
+    assert np.abs(w).max() < 1e-12
+    assert np.isin(state, (OPEN, STICK)).all()
     for k in (6, 12, 25):
         for _ in range(10):
             W = rng.normal(size=(2 * k, 2 * k)) + 4.0 * np.eye(2 * k)

@@ -16,7 +16,7 @@ from eventpound.mechanics.elements import branch_ends, has_branches, memory_on_b
 from eventpound.mechanics.link_law import STRENGTH, YIELDING
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_in
-from eventpound.mechanics.oblique import Slips, are_tied, with_slips
+from eventpound.mechanics.oblique import Slips, are_tied, share_out, with_slips
 from eventpound.mechanics.observables import Bodies, bodies_of
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -128,6 +128,8 @@ class ModeTable:
         clusters = form_clusters_of_few(between_of(model), resting, pressed)
         slips = _slips_of(model, clusters, branch)
         if model.rubbing.size > 0:
+            if not clusters.tree:
+                in_python(share_out)(between_of(model), clusters)
             clusters = with_slips(clusters, slips, model.rubbing.size, model.mass)
         branches = Branches(*model.elastic.on_side(branch))
         system = in_python(reduce)(
@@ -143,16 +145,16 @@ class ModeTable:
         bodies = bodies_of(model, clusters, system, *branches, frozen)
         if model.rubbing.size > 0:
             bodies = bodies._replace(
-                slips=np.column_stack((model.rubbing, model.own_contacts + _numbers(model)))[
-                    slips.which
-                ],
+                slips=np.column_stack((model.rubbing, _tangential(model)))[slips.which],
                 drag=slips.drag,
                 rubbed=self.rubbed,
             )
         bodies = with_address(bodies)
         system = with_address(system)
         unlocked = resting.copy()
-        unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
+        # Where friction is not unique each takes part of it, and has a bound.
+        idle = clusters.redundant & ~np.isin(clusters.resting, _tangential(model))
+        unlocked[clusters.resting[clusters.locked | idle]] = False
         opened = ~resting
         opened[model.laws] = opened[model.own_contacts :] = False
         kink, turns = model.elastic.offset, branch == YIELDING
@@ -185,9 +187,9 @@ class ModeTable:
         return Mode(branch.copy(), clusters, system, bodies, watched, dynamics)
 
 
-def _numbers(model: Model) -> Ints:
-    """Of the contacts with friction, from 0."""
-    return np.arange(model.rubbing.size)
+def _tangential(model: Model) -> Ints:
+    """The contacts along those with friction (F,)."""
+    return model.contacts - model.rubbing.size + np.arange(model.rubbing.size)
 
 
 def _slips_of(model: Model, clusters: Clusters, branch: Ints) -> Slips:
