@@ -20,7 +20,7 @@ _MOST_LINES = 6
 def colours_of(values: Floats, high: float | None, around_one: bool) -> tuple[Normalize, str]:
     """Range and name of the colours of values, shape (n,), up to a given one where that is said.
 
-    Of a ratio that is judged by 1 they have two sides.
+    Of a ratio that is judged by 1, and of values of both signs, they have two sides.
     """
     known = values[np.isfinite(values)]
     least, most = (known.min(), known.max()) if known.size else (0.0, 1.0)
@@ -28,6 +28,9 @@ def colours_of(values: Floats, high: float | None, around_one: bool) -> tuple[No
     if around_one:
         away = max(most - 1.0, 1.0 - float(least)) or 1.0
         return Normalize(1.0 - away, 1.0 + away), "RdBu_r"
+    if least < 0.0 < most:
+        away = max(most, -float(least))
+        return Normalize(-away, away), "RdBu_r"
     return Normalize(float(least), most if most > least else float(least) + 1.0), "viridis"
 
 

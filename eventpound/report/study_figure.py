@@ -276,6 +276,10 @@ def _draw_map(axes: Axes, plan: FigurePlan, panel: _Panel, page: Sequence[pd.Dat
     draw_map(axes, grid, colours, levels)
     for mark in plan.marks:
         axes.axvline(mark / panel.units[0], color=_WITHOUT, linewidth=0.8, linestyle=":")
+    if plan.line:
+        x, y = np.transpose(plan.line)
+        axes.autoscale(enable=False)
+        axes.plot(x / panel.units[0], y / unit.size, color="black", linestyle="--")
     axes.set(xlabel=panel.labels[0], ylabel=axis_label(plan.curves, unit))
     axes.set_title("\n".join(filter(None, (panel.title, panel.labels[1]))))
 

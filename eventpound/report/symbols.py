@@ -61,6 +61,10 @@ _OF_RUN: dict[tuple[str, str], _Called] = {
         for name, key in options()
         if key.dimension
     },
+    **{("deck", name): (name, Dimension.LENGTH) for name in ("length", "width")},
+    ("deck", "skew"): ("skew", Dimension.ANGLE),
+    ("joint", "gap"): ("gap", Dimension.LENGTH),
+    ("joint", "friction"): (r"$\mu$", Dimension.NUMBER),
     ("pi", "periods"): ("length of the run in periods", Dimension.NUMBER),
 }
 """By kind and quantity, with those of a suite, of a dimensional spectrum and of keys of a case."""

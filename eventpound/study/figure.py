@@ -12,6 +12,7 @@ regions = 0.1               # the curve whose amplification is marked
 kind = "map"                # y in colours over x and curves; "curves" without it
 gain = true                 # its amplification, in a strip below each panel
 largest = 0.25              # a marker where each curve is largest from this x on
+line = [[0.1, 0.2], [1, 2]] # of a map: points that a dashed line joins, as of a closed form
 """
 
 from __future__ import annotations
@@ -69,6 +70,8 @@ class FigurePlan:
         Value of `x` from which on a marker stands where each curve is largest.
     levels : tuple of float
         Where horizontal lines are drawn.
+    line : tuple of tuple of float
+        Points x and y of a map that a dashed line joins; may be empty.
     model : bool
         Whether the scene is drawn, too, with the laws of its springs, in a file of its own.
     claim : str
@@ -99,6 +102,7 @@ class FigurePlan:
     column_titles: tuple[str, ...]
     largest: float | None
     levels: tuple[float, ...]
+    line: tuple[tuple[float, float], ...]
     model: bool
     claim: str
     note: str
@@ -121,8 +125,11 @@ class FigurePlan:
             yield from self._map_problems(study)
 
     def _map_problems(self, study: Plan) -> Iterator[str]:
-        axes = {axis.key: axis.together or axis.key for base in study.bases for axis in base.axes}
-        for x in {key or study.bases[0].axes[-1].key for key in self.x} if axes else ("",):
+        # Numbers of decks, each of which makes another scene, are axes as others are.
+        labels = (each for base in study.bases for each in base.labels.items())
+        axes = {key: key for key, value in labels if type(value) in (int, float)}
+        axes |= {axis.key: axis.together or axis.key for base in study.bases for axis in base.axes}
+        for x in {key or [*axes][-1] for key in self.x} if axes else ("",):
             own = (x, self.curves)
             if len({axes.get(key, "") for key in own} - {""}) < len(own):
                 yield (
@@ -170,6 +177,7 @@ def _read_figure(table: Table) -> FigurePlan:
         x_labels=_columns(table, "x_label", ()),
         y_labels=_columns(table, "y_label", ()),
         column_titles=_columns(table, "column_titles", ()),
+        line=_line(table),
         model=table.flag("model"),
         **further,
     )
@@ -183,6 +191,20 @@ def _map(table: Table) -> bool:
     accepted = "a figure with curves, the second axis, and without grey, regions, nested, largest"
     table.require("kind", not wanted or (table.has("curves") and not others), accepted)
     return wanted
+
+
+def _line(table: Table) -> tuple[tuple[float, float], ...]:
+    """Points of a line on a map."""
+    given: Any = table.data["line"] if table.has("line") else []
+    good = isinstance(given, list) and all(
+        isinstance(p, list) and len(p) == 2 and all(type(v) in (int, float) for v in p)
+        for p in given
+    )
+    of_map = not given or table.data.get("kind") == FigureKind.MAP
+    if not (good and of_map):
+        table.reject("line", 'points [[x, y], ...] as numbers in SI, of a figure of kind "map"')
+        return ()
+    return tuple((float(x), float(y)) for x, y in given)
 
 
 def _gain(table: Table, regions: float | None) -> bool:

@@ -105,6 +105,21 @@ def test_a_whole_edge_turns_a_deck_of_enough_skew(skew: float) -> None:
     assert v == pytest.approx(expected, rel=1e-12, abs=1e-15)
 
 
+@pytest.mark.parametrize("skew", [0.5, 0.8])
+def test_an_edge_that_slips_has_another_boundary(skew: float) -> None:
+    """What pushes leans by φ = arctan μ, and hits the edge where it hits that of less skew."""
+    friction, L = 0.3, 40.0
+    lean = math.atan(friction)
+    boundary = L * math.sin(skew - lean) * math.cos(skew) / math.cos(lean)
+    for part in (0.98, 1.02):
+        deck = Deck("D", "1200 t", L, part * boundary, skew)
+        joint = Joint("wall", ("D", BARRIER), 0.02, 0.5, friction)
+        start = DeckStart(velocity=(0.5, 0.0))
+        contacts = joint.contacts({"D": deck})
+        v = run(Scene(deck.bodies(start), contacts=contacts, decks=[deck]), 0.1).v
+        assert (abs(v[2]) > 1e-6) == (part < 1.0)
+
+
 def bridge(
     skew: float, motion: GroundMotion, across: GroundMotion, attack: float = 0.0, e: float = 0.5
 ) -> Scene:

@@ -2,10 +2,16 @@
 
 import math
 
+import numpy as np
+import pandas as pd
 import pytest
 
 from eventpound.errors import InputError
+from eventpound.report.study_figure import study_figures
+from eventpound.study.plan import Chunk
 from eventpound.study.reading import load_study
+from eventpound.study.table import compute
+from tests.models import CASES
 
 TEXT = """
 [excitation]
@@ -58,3 +64,27 @@ def test_each_value_is_a_scene_of_its_own(tmp_path):
 def test_an_axis_of_no_deck(tmp_path):
     with pytest.raises(InputError, match=r"deck\.C\.skew.*no \[\[deck\]\] of that name"):
         loaded(tmp_path, TEXT.replace('"deck.skew"', '"deck.C.skew"'))
+
+
+def test_a_map_of_rotations_with_its_boundary():
+    """A whole edge without friction turns a deck where W/L < |sin 2 alpha|/2, as the line says."""
+    case = load_study(CASES / "skew-map")
+    (plan,), study = case.figures, case.study
+    for skew, width in plan.line:
+        # Four digits.
+        assert width == pytest.approx(abs(math.sin(2.0 * skew)) / 2.0, abs=5e-5)
+    rows = [compute(study, Chunk(0, i, 0, 1)).decode().split(",") for i in range(0, 494, 13)]
+    table = pd.DataFrame(
+        [[float(cell) for cell in row[:4]] for row in rows],
+        columns=[*study.columns, "turned", "impacts"],
+    )
+    width, skew = table["deck.deck.width"], table["deck.deck.skew"]
+    turns = width < np.abs(np.sin(2.0 * skew)) / 2.0
+    assert (table["turned"].abs() > 1e-5).tolist() == turns.tolist()
+    assert (np.sign(table["turned"]) == -np.sign(skew))[turns].all()
+    ((_, figure),) = study_figures(case, plan, table.assign(**{plan.y[0]: table["turned"]}))
+    (line,) = [each for each in figure.axes[0].get_lines() if each.get_linestyle() == "--"]
+    # The length of the deck is 1 m, and the axis in cm.
+    assert line.get_xydata() * [1.0, 0.01] == pytest.approx(np.array(plan.line))
+    low, high = figure.axes[0].collections[0].get_clim()
+    assert low == -high

@@ -106,6 +106,10 @@ def test_a_map_has_the_values_of_the_table(drawn):
             "kind: found map of 'pi.Q' over 'excitation.reverse'; acc",
         ),
         (
+            'curves = "pi.delta"\ncolumns = "excitation.reverse"\nline = [[0.1, 0.2, 0.3]]\n',
+            r"line: found \[\[0.1, 0.2, 0.3\]\]; accepted: points",
+        ),
+        (
             'curves = "pi.delta"\n',
             "kind: found several runs in one place of the map; accepted: excitation.rev",
         ),

@@ -17,7 +17,7 @@ NAMES = [
     for file in sorted(FOLDER.glob("*/case.toml"))
     if {"study", "figure"} <= tomllib.loads(file.read_text(encoding="utf-8")).keys()
 ]
-OF_THE_PAPER = [name for name in NAMES if name != "contact-laws"]
+OF_THE_PAPER = [name for name in NAMES if name not in ("contact-laws", "skew-map")]
 
 
 @pytest.mark.parametrize("name", OF_THE_PAPER)
@@ -52,6 +52,7 @@ def test_runs_drawn_at_random_succeed(name):
     study = loaded(name).study
     rng = np.random.default_rng(4)
     for base in rng.choice(len(study.bases), min(3, len(study.bases)), replace=False).tolist():
-        low = int(rng.integers(0, study.bases[base].size - 1))
-        rows = compute(study, Chunk(0, base, low, low + 2)).decode().splitlines()
+        size = study.bases[base].size
+        low = int(rng.integers(0, max(size - 1, 1)))
+        rows = compute(study, Chunk(0, base, low, min(low + 2, size))).decode().splitlines()
         assert all(row.endswith(",True,") for row in rows)
