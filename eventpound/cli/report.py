@@ -8,7 +8,7 @@ anywhere ("separation needed"), then contacts, springs, storeys and bodies. A su
 Files, in CASE/results/report: report.pdf, two pages of A4; report.html, these
 pages and an appendix with all figures, tables and quantities; report.xlsx, all numbers in the
 units of the report; report.csv, a row a demand (of a study: for each combination of its axes), SI;
-motion.html, histories, gaps and loops that zoom, with events to click;
+motion.html, histories, gaps and loops that zoom, with events to click, and decks as they move;
 and the results of the runs. Further runs are made: one without contact, and one for
 each contact. A suite or a study that was stopped goes on. Records alone and a study in Π-terms have
 the appendix only.

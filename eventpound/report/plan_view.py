@@ -1,4 +1,7 @@
-"""A bridge from above: its decks at rest, or where they are at an instant, with every gap."""
+"""A bridge from above: its decks at rest, or where they are at an instant, with every gap.
+
+Also what the page that zooms needs to show it move.
+"""
 
 from __future__ import annotations
 
@@ -58,7 +61,10 @@ def plan_figure(
     state : mapping of str to float, optional
         Displacements of the bodies (m): where the decks are drawn, larger than they are.
     """
-    times = 1.0 if state is None else _times(scene, state, max(_bounds(scene)[2:]))
+    times = 1.0
+    if state is not None:
+        rows = {name: np.array([u]) for name, u in state.items()}
+        times = _times(_largest(scene, rows), max(_bounds(scene)[2:]))
     scene = _with_gaps(scene, times)
     left, low, width, height = _bounds(scene)
     right, high, long = left + width, low + height, max(width, height)
@@ -128,10 +134,19 @@ def _moved(deck: Deck, at: tuple[float, float], state: _State | None, times: flo
     return moved
 
 
-def _times(scene: Scene, state: _State, long: float) -> float:
+def _largest(scene: Scene, u: Mapping[str, Floats]) -> float:
+    """Largest displacement of a corner (m), by rows of those of bodies."""
+    found = 0.0
+    for deck in scene.decks:
+        x, y, turn = (u[coordinate_of(deck.name, word)] for word in DIRECTIONS)
+        angle = turn / deck.radius
+        sizes = (np.hypot(x - angle * b, y + angle * a).max() for a, b in deck.corners)
+        found = max(found, *map(float, sizes))
+    return found
+
+
+def _times(largest: float, long: float) -> float:
     """How much larger displacements are drawn, a round number."""
-    ends = [(deck, at) for deck in scene.decks for at in deck.corners]
-    largest = max(math.dist(_placed(d, at), _moved(d, at, state, 1.0)) for d, at in ends)
     if largest == 0.0:
         return 1.0
     most = min(_MOST_TIMES, _SHOWN * long / largest)
@@ -150,7 +165,8 @@ def _draw_deck(axes: Axes, deck: Deck, color: str, state: _State | None, times: 
     said = literal(deck.name)
     if state is not None:
         angle = state[coordinate_of(deck.name, DIRECTIONS[2])] / deck.radius
-        said += f"\n{1e3 * angle:.2g} mrad"
+        # What rounding leaves of nothing is nothing.
+        said += f"\n{round(1e3 * angle, 9):.2g} mrad"
     x, y = now.mean(axis=0)
     axes.text(x, y, said, ha="center", va="center", color=_INK)
 
@@ -175,16 +191,14 @@ def _draw_contact(
     now, (n_x, n_y) = np.mean(places, axis=0), ends[0].normal
     at = now
     if BARRIER in (contact.left, contact.right):
-        at = _placed(decks[ends[0].deck], ends[0].at)
-        way = 1.0 if contact.right == BARRIER else -1.0
-        half = 0.2 * decks[ends[0].deck].width
-        edge = np.array([-n_y, n_x])
-        middle = at + way * times * contact.gap * np.array([n_x, n_y])
-        axes.plot(*np.transpose([middle - half * edge, middle + half * edge]), color=_INK)
+        deck = decks[ends[0].deck]
+        at = _placed(deck, ends[0].at)
+        front = _wall(contact, deck, times)
+        axes.plot(*front.T, color=_INK)
         hatch: Any = {"fill": False, "hatch": "////", "edgecolor": "#888888", "linewidth": 0.0}
-        back = middle + way * _WALL * decks[ends[0].deck].length * np.array([n_x, n_y])
-        corners = [middle - half * edge, middle + half * edge, back + half * edge]
-        axes.fill(*np.transpose([*corners, back - half * edge]), **hatch)
+        way = 1.0 if contact.right == BARRIER else -1.0
+        back = front[::-1] + way * _WALL * deck.length * np.array([n_x, n_y])
+        axes.fill(*np.concatenate([front, back]).T, **hatch)
     axes.plot(*now, "o", color=PALETTE[2], markersize=3.0)
     unit, size = trade.unit(Dimension.LENGTH.unit)
     opening = contact.gap
@@ -203,3 +217,42 @@ def _draw_contact(
     )
     # The margin has room for it.
     label.set_in_layout(False)
+
+
+def _wall(contact: Contact, deck: Deck, times: float) -> Floats:
+    """Ends of the front of an abutment at a contact (m), its gap drawn larger, shape (2, 2)."""
+    (end,) = _places(contact)
+    n_x, n_y = end.normal
+    way, half = 1.0 if contact.right == BARRIER else -1.0, 0.2 * deck.width
+    middle = _placed(deck, end.at) + way * times * contact.gap * np.array([n_x, n_y])
+    edge = half * np.array([-n_y, n_x])
+    return np.array([middle - edge, middle + edge])
+
+
+def moving_plan(view: View) -> dict[str, Any] | None:
+    """What moves in plan, for a page: shapes at rest with gaps as drawn; None without decks (m)."""
+    scene = view.scene
+    if scene is None or not scene.decks:
+        return None
+    u = {body.name: view.displacement(body.name) for body in scene.bodies}
+    times = _times(_largest(scene, u), max(_bounds(scene)[2:]))
+    scene = _with_gaps(scene, times)
+    places = {deck.name: i for i, deck in enumerate(scene.decks)}
+    contacts = []
+    for contact in filter(_places, scene.contacts):
+        ends = _places(contact)
+        apart = BARRIER not in (contact.left, contact.right)
+        wall = None if apart else _wall(contact, scene.decks[places[ends[0].deck]], times).tolist()
+        at = [[places[end.deck], *end.at] for end in ends]
+        contacts.append({"name": contact.name, "at": at, "wall": wall})
+    left, low, wide, high = _bounds(scene)
+    margin = _MARGIN * max(wide, high)
+    return {
+        "times": times,
+        "box": [left - margin, low - margin, wide + 2.0 * margin, high + 2.0 * margin],
+        "decks": [
+            {"name": deck.name, "centre": deck.centre, "corners": deck.corners}
+            for deck in scene.decks
+        ],
+        "contacts": contacts,
+    }

@@ -95,12 +95,12 @@ function drawPanel(panel) {
   pen.lineWidth = 1.2;
   panel.lines.forEach((each, i) => {
     if (panel.hidden.has(i)) return;
-    pen.strokeStyle = color(i);
+    pen.strokeStyle = color(each.hue);
     line(pen, X, Y, each.y, from, to);
     if (panel.marks) run.events.forEach((event, k) => {
       if (event.contact !== each.name || event.t < range[0] || event.t > range[1]) return;
       pen.beginPath(); pen.arc(X(event.t), Y(0), 3.5, 0, 7);
-      pen.fillStyle = event.struck ? "#fff" : color(i); pen.fill(); pen.stroke();
+      pen.fillStyle = event.struck ? "#fff" : color(each.hue); pen.fill(); pen.stroke();
       panel.hits.push([X(event.t), Y(0), k]);
     });
   });
@@ -144,6 +144,7 @@ function choose(k, near) {
   chosen = k;
   const event = run.events[k], half = near ? 0.25 : (range[1] - range[0]) / 2;
   document.getElementById("said").textContent = event.said;
+  document.dispatchEvent(new CustomEvent("chosen", {detail: event.t}));
   if (near || event.t < range[0] || event.t > range[1]) show(event.t - half, event.t + half); else draw();
 }
 
@@ -160,7 +161,7 @@ for (const panel of panels) {
     const label = document.createElement("label"), tick = document.createElement("input");
     tick.type = "checkbox"; tick.checked = true;
     tick.onchange = () => { if (tick.checked) panel.hidden.delete(i); else panel.hidden.add(i); draw(); };
-    label.style.color = color(i); label.append(tick, each.name); names.append(label);
+    label.style.color = color(each.hue); label.append(tick, each.name); names.append(label);
   });
   box.append(names, panel.canvas); main.append(box);
   let from = null;

@@ -1,6 +1,7 @@
 """A page of one run that zooms: histories, gaps, loops, and events to click.
 
 One file in itself: data and a script of plain JavaScript, which loads nothing.
+Of decks in plan it shows the bridge from above as it moves.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from eventpound.contact.event import STRIKES
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.report.html import document
 from eventpound.report.loops import nonlinear_springs
+from eventpound.report.plan_view import moving_plan
 from eventpound.report.style import PALETTE
 from eventpound.report.view import View, traces_of
 from eventpound.results.jsontext import canonical
@@ -27,12 +29,13 @@ ZOOM_PAGE = "motion.html"
 _MOST_ROWS, _MOST_EVENTS, _MOST_LOOPS = 40_000, 5_000, 24
 """Of a page: 40 000 rows of ten columns are some 4 MB."""
 _DIGITS = 7
+_HERE = files("eventpound.report")
 _BODY = """\
 <h1>{title}</h1>
 <p>Wheel: zoom. Drag: move. Double click: all. A click on a mark or on a row: that event.
 <button id="all">all</button> <span id="range"></span></p>
 <p id="said"></p>
-<div id="panels"></div>
+{plan}<div id="panels"></div>
 <div id="loops"></div>
 <h2>Events</h2>
 <div id="events"><table>
@@ -42,6 +45,14 @@ _BODY = """\
 {more}<script type="application/json" id="run">{data}</script>
 <script>
 {script}</script>
+"""
+
+
+_PLAN = """\
+<p><button id="play">play</button> <select id="speed"><option value="0.2">a fifth of real speed\
+<option value="1" selected>real speed<option value="5">five times</select> \
+<span id="now"></span></p>
+<canvas id="plan"></canvas>
 """
 
 
@@ -69,6 +80,10 @@ def zoom_page(view: View, title: str, trade: Trade) -> bytes:
         "force": trade.unit(Dimension.FORCE.unit)[0],
         "length": trade.unit(Dimension.LENGTH.unit)[0],
     }
+    scripts = ["zoom.js"]
+    if (plan := moving_plan(view)) is not None:
+        data["plan"] = plan | {"size": trade.unit(Dimension.LENGTH.unit)[1]}
+        scripts.append("zoom_plan.js")
     left_out = len(view.column("t")) - kept.size
     more = [f"{left_out} rows of the history are left out, none at an event."] * bool(left_out)
     more += [f"and {len(events) - len(shown)} more events"] * (len(events) > len(shown))
@@ -79,7 +94,8 @@ def zoom_page(view: View, title: str, trade: Trade) -> bytes:
         more="".join(f"<p>{text}</p>\n" for text in more),
         # What ends a script in a text would end it here.
         data=canonical(data).decode().replace("<", "\\u003c"),
-        script=(files("eventpound.report") / "zoom.js").read_text(encoding="utf-8"),
+        plan=_PLAN if plan else "",
+        script="".join((_HERE / name).read_text(encoding="utf-8") for name in scripts),
     )
     return document(title, ["page.css", "zoom.css"], [body])
 
@@ -102,17 +118,26 @@ def _short(values: Floats) -> list[float | None]:
 def _panels(view: View, kept: Ints, trade: Trade) -> Iterator[dict[str, Any]]:
     """The ground, the bodies and the gaps over time."""
     contacts = [contact.name for contact in view.contacts]
+    # What moves along, across and turns has one colour.
+    of_owner: dict[str, int] = {}
     traces = (
-        (each.name, Dimension.ANGLE if each.turned else Dimension.LENGTH, each.curves.values())
-        for each in traces_of(view)
+        (t.name, Dimension.ANGLE if t.turned else Dimension.LENGTH, t.curves.values(), of_owner)
+        for t in traces_of(view)
     )
-    for name, dimension, curves in (
-        ("ground", Dimension.ACCELERATION, [("a_g", view.column("a_g"))]),
+    for name, dimension, curves, hues in (
+        ("ground", Dimension.ACCELERATION, [("a_g", view.column("a_g"))], dict[str, int]()),
         *traces,
-        ("gap", Dimension.LENGTH, [(name, view.column(f"gap.{name}")) for name in contacts]),
+        ("gap", Dimension.LENGTH, [(name, view.column(f"gap.{name}")) for name in contacts], {}),
     ):
         unit, size = trade.unit(dimension.unit)
-        lines = [{"name": own, "y": _short(values[kept] / size)} for own, values in curves]
+        lines = [
+            {
+                "name": own,
+                "y": _short(values[kept] / size),
+                "hue": hues.setdefault(own, len(hues)),
+            }
+            for own, values in curves
+        ]
         if lines:
             yield {"name": name, "unit": unit, "lines": lines, "marks": name == "gap"}
 

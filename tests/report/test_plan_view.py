@@ -7,9 +7,11 @@ import pytest
 
 from eventpound import simulate
 from eventpound.report.model_figure import model_figure
-from eventpound.report.plan_view import plan_figure
+from eventpound.report.plan_view import moving_plan, plan_figure
 from eventpound.report.run_appendix import _CAPTIONS
-from eventpound.report.run_figures import figures
+from eventpound.report.run_figures import figures, view_of_run
+from eventpound.report.zoom import zoom_page
+from eventpound.results.trade import Trade
 from eventpound.scene import BARRIER, Deck, Joint, Scene
 from eventpound.scene.deck import place_in_a_row
 
@@ -60,10 +62,16 @@ def test_a_state_is_drawn_as_large_whatever_its_size(factor):
     assert times == pytest.approx(min(100.0, 5.0 / factor), rel=0.6)
 
 
-def test_displacements_by_directions_and_rotations():
+def moved():
+    """Decks that nothing holds, half a second of them."""
     scene = bridge()
     bodies = [replace(body, velocity=0.3) for body in scene.bodies]
-    drawn = figures(simulate(replace(scene, bodies=bodies), duration=0.5, output_step=0.01))
+    return simulate(replace(scene, bodies=bodies), duration=0.5, output_step=0.01)
+
+
+def test_displacements_by_directions_and_rotations():
+    response = moved()
+    scene, drawn = response.scene, figures(response)
     panels = {axes.get_ylabel().split(" (")[0]: axes for axes in drawn["displacements.png"].axes}
     assert {"along", "across", "rotation", "gap"} <= set(panels)
     line = next(each for each in panels["rotation"].get_lines() if each.get_label() == "B")
@@ -73,3 +81,29 @@ def test_displacements_by_directions_and_rotations():
     assert "west.lower: barrier | A" in [each.get_label() for each in panels["gap"].get_lines()]
     # The report has something to say of each.
     assert set(drawn) <= set(_CAPTIONS)
+
+
+def test_the_page_that_zooms_shows_the_bridge_move():
+    response = moved()
+    view = view_of_run(response)
+    plan = moving_plan(view)
+    (west, _, middle, _), u = plan["contacts"], response.history
+    assert middle["wall"] is None
+    assert [k for k, *_ in middle["at"]] == [0, 1]
+    # The wall is as far from the corner, at right angles, as the gap that is drawn.
+    (k, x, y), deck = west["at"][0], plan["decks"][0]
+    corner, normal = np.add(deck["centre"], (x, y)), np.array([np.cos(0.5), np.sin(0.5)])
+    assert k == 0
+    assert (corner - west["wall"]) @ normal == pytest.approx([0.06 * plan["times"]] * 2)
+    # The largest displacement of a corner is drawn as no more than a part of the bridge.
+    first = response.scene.decks[0]
+    far = max(
+        np.hypot(u["u.A.x"] - b * turn, u["u.A.y"] + a * turn).max()
+        for turn in (u["u.A.turn"] / first.radius,)
+        for a, b in first.corners
+    )
+    assert 1.0 <= plan["times"] <= 0.06 * 80.0 / far
+    page = zoom_page(view, "two spans", Trade()).decode()
+    assert '<canvas id="plan">' in page
+    assert '"rotation"' in page
+    assert "drawPlan" in page
