@@ -371,7 +371,7 @@ class Response:
 
     @property
     def events(self) -> pd.DataFrame:
-        """Every impact, accumulation, rest, detachment and separation.
+        """Every impact, accumulation, rest, detachment and separation, slip and stick.
 
         One row a contact, columns as in ``events.csv``; contacts are named.
         """
@@ -402,9 +402,10 @@ class Response:
     def event_rows(self) -> list[tuple[Any, ...]]:
         """Rows of `events`."""
         names = [contact.name for contact in self.scene.contacts]
-        return [
-            (e.t, e.kind.value, e.group, names[e.contact], *e[4:]) for e in self.recording.events
-        ]
+        listed: Sequence[Event] = self.recording.events
+        if self.recording.slides:
+            listed = sorted((*listed, *self.recording.slides), key=lambda e: e.t)
+        return [(e.t, e.kind.value, e.group, names[e.contact], *e[4:]) for e in listed]
 
     @property
     def history(self) -> pd.DataFrame:

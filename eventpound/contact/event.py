@@ -19,12 +19,20 @@ class EventKind(StrEnum):
     """A resting contact was opened by an impulse elsewhere."""
     CUT = "cut-impact"
     """A contact with a law was closed, an impact that the end of the run cuts."""
+    STICK = "stick"
+    """A contact with friction rests without sliding from then on."""
+    SLIP_FORWARD = "slip-forward"
+    """It slides: its second body to the left, as one looks from the first to the second."""
+    SLIP_BACKWARD = "slip-backward"
+    """The other way."""
 
 
 STRIKES = (EventKind.IMPACT, EventKind.ACCUMULATION)
 """What an approach ends in: an impact, or infinitely many."""
 ENDS_OF_REST = (EventKind.DETACHMENT, EventKind.SEPARATION)
 """What ends a rest."""
+FRICTION_KINDS = (EventKind.STICK, EventKind.SLIP_FORWARD, EventKind.SLIP_BACKWARD)
+"""What friction does while a contact rests."""
 
 
 class Event(NamedTuple):

@@ -20,6 +20,7 @@ from eventpound.numerics.compiled import scalar_kernel
 IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED, UNLISTED_LAST = (
     0, 1, 2, 3, 4, -1, -2, -3,
 )  # fmt: skip
+STICKS, SLIPS_FORWARD, SLIPS_BACKWARD = 5, 6, 7
 """Kinds of an event row; an impact too slow to be listed may yet be counted. The last of a
 cascade, after which there is no speed left, stands for all that would follow."""
 _KINDS = {
@@ -28,6 +29,9 @@ _KINDS = {
     REST: EventKind.REST,
     DETACHMENT: EventKind.DETACHMENT,
     SEPARATION: EventKind.SEPARATION,
+    STICKS: EventKind.STICK,
+    SLIPS_FORWARD: EventKind.SLIP_FORWARD,
+    SLIPS_BACKWARD: EventKind.SLIP_BACKWARD,
     # What was held back is listed where nothing gathered it.
     UNLISTED: EventKind.IMPACT,
     UNLISTED_LAST: EventKind.ACCUMULATION,
@@ -126,6 +130,12 @@ def write_change(
     if kind == REST:
         gather_unlisted(contact, now, events)
     write_event(EventRow(now.t, kind, group, contact, 0.0, rate, 0.0, 0.0, 1), now, events)
+
+
+@scalar_kernel
+def write_slide(kind: int, contact: int, group: int, now: Now, events: Floats) -> None:
+    """Write down that a contact at rest begins to stick or to slip, by the kind of its row."""
+    write_event(EventRow(now.t, kind, group, contact, 0.0, 0.0, 0.0, 0.0, 0), now, events)
 
 
 @scalar_kernel

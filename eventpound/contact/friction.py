@@ -22,6 +22,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.event_rows import (
+    SLIPS_BACKWARD,
+    SLIPS_FORWARD,
+    STICKS,
+    new_group,
+    write_slide,
+)
 from eventpound.contact.impacts import (
     DONE,
     NO_FORCES,
@@ -54,6 +61,7 @@ from eventpound.numerics.coulomb import (
     SEVERAL,
     STICK,
     Rubbing,
+    are_independent,
     solve_rubbing,
     sticks_well,
 )
@@ -269,8 +277,9 @@ def decide_friction(z: Floats, forcing: Forcing, noise: float, rubs: Rubs, at: I
     at.now[0].stale = True
     touching = touching_of(between_now(at), z, forcing, at)
     sliding = _sliding(np.flatnonzero(touching.undecided), rubs)
+    before = _kinds_before(sliding, at)
     ended, x, w, state, level = _solve(sliding, touching, rubs, at)
-    k = sliding.members.size
+    k, groups = sliding.members.size, at.now[0].groups
     for i in range(k):
         j, closed = sliding.members[i], state[i] != OPEN
         pressed[j] = closed and x[i] > noise
@@ -278,7 +287,55 @@ def decide_friction(z: Floats, forcing: Forcing, noise: float, rubs: Rubs, at: I
     _take_ways(sliding, state, resting, pressed, rubs, at)
     if ended == SEVERAL:
         return NOT_UNIQUE
-    return take_rests(resting, pressed, ended != NO_ANSWER, at)
+    ended = take_rests(resting, pressed, ended != NO_ANSWER, at)
+    if ended == DONE:
+        _list_slides(sliding, before, state, groups, at)
+    return ended
+
+
+@kernel
+def _kinds_before(sliding: Sliding, at: Instant) -> Ints:
+    """What contacts did up to the instant (k,): the kind of row that told it, -1 of open ones."""
+    k, K, L = sliding.members.size, at.gap.size, at.branch.size
+    kinds = np.full(k, -1)
+    for i in range(k):
+        t = sliding.rows[k + i]
+        if t >= 0 and at.resting[sliding.members[i]]:
+            way = at.branch[L - K + t]
+            if at.resting[t] or _is_at_bound(sliding.members[i], t, at):
+                kinds[i] = STICKS
+            elif way != 0:
+                # One whose slip has just ended is told anew, whatever follows.
+                kinds[i] = SLIPS_BACKWARD if way < 0 else SLIPS_FORWARD
+    return kinds
+
+
+@kernel
+def _list_slides(sliding: Sliding, before: Ints, state: Ints, groups: int, at: Instant) -> None:
+    """Write down which contacts at rest begin to stick or to slip, with the rests that begin."""
+    k, now, group = sliding.members.size, at.now[0], groups
+    for i in range(k):
+        t, kind = sliding.rows[k + i], STICKS
+        if t < 0 or state[i] == OPEN or not at.resting[sliding.members[i]]:
+            continue
+        if state[i] != STICK and (at.gap_rate[t] != 0.0 or not _is_held(i, sliding, state, at)):
+            kind = SLIPS_FORWARD if state[i] == FORWARD else SLIPS_BACKWARD
+        if kind != before[i]:
+            if now.groups == groups:
+                group = new_group(now)
+            write_slide(kind, sliding.members[i], group, now, at.events)
+
+
+@kernel
+def _is_held(i: int, sliding: Sliding, state: Ints, at: Instant) -> bool:
+    """Whether others that stick keep a member from sliding, which is at the bound of friction."""
+    k, rows, count = sliding.members.size, np.empty(2 * sliding.members.size + 1, np.int64), 0
+    for a in range(2 * k):
+        if sliding.rows[a] >= 0 and (state[a] != OPEN if a < k else state[a - k] == STICK):
+            rows[count] = sliding.rows[a]
+            count += 1
+    rows[count] = sliding.rows[k + i]
+    return not are_independent(_matrix(rows[: count + 1], at))[count]
 
 
 @kernel

@@ -130,7 +130,7 @@ def _solved(matrix: Floats, inverse: Floats, right: Floats) -> Floats:
 
 
 @kernel
-def _are_independent(effect: Floats) -> Bools:
+def are_independent(effect: Floats) -> Bools:
     """Unknowns (n,) that do what those before them do not, from what each does, (2k, n)."""
     rest, kept = effect.copy(), np.zeros(effect.shape[1], np.bool_)
     for a in range(kept.size):
@@ -155,7 +155,7 @@ def _least_forces(
     Forces of contacts that stick (n,) alone may do nothing together: any other would take part in
     the motion.
     """
-    kept = _are_independent(effect)
+    kept = are_independent(effect)
     own = np.flatnonzero(kept)
     m, n = own.size, kept.size
     part, inverse, found = np.empty((m, m)), np.empty((m, m)), np.zeros(n)

@@ -19,7 +19,7 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.separation import correlation, cqc
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
 from eventpound.scene.structures import structures_of
-from eventpound.solvers.base import Extremes, Recording
+from eventpound.solvers.base import EventKind, Extremes, Recording
 
 ROUNDED_UP = 1e-6
 """Part by which a separation is told too wide, so that rounding closes nothing in a run with it."""
@@ -344,6 +344,13 @@ def of_laws(name: str) -> Value:
 def has_friction(scene: Scene, i: int) -> bool:
     """Whether contact i has friction."""
     return scene.contacts[i].friction > 0.0
+
+
+def slips(many: Runs, i: int) -> Floats:
+    """How often contact i began to slip."""
+    return _of_each(
+        lambda run, i: sum(e.contact == i and e.kind is not EventKind.STICK for e in run.slides)
+    )(many, i)
 
 
 def of_friction(name: str) -> Value:

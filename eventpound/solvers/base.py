@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from eventpound.contact.event import ENDS_OF_REST as ENDS_OF_REST
+from eventpound.contact.event import FRICTION_KINDS as FRICTION_KINDS
 from eventpound.contact.event import Event as Event
 from eventpound.contact.event import EventKind as EventKind
 from eventpound.errors import ComputationError
@@ -315,6 +316,8 @@ class Recording:
         Largest value of each gap (m).
     sticks : tuple of Stick
         Of sliders, in order of time.
+    slides : tuple of Event
+        Where contacts with friction begin to stick or to slip, in order of time.
     unique_z : ndarray of bool, shape (H,), optional
         False for the z of a slider whose friction was, at some time, not unique; None where the
         scene has no sliders.
@@ -346,6 +349,7 @@ class Recording:
     integrated: float | None = None
     largest_gap: Floats | None = None
     sticks: tuple[Stick, ...] = ()
+    slides: tuple[Event, ...] = ()
     unique_z: np.ndarray | None = None
     friction: FrictionRecording | None = None
 

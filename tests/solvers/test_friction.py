@@ -66,6 +66,13 @@ def test_a_shaken_block_sticks_and_slips(energy: bool) -> None:
     exact = slid_under(amplitude, period, friction * GRAVITY, end)
     recording = _run(scene, end, energy=energy)
     assert recording.u[0] == pytest.approx(exact, abs=1e-6)
+    # Both corners rest, and let go together as the ground goes away to the right under them.
+    told = [[e for e in recording.slides if e.contact == j] for j in (0, 1)]
+    lets_go = math.asin(friction * GRAVITY / amplitude) * period / (2.0 * math.pi)
+    for own in told:
+        assert [e.kind.value for e in own[:3]] == ["stick", "slip-forward", "slip-backward"]
+        assert own[1].t == pytest.approx(lets_go, abs=1e-11)
+    np.testing.assert_allclose(*([e.t for e in own] for own in told), rtol=1e-12)
     if energy:
         assert abs(recording.energy.closure) < 1e-10
         return
@@ -73,9 +80,15 @@ def test_a_shaken_block_sticks_and_slips(energy: bool) -> None:
     errors = []
     for step in (4e-3, 1e-3, 2.5e-4):
         task = Task(scene, 0.0, end, 1e-9, settings={"time_step": step})
-        errors.append(abs(solver_named("moreau").solve(task).u[0] - exact))
+        found = solver_named("moreau").solve(task)
+        errors.append(abs(found.u[0] - exact))
     assert errors[-1] < 0.2 * errors[0]
     assert errors[-1] < 2.5e-4 * amplitude
+    # Between two slips it may stick for a step.
+    slips = [[e for e in each if e.kind is not EventKind.STICK] for each in (found.slides, told[0])]
+    own = [e for e in slips[0] if e.contact == 0]
+    assert [e.kind for e in own] == [e.kind for e in slips[1]]
+    np.testing.assert_allclose([e.t for e in own], [e.t for e in slips[1]], atol=1e-3)
 
 
 @pytest.mark.parametrize("solver", ["cvode", "moreau"])
@@ -207,6 +220,10 @@ def test_what_a_response_tells() -> None:
     assert summary["contacts.c0.sliding_path"] == pytest.approx(slid(0.3, 0.1, 2.0, 1.0))
     assert summary["contacts.c0.friction_work"] > 0.0
     assert summary["energy.friction"] > 0.0
+    # Down the slope, to the right of the normal, and not yet at rest.
+    assert summary["contacts.c0.slips"] == 1
+    kinds = response.events["kind"][response.events["contact"] == "c0"]
+    assert kinds.tolist() == ["rest", "slip-backward"]
 
 
 def test_friction_is_refused_beside_what_has_an_instant_of_its_own():

@@ -28,6 +28,7 @@ from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import (
     ENDS_OF_REST,
+    FRICTION_KINDS,
     Energy,
     Event,
     EventKind,
@@ -224,6 +225,8 @@ def own_recording(recording: Recording, model: Model) -> Recording:
     """
     if model.weights.size > 0:
         recording = recording.of_bodies(np.s_[: model.bodies])
+    if model.friction.any():
+        recording = _with_slides(recording)
     if model.contacts == model.own_contacts:
         return recording
     own = model.own_contacts
@@ -253,6 +256,21 @@ def own_recording(recording: Recording, model: Model) -> Recording:
         unique_z=unique_z if model.sliders.size > 0 else None,
         laws=laws,
     )
+
+
+def _with_slides(recording: Recording) -> Recording:
+    """A recording whose slips and sticks stand apart from what opens and closes."""
+    others, slides, last = list[Event](), list[Event](), dict[int, EventKind]()
+    for event in recording.events:
+        if event.kind not in FRICTION_KINDS:
+            others.append(event)
+            # A new rest is told what it begins with.
+            last.pop(event.contact, None)
+        elif last.get(event.contact) is not event.kind:
+            # Another event in the instant in which a slip begins tells it again.
+            slides.append(event)
+            last[event.contact] = event.kind
+    return replace(recording, events=tuple(others), slides=tuple(slides))
 
 
 def resting_times(events: Sequence[Event], contacts: int, end: float) -> Floats:

@@ -61,7 +61,8 @@ def _solve(task: Task) -> Recording:
     contacts = np.zeros(run.model.contacts, np.int64)
     marked, struck, resting = np.zeros((3, contacts.size), np.bool_)
     rubbed = Rubbed(*np.zeros((4, contacts.size)))
-    active = Active(contacts, marked, struck, resting, np.zeros(run.model.coordinates), rubbed)
+    column, slides = np.zeros(run.model.coordinates), np.full(contacts.size, -1)
+    active = Active(contacts, marked, struck, resting, column, rubbed, slides)
     try:
         recording = carry_to_end(run, step, advance, active, lambda: _rubbing(task.scene, marked))
     except ComputationError as error:

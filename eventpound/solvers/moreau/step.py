@@ -24,7 +24,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.contact.event_rows import DETACHMENT, IMPACT, REST, EventRow, new_group, write_event
+from eventpound.contact.event_rows import (
+    DETACHMENT,
+    IMPACT,
+    REST,
+    SLIPS_BACKWARD,
+    SLIPS_FORWARD,
+    STICKS,
+    EventRow,
+    new_group,
+    write_event,
+)
 from eventpound.mechanics.contact_problem import Joints, solve_contacts
 from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.observables import difference
@@ -87,7 +97,7 @@ class Active(NamedTuple):
 
     contacts (K,): their numbers, in front. marked (K,): who they are. struck, resting (K,): who
     took an impulse, who rested. column (N + D,): for ``Â⁻¹ W`` of one of them. rubbed: what
-    friction has done.
+    friction has done. slides (K,): the kind of row that told how a contact rests.
     """
 
     contacts: Ints
@@ -96,6 +106,7 @@ class Active(NamedTuple):
     resting: Bools
     column: Floats
     rubbed: Rubbed
+    slides: Ints
 
 
 @step_kernel
@@ -334,6 +345,21 @@ def _take_losses(h: float, still: float, rubbed: Rubbed, run: Stepping) -> tuple
 
 
 @step_kernel
+def _list_slide(j: int, t: float, still: float, group: int, active: Active, run: Stepping) -> int:
+    """Write down that a contact at rest begins to stick or to slip; group of the step's events."""
+    kind, now = -1, run.record.now[0]
+    if active.resting[j]:
+        rate = slip_rate(run.structure, j, run.trial.v)
+        kind = SLIPS_FORWARD if rate > still else SLIPS_BACKWARD if rate < -still else STICKS
+        if kind != active.slides[j]:
+            group = new_group(now) if group < 0 else group
+            row = EventRow(t, kind, group, j, 0.0, 0.0, 0.0, 0.0, 0)
+            write_event(row, now, run.record.events)
+    active.slides[j] = kind
+    return group
+
+
+@step_kernel
 def _close_step(step: FixedStep, active: Active, run: Stepping) -> int:
     """Write the events of a step, and make forces of its impulses; an outcome."""
     structure, state, trial, resting = run.structure, run.state, run.trial, active.resting
@@ -359,6 +385,8 @@ def _close_step(step: FixedStep, active: Active, run: Stepping) -> int:
             row = EventRow(t, DETACHMENT, group, j, 0.0, after, 0.0, 0.0, 1)
             write_event(row, now, events)
         resting[j] = rests
+        if structure.friction[j] > 0.0:
+            group = _list_slide(j, t, still, group, active, run)
         active.struck[j] = p > 0.0
         if not rests:
             trial.contact[j] = trial.rubbing[j] = 0.0
