@@ -56,9 +56,11 @@ _PANELS = (
 )
 """Demands that are drawn over the records, the first three that there are."""
 _MOST_PANELS, _MOST_LISTED, _MOST_WARNINGS = 3, 4, 4
-_ROOM = ((2, 7, 2), (1, 5, 2), (1, 4, 1), (1, 3, 1))
+_ROOM = ((2, 16, 2), (2, 11, 2), (2, 7, 2), (1, 5, 2), (1, 4, 1), (1, 3, 1))
 """Largest elements of a kind for each demand; parts in a table of the model; modes of structures:
 the first with which one sheet holds them, the sketch at `_LEAST` of its size at least."""
+_PARTS = (40, 30, 21)
+"""The same of parts, on a sheet of the model alone."""
 _LEAST = 0.8
 _HIGH, _ALONE = 3.6, 5.4
 """Heights of the sketch (in), beside numbers and on a sheet of the model alone."""
@@ -192,11 +194,14 @@ def design_sheets(told: Told) -> list[Sheet]:
     """The two sheets of a report, or three where one cannot hold the numbers and the model."""
     sketch, second = _sketch(told), list(_second(told))
     for most, parts, structures in _ROOM:
-        model = list(_model(told, sketch, parts, structures))
-        first = [*_first(told, most), *model]
+        first = [*_first(told, most), *_model(told, sketch, parts, structures)]
         if share_of(first) >= _LEAST:
             return [first, second]
-    return [list(_first(told, _ROOM[0][0])), list(model_blocks(told, _ALONE)), second]
+    for parts in _PARTS:
+        model = list(model_blocks(told, _ALONE, parts))
+        if share_of(model) >= _LEAST:
+            break
+    return [list(_first(told, _ROOM[0][0])), model, second]
 
 
 def _first(told: Told, most: int) -> Iterator[Block]:
@@ -215,10 +220,9 @@ def _sketch(told: Told, high: float = _HIGH) -> Picture:
     return Picture(figure, high * 25.4)
 
 
-def model_blocks(told: Told, high: float = _HIGH) -> Iterator[Block]:
-    """The sketch, so high at most (in), and the tables of the parts, with room for most of them."""
-    _, parts, structures = _ROOM[0]
-    yield from _model(told, _sketch(told, high), 3 * parts, structures)
+def model_blocks(told: Told, high: float = _HIGH, parts: int = _PARTS[-1]) -> Iterator[Block]:
+    """The sketch, so high at most (in), and the tables of the parts, with so many rows at most."""
+    yield from _model(told, _sketch(told, high), parts, _ROOM[0][2])
 
 
 def _model(told: Told, sketch: Picture, parts: int, structures: int) -> Iterator[Block]:
@@ -233,8 +237,16 @@ def _model(told: Told, sketch: Picture, parts: int, structures: int) -> Iterator
         yield Columns(((sketch,), tuple(narrow)))
     else:
         yield sketch
-        yield Columns(tuple(tuple(narrow[i::2]) for i in range(min(2, len(narrow)))))
+        yield Columns(tuple(map(tuple, _beside(narrow))))
     yield from (table for table in tables if len(table.headings) > _WIDE)
+
+
+def _beside(tables: Sequence[Cells]) -> list[list[Cells]]:
+    """Tables in two columns: each in that which has fewer rows so far."""
+    columns: list[list[Cells]] = [[] for _ in tables[:2]]
+    for table in tables:
+        min(columns, key=lambda column: sum(len(t.rows) + 2 for t in column)).append(table)
+    return columns
 
 
 def _inputs(case: Case, most: int) -> dict[str, Any]:

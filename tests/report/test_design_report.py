@@ -4,19 +4,23 @@ import json
 import re
 import shutil
 import subprocess
+from itertools import pairwise
 from pathlib import Path
 
 import pandas as pd
 import pytest
 from matplotlib.image import imread
 
-from eventpound import InputError, load_case
+from eventpound import Body, Contact, InputError, Linear, Scene, Spring, load_case
 from eventpound.case import read_case
-from eventpound.case.case import member_case
+from eventpound.case.case import case_of, member_case
 from eventpound.cli import main
+from eventpound.report.design_report import Told, model_blocks
 from eventpound.report.model_layout import layout_of
 from eventpound.report.record_tables import scaling_words
+from eventpound.report.sheets import Columns
 from eventpound.results.inputs import inputs_of
+from eventpound.results.tables import Cells
 from eventpound.results.trade import trade_of
 from tests.report.test_html import CHROMIUM, Balanced
 from tests.results.test_workbook import read as read_workbook
@@ -151,6 +155,23 @@ def test_decks_stand_on_bearings_on_piers(suite):
     for i, pier in enumerate(piers):
         assert pier.top < decks[0].bottom
         assert decks[i].x < pier.x < decks[i + 1].x
+
+
+def test_a_long_row_fills_the_sheet_of_its_model():
+    """Bodies and contacts beside springs, with the rows that there is room for."""
+    names = [f"deck {i}" for i in range(30)]
+    scene = Scene(
+        [Body(name, "900 t") for name in names],
+        [Spring(name, ("ground", name), Linear("9 MN/m")) for name in names],
+        contacts=[Contact(b, a, b, "8 cm", 0.6) for a, b in pairwise(names)],
+    )
+    told = Told(case_of(scene), pd.DataFrame(), None, None, "")
+    shown = []
+    for parts in (21, 40):
+        (beside,) = [b for b in model_blocks(told, parts=parts) if isinstance(b, Columns)]
+        shown.append([[len(t.rows) for t in column if isinstance(t, Cells)]
+                      for column in beside.columns])  # fmt: skip
+    assert shown == [[[21, 21], [21]], [[30, 29], [30]]]
 
 
 def test_the_sources_of_numbers_stand_in_the_model(tmp_path):
