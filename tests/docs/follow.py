@@ -106,8 +106,10 @@ def _compare(folder: Path, file: str, keys: str, text: str, shown: str) -> list[
     found = 0.0
     for key in keys.split(" + "):
         value = json.loads((folder / file).read_text(encoding="utf-8"))
-        for part in key.split("."):
-            value = value[part]
+        while key:
+            # A corner has a dot in its name.
+            name = max((n for n in value if f"{key}.".startswith(f"{n}.")), key=len)
+            value, key = value[name], key[len(name) + 1 :]
         found += value
     number, _, unit = text.partition(" ")
     decimals = len(number.partition(".")[2])
