@@ -114,7 +114,7 @@ class Sweep:
             scales=self.rows.scales,
         )
         self.seconds = np.full(rows.count, np.nan)
-        driven = scene.supports or scene.forces
+        driven = scene.is_driven
         # The arrays of many runs are without the contacts that hold sliders.
         slides = LawName.SLIDER in scene.branched_springs.values()
         several = wanted.keep is None and not (driven or slides or one_by_one)

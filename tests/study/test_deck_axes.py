@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from eventpound import load_case, simulate, simulate_many
 from eventpound.errors import InputError
 from eventpound.report.study_figure import study_figures
 from eventpound.study.plan import Chunk
@@ -88,3 +89,15 @@ def test_a_map_of_rotations_with_its_boundary():
     assert line.get_xydata() * [1.0, 0.01] == pytest.approx(np.array(plan.line))
     low, high = figure.axes[0].collections[0].get_clim()
     assert low == -high
+
+
+def test_many_runs_of_a_deck_are_those_of_each():
+    """The ground moves a deck along, not across, whether it runs alone or among others."""
+    case = load_case(CASES / "skew-deck")
+    options = {"rtol": 1e-8, "duration": 2.0}
+    key = "contact.west.lower.restitution"
+    many = simulate_many(case, {key: [0.5, 0.7]}, **options)
+    alone = simulate(case, "fast", **options).recording.displacement
+    assert many.displacement.maximum[0].tolist() == alone.maximum.tolist()
+    assert many.displacement.minimum[0].tolist() == alone.minimum.tolist()
+    assert many.displacement.minimum[1].tolist() != alone.minimum.tolist()
