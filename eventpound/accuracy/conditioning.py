@@ -68,12 +68,15 @@ def _measured(scene: Scene) -> Iterator[tuple[Place, float]]:
 
 
 def _other_samples(scene: Scene, size: float, rng: np.random.Generator) -> Scene:
-    """The scene with the samples of its record, if it has one, changed one by one."""
-    motion = scene.motion
-    if not isinstance(motion, Record):
-        return scene
-    factors = 1.0 + size * rng.uniform(-1.0, 1.0, motion.samples.size)
-    return replace(scene, motion=replace(motion, samples=motion.samples * factors))
+    """The scene with the samples of its record, of both components, changed one by one."""
+
+    def other(motion: GroundMotion) -> GroundMotion:
+        if not isinstance(motion, Record):
+            return motion
+        factors = 1.0 + size * rng.uniform(-1.0, 1.0, motion.samples.size)
+        return replace(motion, samples=motion.samples * factors)
+
+    return replace(scene, motion=other(scene.motion), across=other(scene.across))
 
 
 def _counts(motion: GroundMotion) -> set[str]:

@@ -171,7 +171,7 @@ SHARED_WITH_LOADS = {
     "eventpound.motion.travel": "displacements of supports from their accelerations",
     "eventpound.solvers.supported": "supports taken in and out of a scene",
 }
-"""What those share besides that have supports or forces."""
+"""What those share besides that have supports or forces, or are in plan."""
 
 
 SHARED_BY_METHODS = {
@@ -230,7 +230,7 @@ def shared_code(routes: tuple[Route, ...], scene: Scene) -> dict[str, str]:
         shared |= SHARED_WITH_SLIDERS
     if scene.rubbing:
         shared |= SHARED_WITH_FRICTION
-    if scene.supports or scene.forces:
+    if scene.is_driven:
         shared |= SHARED_WITH_LOADS
     found = " and ".join(repr(route.label) for route in routes if route.finds_events)
     if LOCATION in shared and found:

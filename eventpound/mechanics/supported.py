@@ -93,14 +93,18 @@ def lowered(scene: Scene, start: float) -> Scene:
     )
 
 
-def components(scene: Scene, direction: str) -> list[tuple[GroundMotion, float]]:
-    """Components of the ground motion that move a body in its direction, and by which part ι."""
+def influence(scene: Scene, direction: str) -> tuple[float, float]:
+    """Parts ι of the two components of the ground motion that move a body in its direction."""
     cosine, sine = (
         0.0 if abs(part) < ZERO_OF_PHASE else part
         for part in (math.cos(scene.attack), math.sin(scene.attack))
     )
-    parts = {ALONG: (cosine, -sine), ACROSS: (sine, cosine)}.get(direction, (0.0, 0.0))
-    signals = scene.motion, scene.across
+    return {ALONG: (cosine, -sine), ACROSS: (sine, cosine)}.get(direction, (0.0, 0.0))
+
+
+def components(scene: Scene, direction: str) -> list[tuple[GroundMotion, float]]:
+    """Components of the ground motion that move a body in its direction, and by which part ι."""
+    parts, signals = influence(scene, direction), (scene.motion, scene.across)
     return [
         (signal, part)
         for signal, part in zip(signals, parts, strict=True)

@@ -147,10 +147,12 @@ def problem_json(collection: Collection, problem: ProblemFolder) -> dict[str, ob
     """A problem in numbers, its springs of one law."""
     case = problem.case()
     scene, run = case.scene, case.run
-    if scene.supports or scene.forces or any(contact.law for contact in scene.contacts):
+    of_law = any(contact.law or contact.friction for contact in scene.contacts)
+    if scene.is_driven or of_law:
         raise InputError(
-            f"{problem.folder}: has supports, forces or contacts with a law, for which the files "
-            "of a problem have no place; `eventpound run CASE --export DIR` writes such a case"
+            f"{problem.folder}: has supports, forces, decks in plan or contacts with a law or "
+            "friction, for which the files of a problem have no place; "
+            "`eventpound run CASE --export DIR` writes such a case"
         )
     start, end = run.start_time, run.start_time + run.duration
     return {

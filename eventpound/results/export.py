@@ -5,7 +5,7 @@
 ``scene.json`` holds M (kg), C (N s/m), B and W (-), the springs with their laws,
 δ (m), ε (-) and the initial state (m, m/s, -); ``motion.csv`` holds t (s) and
 a_g (m/s^2). SI throughout. A scene with supports has C_s, B_s and W_s beside them and
-columns of their motion, one with forces a column each.
+columns of their motion, one with forces a column each; one in plan has iota and a_across.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ import numpy as np
 
 from eventpound.case.case import Case
 from eventpound.case.run_options import Way, warn_left_out
+from eventpound.errors import InputError
 from eventpound.mechanics.model import assemble
-from eventpound.mechanics.supported import support_motion
+from eventpound.mechanics.supported import influence, support_motion
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.results.description import describe_scene
@@ -77,6 +78,12 @@ WITH_WEIGHTS = {
 WITH_FORCES = {
     "forces": "motion.csv has the force p.<body> (N) on bodies, to be added to -M 1 a_g(t)",
 }
+IN_PLAN = {
+    "in plan": (
+        "iota has a row a body: -M (iota[:,0] a_g + iota[:,1] a_across) stands in the place of"
+        " -M 1 a_g. A deck is three bodies: x, y and r theta, r the radius at its contacts"
+    ),
+}
 
 
 def export(case: Case, directory: str | os.PathLike[str]) -> None:
@@ -92,9 +99,15 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
     Raises
     ------
     InputError
-        Where the directory cannot be written to, or the case has many motions.
+        Where the directory cannot be written to, the case has many motions, or contacts have
+        friction.
     """
     refuse_suite(case)
+    if rubbing := case.scene.rubbing:
+        raise InputError(
+            f"export: found friction at {', '.join(rubbing)}; accepted: contacts that only push, "
+            "for scene.json has no place for what rubs"
+        )
     warn_left_out(case.run, Way.EXPORT)
     start, end = case.run.start_time, case.run.start_time + case.run.duration
     scene_json = {"title": case.title, "start": start, "end": end} | _scene(case.scene, start)
@@ -114,14 +127,17 @@ def _motion_columns(scene: Scene, start: float, end: float) -> dict[str, Floats]
     """Columns of ``motion.csv``: the ground, supports, forces."""
     moved = [support.moved_by(scene.motion) for support in scene.supports]
     pushed = [force.history for force in scene.forces]
-    t, values = sampled_signals([scene.motion, *moved, *pushed], start, end)
-    columns = {"t": t, "a_g": values[0]}
+    second = [scene.across] if scene.in_plan else []
+    signals = [scene.motion, *moved, *pushed, *second]
+    t, values = sampled_signals(signals, start, end)
+    columns = {"t": t, "a_g": values[0]} | ({"a_across": values[-1]} if second else {})
     for support, a in zip(scene.supports, values[1 : 1 + len(moved)], strict=True):
         s, rate = support_motion(support, scene.motion, t)
         own = {"s": s, "sv": rate, "sa": a - values[0]}
         columns |= {f"{key}.{support.name}": column for key, column in own.items()}
     mass = {body.name: body.mass for body in scene.bodies}
-    for force, value in zip(scene.forces, values[1 + len(moved) :], strict=True):
+    own_values = values[1 + len(moved) : len(values) - len(second)]
+    for force, value in zip(scene.forces, own_values, strict=True):
         key = f"p.{force.body}"
         own_part = value * (mass[force.body] if force.per_mass else 1.0)
         columns[key] = columns.get(key, 0.0) + own_part
@@ -222,14 +238,17 @@ def _scene(scene: Scene, start: float) -> dict[str, object]:
     told = replace(scene, contacts=tuple(_with_damping(contact) for contact in scene.contacts))
     described = describe_scene(told)
     springs = zip(described["springs"], scene.springs, strict=True)
+    parts = [influence(scene, body.direction) for body in scene.bodies]
     return described | {
         "conventions": CONVENTIONS
         | (WITH_LAWS if any(contact.law for contact in scene.contacts) else {})
         | (WITH_WEIGHTS if any(spring.weight for spring in scene.springs) else {})
         | (WITH_SUPPORTS if scene.supports else {})
-        | (WITH_FORCES if scene.forces else {}),
+        | (WITH_FORCES if scene.forces else {})
+        | (IN_PLAN if scene.in_plan else {}),
         "springs": [row | _condensed(spring.law) for row, spring in springs],
         **arrays_of(scene, start),
+        **({"iota": parts} if scene.in_plan else {}),
     }
 
 

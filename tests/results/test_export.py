@@ -11,6 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
+from eventpound import load_case
 from eventpound.case.case import Case
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.run_options import RunOptions
@@ -37,6 +38,7 @@ from eventpound.scene import (
     Support,
 )
 from eventpound.simulation import response_of
+from tests.models import CASES
 
 _UNUSED = (SolverOptions(), Path("."), "", None, (), {})
 
@@ -233,3 +235,33 @@ def test_a_suite_has_no_one_motion(scene, tmp_path):
     with pytest.raises(InputError, match="holds a suite of records"):
         export(case, tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_a_deck_in_plan_as_another_program_reads_it(tmp_path):
+    """Under two components from an angle, before anything strikes."""
+    text = (CASES / "skew-deck" / "case.toml").read_text()
+    second = 'across = { kind = "ricker", amplitude = "0.2 g", period = "0.6 s" }\nattack = 0.4\n'
+    text = text.replace("\n[[deck]]", f"{second}\n[[deck]]", 1)
+    text = text.replace('gap = "4 cm"', 'gap = "4 m"').replace('"8 s"', '"2 s"')
+    (tmp_path / "case.toml").write_text(text)
+    case = load_case(tmp_path)
+    export(case, tmp_path / "out")
+    told = json.loads((tmp_path / "out" / "scene.json").read_text())
+    motion = np.genfromtxt(tmp_path / "out" / "motion.csv", delimiter=",", names=True)
+    M, C, B, iota = (np.array(told[key]) for key in ("M", "C", "B", "iota"))
+    K = B * [spring["stiffness"] for spring in told["springs"]] @ B.T
+
+    def rates(t, y):
+        ground = [np.interp(t, motion["t"], motion[name]) for name in ("a_g", "a_across")]
+        u, v = np.split(y, 2)
+        return np.concatenate((v, -(C @ v + K @ u) / M - iota @ ground))
+
+    y = solve_ivp(rates, (0.0, 2.0), np.zeros(6), rtol=1e-9, atol=1e-12, max_step=0.01).y[:, -1]
+    found = response_of(case, rtol=1e-9).recording
+    # Between rows a thousandth of a period apart a pulse is off by 5e-6 of its amplitude.
+    assert found.u == pytest.approx(y[:3], abs=1e-5 * np.abs(y[:3]).max())
+
+
+def test_friction_has_no_place(tmp_path):
+    with pytest.raises(InputError, match=r"found friction at rough west\.lower, rough west\.upper"):
+        export(load_case(CASES / "skew-deck-friction"), tmp_path)
