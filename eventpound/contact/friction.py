@@ -18,6 +18,7 @@ infinite otherwise, and a link, whose branch is the way of a slip, 0 where there
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -487,3 +488,24 @@ def _take_ways(
                 at.opening[t] = -difference(at.u, at.left[t], at.right[t])
         elif state[i] != OPEN:
             at.branch[a] = 1 if state[i] == FORWARD else -1
+
+
+def friction_message(
+    ended: int,
+    names: Sequence[str],
+    rubs: Rubs,
+    gap: Floats,
+    gap_rate: Floats,
+    resting: Bools,
+) -> str:
+    """What to say where an instant cannot be settled at contacts with friction.
+
+    names (K,): of the contacts. gap, gap_rate, resting (K,): as of an `Instant`.
+    """
+    told = []
+    for t, j in enumerate(rubs.contact.tolist(), gap.size - rubs.contact.size):
+        if gap[j] == 0.0 or resting[j]:
+            rate = gap_rate[t]
+            way = f"slides with {rate:.3g} m/s" if rate != 0.0 else "does not slide"
+            told.append(f"{names[j]!r} (friction {rubs.friction[j]:g}, {way})")
+    return f"{FRICTION_MEANING[ended]}: {', '.join(told)}; try less friction there"

@@ -14,7 +14,7 @@ presses as much as it lifts (Painlevé); the acceleration problem has said so be
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from eventpound.mechanics.clusters import Clusters, ContactEnds
 from eventpound.mechanics.followers import rows_of
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import in_python, kernel
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.small_systems import dot, invert
 from eventpound.tolerances import DEPENDENT
 
@@ -42,6 +42,46 @@ class Slips(NamedTuple):
 
 
 @kernel
+def slips_of(
+    rubbing: Ints, friction: Floats, between: ContactEnds, branch: Ints, resting: Ints
+) -> Slips:
+    """Contacts that slip in a mode.
+
+    Parameters
+    ----------
+    rubbing, friction
+        Those of the `Model` with friction.
+    between : ContactEnds
+        Its contacts.
+    branch : ndarray of int, shape (L,)
+        Ways of slips, of the last F links.
+    resting : ndarray of int, shape (R,)
+        The resting contacts.
+    """
+    F, count = rubbing.size, 0
+    which, rest = np.zeros(F, np.int64), np.zeros(F, np.int64)
+    for f in range(F):
+        for i in range(resting.size):
+            if resting[i] == rubbing[f] and branch[branch.size - F + f] != 0:
+                which[count], rest[count] = f, i
+                count += 1
+    which = which[:count].copy()
+    along, way = between.left.size - F + which, branch[branch.size - F + which]
+    ends, drag = (between.left[along], between.right[along]), -way * friction[rubbing[which]]
+    return Slips(which, rest[:count].copy(), ends[0], ends[1], drag)
+
+
+class _Moved(NamedTuple):
+    """What slips change of `Clusters`, fields of the same names."""
+
+    of_body: Ints
+    count: int  # type: ignore[assignment]  # hides the method of tuples
+    compliance: Floats
+    carried: Floats
+    force_map: Floats
+
+
+@kernel
 def _forces(slips: Slips, coordinates: int) -> Floats:
     """``w`` of each slip for a normal force of 1, (S, N)."""
     rows = np.zeros((slips.rest.size, coordinates))
@@ -54,7 +94,7 @@ def _forces(slips: Slips, coordinates: int) -> Floats:
 
 
 @kernel
-def _of_clusters(rows: Floats, clusters: Clusters) -> Floats:
+def _of_clusters(rows: Floats, clusters: _Moved) -> Floats:
     """Sums of each row (S, N) over the coordinates of every cluster, (S, C)."""
     found = np.zeros((rows.shape[0], clusters.count))
     for b in range(rows.shape[1]):
@@ -64,7 +104,7 @@ def _of_clusters(rows: Floats, clusters: Clusters) -> Floats:
 
 
 @kernel
-def _pressing(slips: Slips, clusters: Clusters, mass: Floats) -> Floats:
+def _pressing(slips: Slips, clusters: _Moved, mass: Floats) -> Floats:
     """``P`` of each slip, (S, N): its normal force for forces on coordinates, with a minus."""
     S, N = slips.rest.size, mass.size
     found = np.empty((S, N))
@@ -102,7 +142,7 @@ def _solved(rows: Floats, forces: Floats) -> Floats:
 
 @kernel
 def _oblique(
-    slips: Slips, contacts: int, clusters: Clusters, mass: Floats
+    slips: Slips, contacts: int, clusters: _Moved, mass: Floats
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Compliance and force map with slip; ``w`` and H of F `contacts` with friction, (F, C)."""
     C, N = clusters.count, mass.size
@@ -132,46 +172,24 @@ def _oblique(
     return compliance, force_map, slide, press
 
 
-def _with_standing(clusters: Clusters, mass: Floats) -> Clusters:
+@kernel
+def _with_standing(clusters: Clusters, mass: Floats) -> _Moved:
     """Clusters with one, which nothing moves, for each body that stands still.
 
     What pushes it presses contacts, and so has to do with what these slow down.
     """
-    standing = np.flatnonzero((clusters.of_body < 0) & (mass > 0.0))
-    of_body, count = clusters.of_body.copy(), clusters.count + standing.size
-    of_body[standing] = np.arange(clusters.count, count)
-    compliance = np.zeros((count, count))
-    compliance[: clusters.count, : clusters.count] = clusters.compliance
-    carried = np.append(clusters.carried, np.zeros(standing.size))
-    return clusters._replace(of_body=of_body, count=count, compliance=compliance, carried=carried)
-
-
-def with_slips(clusters: Clusters, slips: Slips, contacts: int, mass: Floats) -> Clusters:
-    """Clusters of a mode of a scene in which so many `contacts` have friction, some of them slip.
-
-    Parameters
-    ----------
-    clusters : Clusters
-        As if nothing had friction.
-    slips : Slips
-        Who slips.
-    contacts : int
-        F.
-    mass : ndarray, shape (N,)
-        Of the coordinates (kg), none of points.
-    """
-    nothing = np.zeros((contacts, clusters.count))
-    if slips.rest.size == 0:
-        return clusters._replace(slide=nothing, press=nothing)
-    clusters = _with_standing(clusters, mass)
-    found = in_python(_oblique)(slips, contacts, clusters, mass)
-    return clusters._replace(
-        compliance=found[0], force_map=found[1], slide=found[2], press=found[3]
-    )
+    of_body, count, moving = clusters.of_body.copy(), clusters.count, clusters.count
+    for b in range(mass.size):
+        if of_body[b] < 0 and mass[b] > 0.0:
+            of_body[b] = count
+            count += 1
+    compliance, carried = np.zeros((count, count)), np.zeros(count)
+    compliance[:moving, :moving], carried[:moving] = clusters.compliance, clusters.carried
+    return _Moved(of_body, count, compliance, carried, clusters.force_map)
 
 
 @kernel
-def share_out(between: ContactEnds, clusters: Clusters) -> None:
+def _share_out(between: ContactEnds, clusters: Clusters) -> None:
     """Make contact forces of a mode that are not unique the least ones, in its force map.
 
     Least weighted by the compliance of each contact, as `eventpound.numerics.coulomb` has them when
@@ -204,6 +222,45 @@ def share_out(between: ContactEnds, clusters: Clusters) -> None:
             for a in range(R):
                 if size[a] > 0.0:
                     force_map[a, b] -= along * idle[c, a] / size[a]
+
+
+@kernel
+def with_slips(clusters: Clusters, slips: Slips, contacts: int, between: ContactEnds) -> Clusters:
+    """Clusters of a mode of a scene in which so many `contacts` have friction, some of them slip.
+
+    Parameters
+    ----------
+    clusters : Clusters
+        As if nothing had friction; forces that are not unique become the least ones.
+    slips : Slips
+        Who slips.
+    contacts : int
+        F.
+    between : ContactEnds
+        All contacts.
+    """
+    return Clusters(*_slipping(clusters, slips, contacts, between))
+
+
+@kernel
+def _slipping(
+    clusters: Clusters, slips: Slips, contacts: int, between: ContactEnds
+) -> tuple[Any, ...]:
+    """The fields of `with_slips`, a plain tuple for callers in Python."""
+    if clusters.redundant.any():
+        _share_out(between, clusters)
+    of_body, count, carried = clusters.of_body, clusters.count, clusters.carried
+    compliance, force_map = clusters.compliance, clusters.force_map
+    slide = np.zeros((contacts, count))
+    press = slide
+    if slips.rest.size > 0:
+        moved = _with_standing(clusters, between.mass)
+        of_body, count, carried = moved.of_body, moved.count, moved.carried
+        compliance, force_map, slide, press = _oblique(slips, contacts, moved, between.mass)
+    return (
+        *(of_body, clusters.offset, count, clusters.resting, clusters.locked, clusters.redundant),
+        *(clusters.elimination, clusters.unique, force_map, compliance, carried, slide, press),
+    )
 
 
 @kernel

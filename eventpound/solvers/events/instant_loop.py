@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import endless_message, long_message
-from eventpound.contact.friction import FRICTION_MEANING
+from eventpound.contact.friction import FRICTION_MEANING, Rubs, friction_message
 from eventpound.contact.impacts import DONE, ENDLESS, FULL, MEANING, NO_FORCES
 from eventpound.contact.instant import no_forces_message
 from eventpound.contact.kinks import choose_branches, choose_clear_branches
@@ -84,7 +84,9 @@ def _failure(ended: int, run: EventRun) -> ComputationError:
     if ended == ENDLESS:
         return ComputationError(endless_message(run.events(), run.task.scene.contacts), run.t)
     if run.model.rubbing.size > 0 and ended in FRICTION_MEANING:
-        return ComputationError(friction_message(ended, run), run.t)
+        rubs = Rubs(run.model.rubbing, run.model.friction, run.table.rubbed)
+        gaps = run.state.gap, run.state.gap_rate, run.state.resting
+        return ComputationError(friction_message(ended, run.names, rubs, *gaps), run.t)
     if ended == NO_FORCES:
         message = no_forces_message(run.state.resting, run.names, run.model.supports)
         return ComputationError(message, run.t)
@@ -92,18 +94,6 @@ def _failure(ended: int, run: EventRun) -> ComputationError:
         return ComputationError(long_message(run.events(), run.task.scene.contacts), run.t)
     not_finite = "the motion after an event is not a number any more"
     return ComputationError(not_finite if ended == NOT_FINITE else MEANING[ended], run.t)
-
-
-def friction_message(ended: int, run: EventRun) -> str:
-    """What to say where an instant cannot be settled at contacts with friction."""
-    state, contacts = run.state, run.task.scene.contacts
-    told = []
-    for f, j in enumerate(run.model.rubbing.tolist()):
-        if state.gap[j] == 0.0 or state.resting[j]:
-            rate = state.gap_rate[run.model.own_contacts + f]
-            way = f"slides with {rate:.3g} m/s" if rate != 0.0 else "does not slide"
-            told.append(f"{contacts[j].name!r} (friction {contacts[j].friction:g}, {way})")
-    return f"{FRICTION_MEANING[ended]}: {', '.join(told)}; try less friction there"
 
 
 def _choose_branches(run: EventRun, piece: CurrentPiece) -> None:

@@ -8,8 +8,6 @@ motion up to the next event, breakpoint of the ground motion, or the end.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from eventpound.errors import ComputationError
@@ -20,7 +18,7 @@ from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import foresee, in_python
 from eventpound.numerics.compiling import Stopwatch
-from eventpound.solvers.base import Energy, FrictionRecording, Recording, Task, Work
+from eventpound.solvers.base import Energy, Recording, Task, Work
 from eventpound.solvers.events.event_run import EventRun
 from eventpound.solvers.events.instant import short_step
 from eventpound.solvers.events.instant_loop import (
@@ -32,6 +30,7 @@ from eventpound.solvers.events.instant_loop import (
 from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError, Start
 from eventpound.solvers.events.recorder import (
     energy_ledger,
+    friction_of,
     impact_terms,
     kept,
     own_recording,
@@ -271,20 +270,19 @@ class EventLoop:
             return None
         state = run.state
         terms = impact_terms(run.model, run.task.scene.motion, run.events())
-        ledger, first = state.ledger, state.ledger.size - run.model.rubbing.size
-        found = run.model, run.scales, state.u, state.v, ledger[:first], *terms
-        return energy_ledger(*found, friction=float(ledger[first:].sum()))
+        return energy_ledger(run.model, run.scales, state.u, state.v, state.ledger, *terms)
 
     def _recording(self, success: bool, message: str, clock: Stopwatch) -> Recording:
         run, integrator = self.event_run, self.integrator
-        events = run.events()
+        events, state = run.events(), run.state
+        ledger = state.ledger if run.task.energy else None
         recording = Recording(
             success,
             message,
             run.t,
-            run.state.u.copy(),
-            run.state.v.copy(),
-            run.state.z.copy(),
+            state.u.copy(),
+            state.v.copy(),
+            state.z.copy(),
             run.history(),
             tuple(events),
             unique_forces=run.unique_forces,
@@ -299,21 +297,7 @@ class EventLoop:
             energy=self._energy(),
             laws=run.law_recording(),
             integrated=self._integrated,
+            friction=friction_of(run.model, run.table.rubbed, state.u, state.branch, ledger),
             **kept(run.record.extremes, events, run.t, run.model),
         )
-        return own_recording(replace(recording, friction=self._friction()), run.model)
-
-    def _friction(self) -> FrictionRecording | None:
-        """What friction at contacts did; its work between impacts where the ledger is kept."""
-        run, (path, work, *impulses, place) = self.event_run, self.event_run.table.rubbed.copy()
-        rubbing = run.model.rubbing
-        if rubbing.size == 0:
-            return None
-        slips = run.state.branch[run.model.links - rubbing.size :] != 0
-        x = run.model.elongations(run.state.u)[run.model.links - rubbing.size :]
-        path += np.where(slips, np.abs(x - place), 0.0)
-        known = run.state.ledger[run.state.ledger.size - rubbing.size :]
-        work += known if run.task.energy else np.nan
-        table = np.zeros((4, run.model.own_contacts))
-        table[:, rubbing] = path, work, *impulses
-        return FrictionRecording(*table)
+        return own_recording(recording, run.model)

@@ -16,7 +16,7 @@ from eventpound.mechanics.elements import branch_ends, has_branches, memory_on_b
 from eventpound.mechanics.link_law import STRENGTH, YIELDING
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import places_in
-from eventpound.mechanics.oblique import Slips, are_tied, share_out, with_slips
+from eventpound.mechanics.oblique import are_tied, slips_of, with_slips
 from eventpound.mechanics.observables import Bodies, bodies_of
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -126,11 +126,11 @@ class ModeTable:
         if memory is not model.law.memory:
             model = replace(model, law=model.law._replace(memory=memory))
         clusters = form_clusters_of_few(between_of(model), resting, pressed)
-        slips = _slips_of(model, clusters, branch)
-        if model.rubbing.size > 0:
-            if not clusters.tree:
-                in_python(share_out)(between_of(model), clusters)
-            clusters = with_slips(clusters, slips, model.rubbing.size, model.mass)
+        rubs = model.rubbing.size > 0
+        if rubs:
+            between, own = between_of(model), (model.rubbing, model.friction)
+            slips = in_python(slips_of)(*own, between, branch, clusters.resting)
+            clusters = in_python(with_slips)(clusters, slips, model.rubbing.size, between)
         branches = Branches(*model.elastic.on_side(branch))
         system = in_python(reduce)(
             model.link_ends,
@@ -143,7 +143,7 @@ class ModeTable:
         )
         frozen = np.zeros(model.hysteretic.size)
         bodies = bodies_of(model, clusters, system, *branches, frozen)
-        if model.rubbing.size > 0:
+        if rubs:
             bodies = bodies._replace(
                 slips=np.column_stack((model.rubbing, _tangential(model)))[slips.which],
                 drag=slips.drag,
@@ -164,9 +164,11 @@ class ModeTable:
         kink_low[model.sliders], kink_high[model.sliders] = -np.inf, np.inf
         slide = slice(model.links - model.rubbing.size, None)
         turns[slide] = True
-        # What others keep from sliding does not stop.
-        tied = model.links - model.rubbing.size + slips.which[_tied(slips, clusters)]
-        kink_low[tied], kink_high[tied] = -np.inf, np.inf
+        if rubs:
+            # What others keep from sliding does not stop.
+            tied = in_python(are_tied)(slips.left, slips.right, clusters)
+            kept = model.links - model.rubbing.size + slips.which[tied]
+            kink_low[kept], kink_high[kept] = -np.inf, np.inf
         presses, friction = np.full(model.contacts, -1), np.zeros(model.contacts)
         presses[model.own_contacts :][: model.rubbing.size] = model.rubbing
         friction[model.own_contacts :][: model.rubbing.size] = model.friction[model.rubbing]
@@ -190,26 +192,6 @@ class ModeTable:
 def _tangential(model: Model) -> Ints:
     """The contacts along those with friction (F,)."""
     return model.contacts - model.rubbing.size + np.arange(model.rubbing.size)
-
-
-def _slips_of(model: Model, clusters: Clusters, branch: Ints) -> Slips:
-    """Contacts that slip in a mode."""
-    place = {j: i for i, j in enumerate(clusters.resting.tolist())}
-    ways = branch[model.links - model.rubbing.size :]
-    which = np.array(
-        [f for f, j in enumerate(model.rubbing.tolist()) if j in place and ways[f] != 0], np.int64
-    )
-    contacts = model.rubbing[which]
-    rest = np.array([place[j] for j in contacts.tolist()], np.int64)
-    left, right = model.tangent[contacts].T.copy()
-    return Slips(which, rest, left, right, -ways[which] * model.friction[contacts])
-
-
-def _tied(slips: Slips, clusters: Clusters) -> Bools:
-    """Slips (S,) that something else keeps from sliding."""
-    if slips.which.size == 0:
-        return np.zeros(0, np.bool_)
-    return np.asarray(in_python(are_tied)(slips.left, slips.right, clusters))
 
 
 def _force_limits(model: Model) -> tuple[Floats, Floats]:

@@ -33,6 +33,7 @@ from eventpound.solvers.base import (
     Event,
     EventKind,
     Extremes,
+    FrictionRecording,
     History,
     LawRecording,
     Recording,
@@ -343,19 +344,21 @@ def energy_ledger(
     u, v : ndarray, shape (N,)
         Displacement (m) and velocity (m/s).
     work : ndarray, shape (E,)
-        Input, viscous and hysteretic work and that of supports up to there (J).
+        Input, viscous and hysteretic work, that of supports and of frictions up to there (J).
     impact : float
         Kinetic energy lost in impacts, what elements still hold included (J).
     struck : ndarray, shape (number of supports,), optional
         Work of the supports in impacts up to there (J).
     friction : float
-        What friction at contacts took between impacts (J).
+        What friction at contacts took between impacts beside that (J).
     """
     impact -= stored(model.elements, model.gaps(u))
     impact += stored(model.elements, model.gaps(model.u0))
     kinetic, elastic = stored_energy(model, u, v)
     put_in, viscous, hysteretic = (float(value) for value in work[:WORK_OF_SUPPORTS])
-    supports = work[WORK_OF_SUPPORTS:] + (0.0 if struck is None else struck)
+    first = work.size - model.rubbing.size
+    supports = work[WORK_OF_SUPPORTS:first] + (0.0 if struck is None else struck)
+    friction += float(work[first:].sum())
     initial = sum(stored_energy(model, model.u0, model.v0))
     rest = initial + put_in + float(supports.sum())
     rest -= kinetic + elastic + hysteretic + viscous + impact + friction
@@ -373,3 +376,31 @@ def energy_ledger(
         tuple(supports.tolist()),
         friction,
     )
+
+
+def friction_of(
+    model: Model, rubbed: Floats, u: Floats, branch: Ints, ledger: Floats | None
+) -> FrictionRecording | None:
+    """What friction at contacts did; None where there is none.
+
+    Parameters
+    ----------
+    model : Model
+        The scene.
+    rubbed : ndarray, shape (5, F)
+        What `eventpound.contact.friction` has kept.
+    u, branch : ndarray, shapes (N,) and (L,)
+        Displacements at the end (m), and which way links slip there.
+    ledger : ndarray, shape (E,), optional
+        Work up to there (J), without which that between impacts is not known.
+    """
+    rubbing = model.rubbing
+    if rubbing.size == 0:
+        return None
+    path, work, *impulses, place = rubbed
+    own = slice(model.links - rubbing.size, None)
+    path = path + np.where(branch[own] != 0, np.abs(model.elongations(u)[own] - place), 0.0)
+    work = work + (np.nan if ledger is None else ledger[ledger.size - rubbing.size :])
+    table = np.zeros((4, model.own_contacts))
+    table[:, rubbing] = path, work, *impulses
+    return FrictionRecording(*table)
