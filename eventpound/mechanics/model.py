@@ -381,5 +381,5 @@ def shape_of(model: Model) -> tuple[object, ...]:
     sizes = model.bodies, model.springs, model.supports, model.loads
     kinds = model.law.memory[:, KIND]
     links = model.link_ends, model.on_ground, model.hysteretic, kinds
-    arrays = *links, model.left, model.right, model.weights
+    arrays = *links, model.left, model.right, model.weights, model.rubbing, model.friction
     return (*sizes, *((each.size, each.tobytes()) for each in arrays))

@@ -26,7 +26,7 @@ from eventpound.solvers.fast.followed import follows, put_on_branches
 from eventpound.solvers.fast.instant import instant_of, settle, start
 from eventpound.solvers.fast.record import goes_with, has_room, save_record, write_row
 from eventpound.solvers.fast.run import GOING_ON, SETTLED, FastRun, piece_of
-from eventpound.solvers.fast.sliding import any_slider
+from eventpound.solvers.fast.sliding import own_contacts
 from eventpound.solvers.fast.step import take_step
 from eventpound.tolerances import LENGTH
 
@@ -80,7 +80,8 @@ def carry_on(budget: int, run: FastRun) -> int:
         if ended != DONE:
             return ended
         if now.t >= ground.ends[i]:
-            if any_slider(run) and progress.resting > 0 and progress.due == 0:
+            own, all_of_them = own_contacts(run), run.state.gap.size
+            if own < all_of_them and progress.resting > 0 and progress.due == 0:
                 # At a corner of the motion a stick may end: it has two sides.
                 write_row(now.t, run)
             progress.due = 1

@@ -36,13 +36,14 @@ from eventpound.solvers.events.scales import (
 )
 from eventpound.solvers.fast.constants import (
     begin_state,
+    contacts_of,
     ground_of,
     links_of,
     order_for,
     small_difference,
     zero_state,
 )
-from eventpound.solvers.fast.run import Contacts, FastPlan, FastState, Ground, Limits
+from eventpound.solvers.fast.run import FastPlan, FastState, Ground, Limits
 from eventpound.solvers.fast.sdof.body import oscillators_of
 
 
@@ -122,9 +123,7 @@ def rows_of(variants: Variants, low: int, high: int) -> VariantArrays:
     scales = _scales(variants, model, numbers, low, of_motions, pushes, of_variant)
     mass: Any = numbers["mass"].max(axis=1)
     small: Any = small_difference(task.rtol, law.memory, numbers["mass"], scales.acceleration)
-    contacts = Contacts(
-        model.left, model.right, numbers["gap"], numbers["restitution"], model.weights
-    )
+    contacts = contacts_of(model, numbers["gap"], numbers["restitution"])
     motions = _motions(used_motions, of_variant)
     ends: Any = variants.ends[part].copy()
     shaken = (np.array(pushes) > 0.0)[of_variant]

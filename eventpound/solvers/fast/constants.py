@@ -71,6 +71,12 @@ def links_of(model: Model) -> Links:
     )
 
 
+def contacts_of(model: Model, gap: Floats, restitution: Floats) -> Contacts:
+    """Contacts of an assembled scene, or of many variants with such gaps and restitutions."""
+    ends = model.left, model.right, gap, restitution, model.weights
+    return Contacts(*ends, model.rubbing, model.friction)
+
+
 def small_difference(
     rtol: float, memory: Floats, mass: Floats, acceleration: Floats | float
 ) -> Floats:
@@ -149,7 +155,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_ane
         hysteresis=hysteresis,
         contacts=keep(
             ("contacts",),
-            lambda: Contacts(model.left, model.right, model.gap, model.restitution, model.weights),
+            lambda: contacts_of(model, model.gap, model.restitution),
         ),
         # These two are equal where all their numbers are the same, which cannot change.
         ground=keep(("ground", motion), ground)
@@ -195,9 +201,12 @@ def blank_located(plan: FastPlan) -> FastLocated:
 
 
 def zero_state(
-    counts: tuple[int, int, int, int], ledger: int = WORK_OF_SUPPORTS, runs: tuple[int, ...] = ()
+    counts: tuple[int, int, int, int],
+    ledger: int = WORK_OF_SUPPORTS,
+    rubbing: int = 0,
+    runs: tuple[int, ...] = (),
 ) -> FastState:
-    """A state of zeros; `counts`: N, L, K and H, `runs`: the leading axes."""
+    """A state of zeros; `counts`: N, L, K and H, `rubbing`: F, `runs`: the leading axes."""
     bodies, links, contacts, hysteretic = ((*runs, count) for count in counts)
     return FastState(
         u=np.zeros(bodies),
@@ -213,6 +222,7 @@ def zero_state(
         unlocked=np.zeros(contacts, np.bool_),
         branch=np.zeros(links, np.int64),
         ledger=np.zeros((*runs, ledger)),
+        rubbed=np.zeros((*runs, 5, rubbing)),
         now=np.zeros((*runs, 1), Now.layout),
         progress=np.zeros((*runs, 1), FastProgress.layout),
     )
@@ -264,6 +274,7 @@ def blank_series(plan: FastPlan, loaded: bool = False) -> FastSeries:
         "force_map": np.zeros((contacts, coupled)),
         **dict.fromkeys(("compliance", "free"), np.zeros((coupled, coupled))),
         "carried": np.zeros(coupled),
+        "may_stop": np.zeros(plan.contacts.rubbing.size, np.bool_),
         **dict.fromkeys(("c", "d"), np.zeros(most)),
         "work": in_python(root_work)(most),
         "turns": np.zeros(MOST_TURNS),

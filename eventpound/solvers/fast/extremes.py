@@ -28,7 +28,7 @@ from eventpound.solvers.fast.search import (
     set_distance,
     stays_above,
 )
-from eventpound.solvers.fast.sliding import add_stick_shear, any_slider
+from eventpound.solvers.fast.sliding import add_stick_shear, any_rubbing, any_slider
 from eventpound.tolerances import FLAT_WITHIN
 
 
@@ -341,9 +341,10 @@ def _base_shear(order: int, plan: FastPlan, series: FastSeries) -> float:
 def _at_rest(tau: float, order: int, run: FastRun) -> None:
     """Forces of resting contacts, and bodies that stand still and move with the ground."""
     state, series, at = run.state, run.series, run.running.at
-    # Contacts that others keep closed have no force.
-    for i in range(state.progress[0].edges):
-        j = series.elimination[i, 1]
+    # Contacts that others keep closed have no force, unless all of them share it.
+    shared, progress = any_rubbing(run), state.progress[0]
+    for i in range(progress.resting if shared else progress.edges):
+        j = series.resting[i] if shared else series.elimination[i, 1]
         _polynomial_turns(at.contact_force + j, series.contact_force[j], tau, order, run)
     for b in range(state.u.size):
         if series.of_body[b] < 0:

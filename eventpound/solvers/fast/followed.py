@@ -12,8 +12,6 @@ of z', which leaves h/p of itself in z.
 
 from __future__ import annotations
 
-import numpy as np
-
 from eventpound.contact.kinks import still_rate
 from eventpound.mechanics.elements import (
     branch_within,
@@ -45,7 +43,7 @@ def follows(run: FastRun) -> bool:
 
 @compiled_deferred
 def find_branches(run: FastRun) -> None:
-    """Branches that z or x' alone decides, as a run begins, and the gaps of sliders."""
+    """Branches that z or x' alone decides, as a run begins."""
     plan, state, series = run.plan, run.state, run.series
     links, memory, noise = plan.links, plan.links.law.memory, LENGTH * plan.limits.length
     for h in plan.hysteresis.followed:
@@ -54,8 +52,6 @@ def find_branches(run: FastRun) -> None:
         state.sigma[h] = 1.0
         x, x_rate = series.x[a], series.x_rate[a]
         state.branch[a] = branch_within(a, memory, links.offset[a], x, x_rate, z, noise)
-    # The contacts of sliders take no part in impacts.
-    state.gap[state.gap.size - links.sliders.size :] = np.inf
 
 
 @compiled_deferred

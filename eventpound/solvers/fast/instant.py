@@ -9,6 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import last_speed
+from eventpound.contact.friction import (
+    Rubs,
+    begin_beside_friction,
+    decide_friction,
+    settle_with_friction,
+)
 from eventpound.contact.impacts import DONE, put_as_one
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import still_rate
@@ -17,11 +23,12 @@ from eventpound.contact.sliders import (
     decide_sticks,
 )
 from eventpound.contact.state import Instant
-from eventpound.mechanics.clusters import ContactEnds, form_clusters
+from eventpound.mechanics.clusters import Clusters, ContactEnds, form_clusters
+from eventpound.mechanics.oblique import are_tied, slips_of, with_slips
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel
 from eventpound.solvers.fast.compiled import (
     compiled,
     compiled_deferred,
@@ -36,9 +43,9 @@ from eventpound.solvers.fast.links import (
     set_curve,
     turns_back,
 )
-from eventpound.solvers.fast.run import FastRun
+from eventpound.solvers.fast.run import FastRun, FastSeries
 from eventpound.solvers.fast.search import force_level
-from eventpound.solvers.fast.sliding import any_slider
+from eventpound.solvers.fast.sliding import any_rubbing, any_slider, holds_stick, own_contacts
 
 
 @compiled
@@ -91,20 +98,32 @@ def _form(run: FastRun) -> tuple[int, int]:
     numbers of clusters and of rows of the elimination.
     """
     contacts, mass, state, series = run.plan.contacts, run.plan.mass, run.state, run.series
-    own = contacts.gap.size - run.plan.links.sliders.size
+    own = own_contacts(run)
     ends = contacts.left, contacts.right, contacts.gap
-    clusters = form_clusters(
-        ContactEnds(*ends, mass, contacts.weights, own), state.resting, state.pressed
-    )
-    copy_numbers(clusters.of_body, series.of_body)
+    between = ContactEnds(*ends, mass, contacts.weights, own)
+    clusters = form_clusters(between, state.resting, state.pressed)
+    count = clusters.count
     edges = clusters.elimination.shape[0]
     for row in range(edges):
         copy_numbers(clusters.elimination[row], series.elimination[row])
     unique, locked = clusters.unique, clusters.locked
     for i in range(clusters.resting.size):
         j = clusters.resting[i]
-        state.unlocked[j] = not (locked[i] or clusters.redundant[i])
+        # Where friction is not unique each takes part of it, and has a bound.
+        idle = clusters.redundant[i] and not (any_rubbing(run) and holds_stick(j, run))
+        state.unlocked[j] = not (locked[i] or idle)
         run.record.unique[j] &= unique[i]
+    _put_equations(clusters, series)
+    if any_rubbing(run):
+        count = _enter_slips(clusters, between, run)
+    put_as_one(clusters, False, mass, state.v)
+    return count, edges
+
+
+@kernel.but(fused=True)
+def _put_equations(clusters: Clusters, series: FastSeries) -> None:
+    """Who moves with whom, and what forces make of it in a scene with points."""
+    copy_numbers(clusters.of_body, series.of_body)
     for row in range(clusters.force_map.shape[0]):
         series.resting[row] = clusters.resting[row]
         copy_numbers(clusters.force_map[row], series.force_map[row])
@@ -112,8 +131,21 @@ def _form(run: FastRun) -> tuple[int, int]:
         series.carried[c] = clusters.carried[c]
         for d in range(clusters.carried.size):
             series.compliance[c, d] = clusters.compliance[c, d]
-    put_as_one(clusters, False, mass, state.v)
-    return clusters.count, edges
+
+
+@deferred_kernel.but(fused=True)
+def _enter_slips(clusters: Clusters, between: ContactEnds, run: FastRun) -> int:
+    """Put the equations of a mode in which contacts slip in place; the number of its clusters."""
+    contacts, branch, may_stop = run.plan.contacts, run.state.branch, run.series.may_stop
+    own = contacts.rubbing, contacts.friction
+    slips = slips_of(*own, between, branch, clusters.resting)
+    oblique = with_slips(clusters, slips, may_stop.size, between)
+    _put_equations(oblique, run.series)
+    tied = are_tied(slips.left, slips.right, oblique)
+    may_stop[:] = False
+    for s in range(tied.size):
+        may_stop[slips.which[s]] = not tied[s]
+    return oblique.count
 
 
 @compiled
@@ -150,7 +182,9 @@ def instant_of(run: FastRun) -> Instant:
         restitution=contacts.restitution,
         length=limits.length,
         time=limits.time,
-        last_speed=last_speed(limits.length / limits.time, links.sliders.size > 0),
+        last_speed=last_speed(
+            limits.length / limits.time, links.sliders.size + contacts.rubbing.size > 0
+        ),
         u=state.u,
         v=state.v,
         gap=state.gap,
@@ -170,12 +204,16 @@ def instant_of(run: FastRun) -> Instant:
 def settle(forcing: Forcing, z: Floats, at: Instant, run: FastRun) -> int:
     """Do the duties of the present instant; `z` (H,) is overwritten."""
     plan, state, series, limits = run.plan, run.state, run.series, run.plan.limits
-    sliders, slides = plan.links.sliders, any_slider(run)
+    sliders, slides, rubs = plan.links.sliders, any_slider(run), any_rubbing(run)
+    force, kinked, contacts = run.observed.contact_force, run.located.kinked, plan.contacts
+    rubbing = Rubs(contacts.rubbing, contacts.friction, state.rubbed)
     if slides:
-        begin_beside_sliders(run.observed.contact_force, run.located.kinked, sliders, at)
+        begin_beside_sliders(force, kinked, sliders, at)
+    if rubs:
+        begin_beside_friction(force, kinked, rubbing, at)
     # What has ended by now has been seen to, and must not end once more.
-    run.located.kinked[:] = False
-    ended = settle_impacts(at)
+    kinked[:] = False
+    ended = settle_with_friction(rubbing, at) if rubs else settle_impacts(at)
     if ended != DONE:
         return ended
     if follows(run):
@@ -186,6 +224,8 @@ def settle(forcing: Forcing, z: Floats, at: Instant, run: FastRun) -> int:
         if slides:
             # Of no clusters: their series are those of the step before.
             ended = decide_sticks(z, forcing, force_level(0, limits, series), sliders, at)
+        elif rubs:
+            ended = decide_friction(z, forcing, force_level(0, limits, series), rubbing, at)
         else:
             ended = decide_rests(z, forcing, at)
         if ended == DONE:
@@ -202,6 +242,8 @@ def start(run: FastRun) -> None:
     """The first mode of a run, and its hysteretic links on their curves."""
     plan, state, series = run.plan, run.state, run.series
     open_gaps(plan, state)
+    # The contacts that hold what sticks take no part in impacts.
+    state.gap[own_contacts(run) :] = np.inf
     for a in range(plan.links.offset.size):
         copy_numbers(plan.links.law.memory[a], series.memory[a])
     enter_mode(run)

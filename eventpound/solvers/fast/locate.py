@@ -39,7 +39,13 @@ from eventpound.solvers.fast.search import (
     set_distance,
     stays_above,
 )
-from eventpound.solvers.fast.sliding import end_of_slip, of_slider, set_margin
+from eventpound.solvers.fast.sliding import (
+    any_rubbing,
+    end_of_slip,
+    holds_slider,
+    holds_stick,
+    set_margin,
+)
 from eventpound.tolerances import (
     GAP_COEFFICIENT,
     LENGTH,
@@ -78,6 +84,8 @@ def first_event(order: int, h: float, run: FastRun) -> float:
     first = _kinks(order, min(h, first), first, run)
     if follows(run):
         first = _of_followed(order, h, first, run)
+    if any_rubbing(run):
+        first = _slips(order, h, first, run)
     if state.progress[0].resting > 0:
         first = _releases(order, min(h, first), first, run)
     return first
@@ -240,12 +248,26 @@ def _of_followed(order: int, h: float, first: float, run: FastRun) -> float:
     return first
 
 
+@compiled_deferred
+def _slips(order: int, h: float, first: float, run: FastRun) -> float:
+    """The first of these: a contact with friction stops to slip."""
+    may_stop, branch, located = run.series.may_stop, run.state.branch, run.located
+    for f in range(may_stop.size):
+        if may_stop[f]:
+            a = branch.size - may_stop.size + f
+            tau = end_of_slip(order, h, min(h, first), a, float(branch[a]), run)
+            first = _note(tau, first, a, located.kinked, located)
+    return first
+
+
 @compiled_noinline
 def _end_of_branch(order: int, h: float, limit: float, a: int, z: int, run: FastRun) -> float:
     """When a link comes to an end of its branch within h, up to `limit` (s), or inf."""
     links, series, branch = run.plan.links, run.series, run.state.branch[a]
     x, memory = series.x[a], links.law.memory
     if slides(a, memory):
+        if holds_slider(a, run):
+            return np.inf
         return end_of_slip(order, h, limit, a, float(branch), run)
     if branch == YIELDING:
         return _reversal(order, limit, a, -1.0, run)
@@ -292,7 +314,7 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
         j = end // 2
         if not state.unlocked[j] or not _has_end(end, order, run):
             continue
-        force = series.d if of_slider(j, run) else forces[j]
+        force = series.d if holds_stick(j, run) else forces[j]
         spread = 0.0
         for k in range(order - 2, 0, -1):
             spread = (spread + abs(force[k])) * h
@@ -323,19 +345,19 @@ def _releases(order: int, h: float, first: float, run: FastRun) -> float:
 
 @compiled
 def _margin_and_slope(end: int, tau: float, order: int, run: FastRun) -> tuple[float, float]:
-    """The contact force at tau (s), or what `_has_end` has set of a slider's, and its rate."""
+    """The contact force at tau (s), or what `_has_end` has set of a stick's, and its rate."""
     j, series = end // 2, run.series
-    force = series.d if of_slider(j, run) else series.contact_force[j]
+    force = series.d if holds_stick(j, run) else series.contact_force[j]
     return value_and_slope(force[: order - 1], tau)
 
 
 @compiled
 def _has_end(end: int, order: int, run: FastRun) -> bool:
-    """Whether the rest of contact end // 2 can end there: at a second one a slider's alone."""
-    slides = of_slider(end // 2, run)
-    if slides:
+    """Whether the rest of contact end // 2 can end there: at a second one what sticks alone."""
+    sticks = holds_stick(end // 2, run)
+    if sticks:
         set_margin(end // 2, end % 2, order, run)
-    return slides or end % 2 == 0
+    return sticks or end % 2 == 0
 
 
 @compiled_noinline

@@ -72,6 +72,7 @@ _SHARED = frozenset(
         *("links.grounded", "links.sliders"),
         *("hysteresis.link", "hysteresis.tables", "hysteresis.followed"),
         *("contacts.left", "contacts.right", "contacts.weights"),
+        *("contacts.rubbing", "contacts.friction"),
         *("limits.rtol", "limits.order", "limits.ledger", "output_times"),
         *("oscillator.right", "oscillator.left", "distances.first", "distances.second"),
     )

@@ -30,7 +30,12 @@ from eventpound.solvers.events.recorder import put_line
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.run import FastProgress, FastRun
-from eventpound.solvers.fast.sliding import any_slider, observe_slider_z
+from eventpound.solvers.fast.sliding import (
+    add_friction,
+    any_rubbing,
+    any_slider,
+    observe_slider_z,
+)
 
 
 @compiled
@@ -149,7 +154,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 @compiled_deferred
 def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
-    """Add input, viscous and hysteretic work of a step (J) to the ledger; overwrites `observed`."""
+    """Add all work of a step (J) to the ledger; overwrites `observed`."""
     plan, state, observed = run.plan, run.state, run.observed
     links, law, memory = plan.links, plan.links.law, run.series.memory
     for i in range(NODES.size):
@@ -159,6 +164,8 @@ def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
         observe_at_noinline(at, order, g, run)
         if piece.family == LOADED:
             _add_loaded(state.now[0].t + at, weight, piece, run)
+        if any_rubbing(run):
+            add_friction(weight, run)
         for b in range(plan.mass.size):
             # The work of a support is its own, and its mass infinite.
             state.ledger[0] -= weight * own_mass(b, plan.mass) * observed.v[b] * g
@@ -198,7 +205,7 @@ def _add_loaded(t: float, weight: float, piece: CurrentPiece, run: FastRun) -> N
         b = body_of(row, coefficients)
         if not is_driven(row, coefficients):
             ledger[0] += weight * observed.v[b] * load_value(row, piece, t)
-    for k in range(ledger.size - WORK_OF_SUPPORTS):
+    for k in range(ledger.size - WORK_OF_SUPPORTS - plan.contacts.rubbing.size):
         taken = -observed.body_force[k]
         for b in range(plan.mass.size):
             part = goes_with(b, k, run)

@@ -18,10 +18,10 @@ from eventpound.numerics.arrays import Bools, Bytes, Floats, Ints, Records
 from eventpound.numerics.records import NamedNumbers
 from eventpound.solvers.fast.compiled import compiled
 
-FINISHED, GOING_ON, NOT_FINITE, PENETRATION, STUCK, NO_STEP, DRIFT = 0, 10, 12, 13, 14, 15, 16
-PULL = 17
+FINISHED, GOING_ON = 0, 10
+NOT_FINITE, PENETRATION, STUCK, NO_STEP, DRIFT, PULL = range(30, 36)
 """How a call of `advance` ends, beside the ends of settling."""
-CROWDED = 18
+CROWDED = 36
 """How a run ends, though no call of `advance`, that has too many events."""
 SETTLED = 2
 """In `FastProgress.due`: the duties of an instant are done, and it is to be written down."""
@@ -31,8 +31,8 @@ MESSAGES = {
     ENDLESS: "impacts in one instant do not end",
     NOT_FINITE: "the motion is no longer finite",
     PENETRATION: "a contact penetrates and no impact was found; try a smaller rtol",
-    PULL: "a resting contact pulls and no detachment was found, or a slider sticks with more than "
-    "it can; try a smaller rtol",
+    PULL: "a resting contact pulls and no detachment was found, or what sticks does with more than "
+    "friction can; try a smaller rtol",
     DRIFT: "a gap no longer agrees with the displacements of its bodies; try another rtol",
     STUCK: "events follow each other without an end",
     NO_STEP: "no step is short enough for the equations of motion; try a larger rtol",
@@ -68,13 +68,18 @@ class Links(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Contacts (K,), and the weights (D, N) of points, the last coordinates, that they are at."""
+    """Contacts (K,), and the weights (D, N) of points, the last coordinates, that they are at.
+
+    rubbing (F,): those with `friction` (K,), along which the last F links and contacts are.
+    """
 
     left: Ints
     right: Ints
     gap: Floats
     restitution: Floats
     weights: Floats
+    rubbing: Ints
+    friction: Floats
 
 
 class Ground(NamedTuple):
@@ -170,6 +175,7 @@ class FastState(NamedTuple):
     unlocked: Bools  # (K,): at rest, and may detach
     branch: Ints  # (L,): side of the kink, -1, +1, or 0 where a link has none
     ledger: Floats  # (E,): work so far (J), see `Model.ledger_entries`
+    rubbed: Floats  # (5, F): what `eventpound.contact.friction` keeps
     now: Records  # (1,): a `Now`
     progress: Records  # (1,): a `FastProgress`
 
@@ -257,6 +263,7 @@ class FastSeries(NamedTuple):
     compliance: Floats  # (N, N): of the clusters, the first rows and columns (1/kg)
     carried: Floats  # (N,): by how much the ground takes each along
     free: Floats  # (N, N): compliance of the coordinates, nothing at rest (1/kg)
+    may_stop: Bools  # (F,): contacts that slip, unless others keep them from sliding
 
     # Whatever is looked for.
     c: Floats  # (p + 3,): a polynomial

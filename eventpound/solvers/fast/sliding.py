@@ -1,19 +1,23 @@
-"""Sliders: what fast's series tell of slips and sticks.
+"""Slips and sticks of sliders and of contacts with friction: what fast's series tell of them.
 
 A slider that slips is a link with the constant force of its branch, until x' vanishes; one that
 sticks rests as a contact does, whose force λ is what friction lacks of that of a slip, ``Q - λ``.
 With Q = σ F, it holds while ``σ λ > 0`` and ``2 F - σ λ > 0``.
 
-What an instant demands `eventpound.contact.sliders` tells.
+A contact with friction that slips has a link without force along it, until x' vanishes, and is in
+the equations of the mode (`eventpound.mechanics.oblique`). One that sticks has a contact along it
+that rests, and holds while ``μ λ_N + λ_T > 0`` and ``μ λ_N - λ_T > 0``.
+
+What an instant demands `eventpound.contact.sliders` and `eventpound.contact.friction` tell. No
+scene has both.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.modes import ends_of_stick
 from eventpound.mechanics.elements import pull_per_z
+from eventpound.mechanics.observables import difference
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.run import FastRun
 from eventpound.solvers.fast.search import (
@@ -32,16 +36,28 @@ def any_slider(run: FastRun) -> bool:
 
 
 @compiled
-def of_slider(j: int, run: FastRun) -> bool:
-    """Whether contact j is that of a slider."""
-    return bool(j >= run.state.gap.size - run.plan.links.sliders.size)
+def any_rubbing(run: FastRun) -> bool:
+    """Whether a contact of the scene has friction."""
+    return bool(run.plan.contacts.rubbing.size > 0)
+
+
+@compiled
+def holds_stick(j: int, run: FastRun) -> bool:
+    """Whether contact j is none of the scene, but rests while something sticks."""
+    return bool(j >= own_contacts(run))
+
+
+@compiled
+def own_contacts(run: FastRun) -> int:
+    """Number of the contacts of the scene, which come first."""
+    sliders, rubbing = run.plan.links.sliders, run.plan.contacts.rubbing
+    return int(run.state.gap.size - sliders.size - rubbing.size)
 
 
 @compiled
 def _link_of(j: int, run: FastRun) -> int:
     """The slider, a link, of contact j."""
-    sliders = run.plan.links.sliders
-    return int(sliders[j - run.state.gap.size + sliders.size])
+    return int(run.plan.links.sliders[j - own_contacts(run)])
 
 
 @compiled
@@ -52,24 +68,35 @@ def _slip_force(j: int, run: FastRun) -> float:
 
 @compiled
 def margin_at_rest(j: int, force: float, run: FastRun) -> float:
-    """How far the force of a contact (N) is from where its rest ends, or the stick of a slider."""
-    if not of_slider(j, run):
+    """How far the force of a contact (N) is from where its rest ends, or what it holds slips.
+
+    Of one with friction all forces are those `observed`.
+    """
+    if not holds_stick(j, run):
         return force
+    if any_rubbing(run):
+        i = run.plan.contacts.rubbing[j - own_contacts(run)]
+        return run.plan.contacts.friction[i] * run.observed.contact_force[i] - abs(force)
     low, high = ends_of_stick(_slip_force(j, run))
     return min(force - low, high - force)
 
 
 @compiled_deferred
 def set_margin(j: int, end: int, order: int, run: FastRun) -> None:
-    """Taylor coefficients of how far a slider is from an end of its stick, into `series.d`.
+    """Taylor coefficients of how far from an end of a stick its force is, into `series.d`.
 
     `end`: 0 of the lower, 1 of the upper.
     """
     force, d = run.series.contact_force[j], run.series.d
-    low, high = ends_of_stick(_slip_force(j, run))
     for k in range(order - 1):
         # λ - low, or high - λ.
         d[k] = force[k] if end == 0 else -force[k]
+    if any_rubbing(run):
+        i = run.plan.contacts.rubbing[j - own_contacts(run)]
+        for k in range(order - 1):
+            d[k] += run.plan.contacts.friction[i] * run.series.contact_force[i, k]
+        return
+    low, high = ends_of_stick(_slip_force(j, run))
     d[0] += -low if end == 0 else high
 
 
@@ -77,13 +104,9 @@ def set_margin(j: int, end: int, order: int, run: FastRun) -> None:
 def end_of_slip(order: int, h: float, limit: float, a: int, side: float, run: FastRun) -> float:
     """When the slip of link a to a side ends within h, up to `limit` (s), or inf.
 
-    One that has only just begun goes on with the first coefficient that is not rounding. One that
-    sticks because others hold its ends does not slip, whatever these do within rounding.
+    One that has only just begun goes on with the first coefficient that is not rounding.
     """
     limits, series, c = run.plan.limits, run.series, run.series.c
-    for j in range(run.state.gap.size):
-        if run.state.resting[j] and of_slider(j, run) and _link_of(j, run) == a:
-            return np.inf
     still = still_rate(limits.length, limits.time)
     head, tail = series.ends[a, 0], series.ends[a, 1]
     for k in range(order):
@@ -106,6 +129,15 @@ def end_of_slip(order: int, h: float, limit: float, a: int, side: float, run: Fa
     return release_time(c, order, h, limit, still, False, series.work)
 
 
+@compiled
+def holds_slider(a: int, run: FastRun) -> bool:
+    """Whether the slider a, a link, sticks, and so does not slip, whatever its ends do."""
+    for j in range(own_contacts(run), run.state.gap.size):
+        if run.state.resting[j] and _link_of(j, run) == a:
+            return True
+    return False
+
+
 @compiled_deferred
 def observe_slider_forces(run: FastRun) -> None:
     """Take the forces of the contacts of sliders from those of slips that are `observed`."""
@@ -125,6 +157,20 @@ def observe_slider_z(run: FastRun) -> None:
         slip = _slip_force(j, run)
         z = links.z_of_link[_link_of(j, run)]
         observed.z[z] = (slip - observed.contact_force[j]) / abs(slip)
+
+
+@compiled_deferred
+def add_friction(weight: float, run: FastRun) -> None:
+    """Add `weight` (s) times the powers of friction that are `observed` (W) to the ledger."""
+    contacts, observed, ledger = run.plan.contacts, run.observed, run.state.ledger
+    F = contacts.rubbing.size
+    for f in range(F):
+        i, t = contacts.rubbing[f], contacts.gap.size - F + f
+        slips = run.state.branch[run.state.branch.size - F + f]
+        if slips != 0:
+            rate = difference(observed.v, contacts.left[t], contacts.right[t])
+            taken = slips * rate * contacts.friction[i] * observed.contact_force[i]
+            ledger[ledger.size - F + f] += weight * taken
 
 
 @compiled_deferred

@@ -16,11 +16,12 @@ from eventpound.contact.cascade import (
     long_message,
 )
 from eventpound.contact.event_rows import EVENT_WIDTH, events_of, events_wanted
+from eventpound.contact.friction import FRICTION_MEANING, Rubs, decide_friction, friction_message
 from eventpound.contact.impacts import ENDLESS, FULL, NO_FORCES
 from eventpound.contact.instant import no_forces_message
 from eventpound.errors import ComputationError
 from eventpound.mechanics.backbone import Hysteresis
-from eventpound.mechanics.model import Model, assemble, shape_of, with_sliders
+from eventpound.mechanics.model import Model, assemble, shape_of, with_friction, with_sliders
 from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.numbers import OF_CONTACTS, numbers_of, put_numbers, with_numbers
 from eventpound.mechanics.supported import lowered
@@ -42,6 +43,7 @@ from eventpound.solvers.base import Energy, History, Recording, Task, Work, step
 from eventpound.solvers.events.event_run import lines_before
 from eventpound.solvers.events.recorder import (
     energy_ledger,
+    friction_of,
     history_of,
     impact_terms,
     kept,
@@ -100,6 +102,7 @@ class Fast:
     counts_steps = True
     takes_supports = True
     takes_points = True
+    takes_friction = True
     memories = frozenset(LawName)
     lists_springs = True
 
@@ -122,7 +125,7 @@ class Ready:
     """
 
     def __init__(self, task: Task) -> None:
-        self._scene, self._model = task.scene, with_sliders(assemble(task.scene))
+        self._scene, self._model = task.scene, with_friction(with_sliders(assemble(task.scene)))
         self._own = b"".join(numbers.tobytes() for numbers in numbers_of(self._model).values())
         self._shape = task.rtol, task.energy, *shape_of(self._model)
 
@@ -251,7 +254,11 @@ class Arrays:
             rows = np.vstack((lines_before(task, model, scales), rows))
         unique = record.unique[: model.own_contacts].tolist()
         return Left(
-            (*task.scene.contacts, *(task.scene.springs[a] for a in model.sliders)),
+            (
+                *task.scene.contacts,
+                *(task.scene.springs[a] for a in model.sliders),
+                *(task.scene.contacts[j] for j in model.rubbing),
+            ),
             model,
             ended,
             self._moving.copy(),
@@ -276,7 +283,7 @@ class _Begun(NamedTuple):
 def moving_of(model: Model) -> JoinedArrays:
     """Arrays of `FastState`, then extremes and uniqueness of forces of `FastRecord`."""
     extremes = np.zeros((5, places_in(model).end))
-    state = zero_state(model.counts, model.ledger_entries)
+    state = zero_state(model.counts, model.ledger_entries, model.rubbing.size)
     return JoinedArrays([*state, extremes, np.zeros(model.contacts, np.bool_)])
 
 
@@ -293,10 +300,10 @@ def put_start(
 class Left(NamedTuple):
     """What a run has left, from which a recording is made when it is asked for.
 
-    Behind the `contacts` of the scene are its sliders. Of `model` only the shape counts: its
-    numbers may be those of a later run. So `history` is made at once where forces were not unique.
-    `moving`: `moving_of`, as it was last. `events`, `rows`: of `FastRecord`. `seconds`,
-    `compilation`: of `Work`.
+    Behind the `contacts` of the scene are its sliders, or those with friction. Of `model` only the
+    shape counts: its numbers may be those of a later run. So `history` is made at once where forces
+    were not unique. `moving`: `moving_of`, as it was last. `events`, `rows`: of `FastRecord`.
+    `seconds`, `compilation`: of `Work`.
     """
 
     contacts: tuple[Contact | Spring, ...]
@@ -321,12 +328,17 @@ class Left(NamedTuple):
         )
         all_variables(self.model.elongations(state.u), self.hysteresis, state, z)
         now, progress = state.now, state.progress
+        known = None if self.energy is None else state.ledger
         t = float(now["t"][0])
+        names = [contact.name for contact in self.contacts]
         message = MESSAGES.get(self.ended, "left before its end")
         if self.ended == ENDLESS:
             message = endless_message(events, self.contacts)
+        elif self.model.rubbing.size > 0 and self.ended in FRICTION_MEANING:
+            rubs = Rubs(self.model.rubbing, self.model.friction, state.rubbed)
+            gaps = state.gap, state.gap_rate, state.resting
+            message = friction_message(self.ended, names, rubs, *gaps)
         elif self.ended == NO_FORCES:
-            names = [contact.name for contact in self.contacts]
             message = no_forces_message(state.resting, names, self.model.supports)
         elif self.ended == STUCK and now["in_a_row"][0] > LONGEST_CASCADE:
             message = long_message(events, self.contacts)
@@ -345,6 +357,7 @@ class Left(NamedTuple):
             unique_forces=unique,
             work=Work(expansions, 0, steps, int(now["groups"][0]), self.seconds, self.compilation),
             energy=self.energy,
+            friction=friction_of(self.model, state.rubbed, state.u, state.branch, known),
             **kept(extremes, events, t, self.model),
         )
         return own_recording(recording, self.model)
@@ -409,9 +422,10 @@ def kernels_kept(task: Task) -> bool:
     """Whether a run of a task would compile none of the large kernels.
 
     Nothing is compiled to tell. A kernel that has run in this process serves every scene, and so
-    do those that follow a z; types are those of a run of any scene.
+    do those that follow a z, and those of friction; types are those of a run of any scene.
     """
-    if task.scene.branched_springs and not getattr(follow, "overloads", ()):
+    asked = ((task.scene.branched_springs, follow), (task.scene.rubbing, decide_friction))
+    if any(needed and not getattr(part, "overloads", ()) for needed, part in asked):
         return False
     scene = lowered(task.scene, task.start)
     model = assemble(scene)
