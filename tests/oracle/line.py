@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import product
 from typing import Any
 
@@ -29,7 +30,7 @@ LAST = 1e-5
 """Part of L/T below which an impact is plastic: a flight after it would be within the noise."""
 PASSED = 1e-8
 """Part of L by which no gap may be below zero."""
-MOST_STEPS = 1500
+MOST_STEPS = 500
 """A run has more: SciPy does not see what begins and ends within one."""
 
 
@@ -83,6 +84,8 @@ class Program:
         self.restitution = np.array([c.restitution for c in hard], float)
         # Of each slider +1, -1 or 0 where it sticks; of each contact whether it rests.
         self.slip, self.rest = np.zeros(len(bounds), int), np.zeros(self.gap.size, bool)
+        # Events ask again at the same time.
+        self.supported = lru_cache(16)(self._supported)
         u, v = np.split(self.y, 2)
         self.answer = Answer(u, v, path=np.zeros(self.F.size))
         self.answer.soils = [law for law in self.laws if isinstance(law, Soil)]
@@ -105,16 +108,13 @@ class Program:
 
     def with_supports(self, t: float, values: np.ndarray, what: str) -> np.ndarray:
         """Displacements, velocities or accelerations of the bodies, then those of supports."""
-        if not self.scene.supports:
-            return values
-        moved = [
-            float(getattr(m, what)(np.array(t)))
-            for m in (
-                self.scene.motion,
-                *(s.moved_by(self.scene.motion) for s in self.scene.supports),
-            )
-        ]
-        return np.append(values, np.array(moved[1:]) - moved[0])
+        return np.append(values, self.supported(t, what)) if self.scene.supports else values
+
+    def _supported(self, t: float, what: str) -> np.ndarray:
+        """How supports move relative to the ground."""
+        ground, at = self.scene.motion, np.array(t)
+        own = [float(getattr(s.moved_by(ground), what)(at)) for s in self.scene.supports]
+        return np.array(own) - float(getattr(ground, what)(at))
 
     def elongation(self, law: Law, t: float, y: np.ndarray) -> tuple[float, float]:
         """Of a law, and its rate."""
