@@ -8,7 +8,7 @@ slipping, s sticking; without friction a contact is o or +.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from itertools import product
 from typing import Any, NamedTuple
@@ -22,7 +22,7 @@ from tests.oracle.pieces import Event, Floats, march
 TOO_FAST = 1e-4
 """Interval between impacts (s) below which a scene is left to others."""
 _RTOL, _ATOL, _FIRST, _STEP = 1e-13, 1e-15, 1e-6, 0.02
-_STILL, _OFF, _NOISE = 1e-10, 1e-8, 1e-13
+_STILL, _OFF, _NOISE, _TAKEN = 1e-10, 1e-8, 1e-13, 1e-3
 _WAY = {"+": 1.0, "-": -1.0}
 
 
@@ -85,19 +85,26 @@ class Plan:
         held, (normal, tangential) = self.held(state), np.zeros((2, len(state)))
         if not held.shut:
             return free, normal, tangential
-        if held.dependent:
-            raise np.linalg.LinAlgError
         shut, stuck = held.shut, held.stuck
+        # Forces of sticks alone need not be unique: the least ones.
+        solve = _least if held.dependent and shut == stuck else np.linalg.solve
+        if held.dependent and shut != stuck:
+            raise np.linalg.LinAlgError
         wanted = np.concatenate((asked[shut], np.zeros(len(stuck))))
-        x = np.linalg.solve(held.G, wanted - held.rows @ free)
+        x = solve(held.G, wanted - held.rows @ free)
         normal[shut] = x[: len(shut)]
         for j in shut:
             tangential[j] = -_WAY.get(state[j], 0.0) * self.friction[j] * normal[j]
         tangential[stuck] = x[len(shut) :]
         return free + held.forces.T @ x / self.mass, normal, tangential
 
-    def find(self, free: Floats, asked: Floats, choices: list[str]) -> tuple[str, Floats]:
-        """The first state of all choices that keeps the inequalities, and the rates in it."""
+    def find(
+        self, free: Floats, asked: Floats, choices: list[str], forced: Collection[int] = ()
+    ) -> tuple[str, Floats]:
+        """The first state of all choices that keeps the inequalities, and the rates in it.
+
+        Of contacts whose way is forced, by friction at its bound, one may stick well inside it.
+        """
         for letters in product(*choices):
             state = "".join(letters)
             try:
@@ -111,8 +118,10 @@ class Plan:
                 if s == "o":
                     good &= len(choices[j]) == 1 or self.W[j] @ rate >= asked[j] - size
                 elif s == "s":
-                    good &= abs(tangential[j]) <= self.friction[j] * normal[j] + force
-                elif len(choices[j]) > 2:
+                    bound = self.friction[j] * normal[j]
+                    bound *= 1.0 - _TAKEN if j in forced else 1.0
+                    good &= abs(tangential[j]) <= bound + force
+                elif len(choices[j]) > 2 and j not in forced:
                     good &= _WAY[s] * along[j] >= -size
                 good &= normal[j] >= -force
             if good:
@@ -178,18 +187,23 @@ class Plan:
         """Who is open, slips and sticks; known of some that they open, or where they slip."""
         q, v = np.split(y, 2)
         gaps, rates, along = self.gap + self.W @ q, self.W @ v, self.T @ v
+        # Others that stick keep these from sliding, at the bound of their friction.
+        held = {j: s for j, s in enumerate(self.state) if s in _WAY and self.friction[j] > 0.0}
+        held = {j: s for j, s in held.items() if abs(along[j]) < _STILL and self._tied(j)}
+        forced = held | forced
         choices = []
         for j, mu in enumerate(self.friction):
             shut = abs(gaps[j]) < _STILL and abs(rates[j]) < _STILL and j not in gone
             if not shut:
                 choices.append("o")
             elif j in forced:
-                choices.append("o" + forced[j])
+                choices.append("s" + forced[j] + "o")
             elif mu > 0.0 and abs(along[j]) < _STILL:
                 choices.append("o+-s")
             else:
                 choices.append("o+" if mu == 0.0 or along[j] > 0.0 else "o-")
-        self.state, _ = self.find(self.free(t, q, v), np.zeros(len(choices)), choices)
+        free = self.free(t, q, v)
+        self.state, _ = self.find(free, np.zeros(len(choices)), choices, forced)
 
     def impacts(self, q: Floats, v: Floats) -> Floats:
         """Velocities after impacts until none approaches."""
@@ -205,6 +219,10 @@ class Plan:
             ]
             v = self.find(v, -self.restitution * rates, choices)[1]
         raise LeftAloneError
+
+
+def _least(G: Floats, right: Floats) -> Floats:
+    return np.linalg.lstsq(G, right, rcond=1e-9)[0]
 
 
 class LeftAloneError(Exception):
