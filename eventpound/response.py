@@ -22,7 +22,7 @@ from eventpound.quantities.apart import avoiding_gaps
 from eventpound.quantities.base import SIX, TakenFrom, pi_unit
 from eventpound.quantities.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.quantities.between import Between
-from eventpound.quantities.decks import turned_far
+from eventpound.quantities.decks import translates, turned_far
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_of
 from eventpound.quantities.owners import owners_of
@@ -282,8 +282,10 @@ class Response:
         """
         names = [each.name for each in self.scene.bodies]
         wanted = [body] if isinstance(body, str) else list(body)
-        if unknown := [name for name in wanted if name not in names] or (not wanted and ["none"]):
-            raise InputError(f"body: found {', '.join(unknown)}; accepted: {', '.join(names)}")
+        # A deck that turns shakes no oscillator on a line.
+        known = [each.name for i, each in enumerate(self.scene.bodies) if translates(self.scene, i)]
+        if unknown := [name for name in wanted if name not in known] or (not wanted and ["none"]):
+            raise InputError(f"body: found {', '.join(unknown)}; accepted: {', '.join(known)}")
         several = [damping] if isinstance(damping, float | int | str) else damping
         ratios = [read_damping(each) for each in several]
         period = read_periods(periods)
@@ -293,7 +295,7 @@ class Response:
         places = [names.index(name) for name in wanted]
 
         def numbers(run: Recording) -> dict[str, tuple[Floats, Floats]]:
-            found = largest_responses(run.history, self.scene.motion, places, period, ratios)
+            found = largest_responses(run.history, self.scene, places, period, ratios)
             return {"floor spectrum": (found, found)}
 
         found, apart = settled(self.task, self._rerun, numbers)

@@ -29,10 +29,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eventpound.motion.base import GroundMotion
+from eventpound.mechanics.supported import components
 from eventpound.motion.oscillators import spectrum_columns
 from eventpound.motion.swing import largest_swings
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.scene import Scene
 from eventpound.solvers.base import History
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 
 def largest_responses(
     history: History,
-    motion: GroundMotion,
+    scene: Scene,
     bodies: Sequence[int],
     periods: Floats,
     ratios: Sequence[float],
@@ -52,8 +53,8 @@ def largest_responses(
     ----------
     history : History
         Rows close together.
-    motion : GroundMotion
-        That of the ground.
+    scene : Scene
+        Whose they are, with the motion of the ground.
     bodies : sequence of int
         Numbers of the b bodies.
     periods : ndarray, shape (k,)
@@ -62,11 +63,14 @@ def largest_responses(
         The r ratios xi, each below 1.
     """
     t = history.t
-    h, place, rate = np.diff(t), motion.displacement(t), motion.velocity(t)
+    h = np.diff(t)
     # From the double before 0 to 0: of such a length no product is left.
     h[h < np.finfo(float).tiny] = 0.0
     found = np.zeros((len(bodies), len(ratios), periods.size, 2))
     for i, b in enumerate(bodies):
+        place, rate = np.zeros(t.size), np.zeros(t.size)
+        for signal, part in components(scene, scene.bodies[b].direction):
+            place, rate = place + part * signal.displacement(t), rate + part * signal.velocity(t)
         u, v, a = history.u[:, b] + place, history.v[:, b] + rate, history.a[:, b]
         push = _quintic_push(u, v, a, h)
         for j, ratio in enumerate(ratios):

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from eventpound import simulate
+from eventpound.errors import InputError
 from eventpound.motion import Sine
 from eventpound.quantities.lookup import names_of
-from eventpound.scene import BARRIER, GROUND, Dashpot, Deck, Joint, Linear, Scene, Spring
+from eventpound.scene import BARRIER, GROUND, Body, Dashpot, Deck, Joint, Linear, Scene, Spring
 from eventpound.scene.pi_terms import number_of_terms, pi_terms
 
 ENDS = {"x": 40e6, "y": 25e6, "turn": 30e6}
@@ -59,3 +60,25 @@ def test_base_shears_by_directions(word, end):
         assert response.quantity(name) == pytest.approx(np.abs(pull[deck]).max(), rel=1e-4)
     both = np.abs(pull["A"] + pull["B"]).max()
     assert response.quantity(whole) == pytest.approx(both, rel=1e-4)
+
+
+def test_no_floor_spectrum_of_a_turn():
+    response = simulate(two_decks(), duration=0.1)
+    with pytest.raises(InputError, match=r"found A\.turn; accepted: A\.x, A\.y, B\.x, B\.y"):
+        response.floor_spectrum("A.turn", [0.3], 0.05)
+
+
+def test_a_floor_across_is_that_of_a_body_under_the_second_component():
+    in_plan = two_decks()
+    alone = Scene(
+        [Body("A.y", "900 t")],
+        [Spring("y", (GROUND, "A.y"), Linear(ENDS["y"]))],
+        [Dashpot((GROUND, "A.y"), 4e5)],
+        motion=in_plan.across,
+    )
+    found, expected = (
+        simulate(scene, duration=2.0).floor_spectrum("A.y", [0.3, 1.0], 0.05)
+        for scene in (in_plan, alone)
+    )
+    for column in ("SD", "SA"):
+        np.testing.assert_allclose(found[column], expected[column], rtol=1e-5)
