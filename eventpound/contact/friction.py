@@ -18,21 +18,10 @@ infinite otherwise, and a link, whose branch is the way of a slip, 0 where there
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
-
 import numpy as np
 
-from eventpound.contact.event_rows import (
-    SLIPS_BACKWARD,
-    SLIPS_FORWARD,
-    STICKS,
-    new_group,
-    write_slide,
-)
 from eventpound.contact.impacts import (
     DONE,
-    NO_FORCES,
     NO_IMPACT,
     PROBLEM,
     close_collapsed,
@@ -47,8 +36,22 @@ from eventpound.contact.impacts import (
 from eventpound.contact.instant import begin_instant, end_instant, take_rests
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import ORDER, Touching, free_accelerations, touching_of
+from eventpound.contact.rubbing import (
+    GAINS,
+    NOT_UNIQUE,
+    PATH,
+    PLACE,
+    Rubs,
+    Sliding,
+    all_joints,
+    is_at_bound,
+    keep_friction,
+    kinds_before,
+    list_slides,
+    matrix_of_rows,
+    sliding_of,
+)
 from eventpound.contact.state import Instant, between_now
-from eventpound.mechanics.contact_problem import Joints, coupling
 from eventpound.mechanics.impact import rates_after, take_impulses
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
@@ -62,77 +65,10 @@ from eventpound.numerics.coulomb import (
     SEVERAL,
     STICK,
     Rubbing,
-    are_independent,
     solve_rubbing,
     sticks_well,
 )
 from eventpound.tolerances import GAINED, QUIET
-
-NOT_UNIQUE, GAINS = 13, 14
-"""How settling an instant ends besides: several answers; an impact that gains energy."""
-FRICTION_MEANING = {
-    NO_IMPACT: "an impact has no solution",
-    NO_FORCES: "no forces go with the motion (Painlevé's paradox)",
-    NOT_UNIQUE: "what follows is not unique",
-    GAINS: "an impact gains kinetic energy, as Newton's law with friction may",
-}
-"""What these are told as, with the contacts behind."""
-PATH, WORK, IMPULSE, TANGENTIAL, PLACE = range(5)
-"""Rows of what is kept of friction: way slid (m); energy taken in impacts (J); largest normal and
-tangential impulse (N s); where it was at the last instant (m)."""
-
-
-class Rubs(NamedTuple):
-    """F contacts with friction of K; their holding contacts and links are the last F.
-
-    contact (F,): which. friction (K,): μ. kept (5, F): see above.
-    """
-
-    contact: Ints
-    friction: Floats
-    kept: Floats
-
-
-class Sliding(NamedTuple):
-    """Contacts that take part in a problem (k,) as rows of it.
-
-    members (k,): which. rows (2k,): the members, and the contacts that hold them, -1 without
-    friction.
-    """
-
-    members: Ints
-    rows: Ints
-
-
-@kernel
-def _sliding(members: Ints, rubs: Rubs) -> Sliding:
-    """Rows of some contacts."""
-    first = rubs.friction.size - rubs.contact.size
-    rows = np.full(2 * members.size, -1)
-    for i in range(members.size):
-        rows[i] = members[i]
-        for f in range(rubs.contact.size):
-            if rubs.contact[f] == members[i]:
-                rows[members.size + i] = first + f
-    return Sliding(members, rows)
-
-
-@kernel
-def _joints(at: Instant) -> Joints:
-    """What impulses of all contacts act on."""
-    return Joints(at.left, at.right, 1.0 / at.mass, at.compliance)
-
-
-@kernel
-def _matrix(rows: Ints, at: Instant) -> Floats:
-    """``G = Wᵀ M⁻¹ W`` of rows, with nothing for those that are -1."""
-    joints = _joints(at)
-    G = np.zeros((rows.size, rows.size))
-    for a in range(rows.size):
-        for b in range(rows.size):
-            if rows[a] >= 0 and rows[b] >= 0:
-                G[a, b] = coupling(joints, int(rows[a]), int(rows[b]))
-    return G
 
 
 @deferred_kernel
@@ -212,7 +148,7 @@ def _impact(plastic: bool, shut: Bools, rubs: Rubs, at: Instant) -> int:
     """One impact problem; DONE, or how it fails."""
     before = at.gap_rate.copy()
     involved = shut & (before <= 0.0)
-    sliding = _sliding(np.flatnonzero(involved), rubs)
+    sliding = sliding_of(np.flatnonzero(involved), rubs)
     members, rows, k = sliding.members, sliding.rows, sliding.members.size
     eps = np.zeros(before.size) if plastic else at.restitution
     q = np.zeros(2 * k)
@@ -220,14 +156,14 @@ def _impact(plastic: bool, shut: Bools, rubs: Rubs, at: Instant) -> int:
         if rows[a] >= 0:
             q[a] = (1.0 + eps[rows[a]] if a < k else 1.0) * before[rows[a]]
     noise = QUIET * np.max(-before[members])
-    G, friction = _matrix(rows, at), rubs.friction[members]
+    G, friction = matrix_of_rows(rows, at), rubs.friction[members]
     problem = Rubbing(G, q, friction, np.zeros(k, np.int64), np.full(2 * k, noise))
     x, w, state = np.zeros(2 * k), np.zeros(2 * k), np.zeros(k, np.int64)
     found = solve_rubbing(problem, x, w, state)
     if found in (NO_ANSWER, SEVERAL):
         return NO_IMPACT if found == NO_ANSWER else NOT_UNIQUE
     impulse, opening, passed = np.zeros(before.size), np.zeros(k), 0.0
-    joints, real = _joints(at), rows >= 0
+    joints, real = all_joints(at), rows >= 0
     rounding = take_impulses(joints, at.mass, rows[real], x[real], shut, at.gap_rate, at.v)
     for i in range(k):
         impulse[members[i]] = x[i]
@@ -240,20 +176,14 @@ def _impact(plastic: bool, shut: Bools, rubs: Rubs, at: Instant) -> int:
             at.gap_rate[t] = w[k + i]
             by_friction = -0.5 * x[k + i] * (before[t] + w[k + i])
             lost += by_friction
-            _keep_impact(t - at.gap.size + rubs.contact.size, x[i], x[k + i], by_friction, rubs)
+            keep_friction(
+                t - at.gap.size + rubs.contact.size, x[i], x[k + i], by_friction, rubs.kept
+            )
     if lost < -GAINED * passed:
         return GAINS
     open_last(plastic, shut, at)
     list_impacts(plastic, before, impulse, involved, lost, at)
     return DONE
-
-
-@scalar_kernel
-def _keep_impact(f: int, normal: float, tangential: float, lost: float, rubs: Rubs) -> None:
-    """Keep what friction took (J) in an impact with such impulses (N s)."""
-    rubs.kept[WORK, f] += lost
-    rubs.kept[IMPULSE, f] = max(rubs.kept[IMPULSE, f], normal)
-    rubs.kept[TANGENTIAL, f] = max(rubs.kept[TANGENTIAL, f], abs(tangential))
 
 
 @deferred_kernel
@@ -277,8 +207,8 @@ def decide_friction(z: Floats, forcing: Forcing, noise: float, rubs: Rubs, at: I
     resting, pressed = np.zeros(K, np.bool_), np.zeros(K, np.bool_)
     at.now[0].stale = True
     touching = touching_of(between_now(at), z, forcing, at)
-    sliding = _sliding(np.flatnonzero(touching.undecided), rubs)
-    before = _kinds_before(sliding, at)
+    sliding = sliding_of(np.flatnonzero(touching.undecided), rubs)
+    before = kinds_before(sliding, at)
     ended, x, w, state, level = _solve(sliding, touching, rubs, at)
     k, groups = sliding.members.size, at.now[0].groups
     for i in range(k):
@@ -290,53 +220,8 @@ def decide_friction(z: Floats, forcing: Forcing, noise: float, rubs: Rubs, at: I
         return NOT_UNIQUE
     ended = take_rests(resting, pressed, ended != NO_ANSWER, at)
     if ended == DONE:
-        _list_slides(sliding, before, state, groups, at)
+        list_slides(sliding, before, state, groups, at)
     return ended
-
-
-@kernel
-def _kinds_before(sliding: Sliding, at: Instant) -> Ints:
-    """What contacts did up to the instant (k,): the kind of row that told it, -1 of open ones."""
-    k, K, L = sliding.members.size, at.gap.size, at.branch.size
-    kinds = np.full(k, -1)
-    for i in range(k):
-        t = sliding.rows[k + i]
-        if t >= 0 and at.resting[sliding.members[i]]:
-            way = at.branch[L - K + t]
-            if at.resting[t] or _is_at_bound(sliding.members[i], t, at):
-                kinds[i] = STICKS
-            elif way != 0:
-                # One whose slip has just ended is told anew, whatever follows.
-                kinds[i] = SLIPS_BACKWARD if way < 0 else SLIPS_FORWARD
-    return kinds
-
-
-@kernel
-def _list_slides(sliding: Sliding, before: Ints, state: Ints, groups: int, at: Instant) -> None:
-    """Write down which contacts at rest begin to stick or to slip, with the rests that begin."""
-    k, now, group = sliding.members.size, at.now[0], groups
-    for i in range(k):
-        t, kind = sliding.rows[k + i], STICKS
-        if t < 0 or state[i] == OPEN or not at.resting[sliding.members[i]]:
-            continue
-        if state[i] != STICK and (at.gap_rate[t] != 0.0 or not _is_held(i, sliding, state, at)):
-            kind = SLIPS_FORWARD if state[i] == FORWARD else SLIPS_BACKWARD
-        if kind != before[i]:
-            if now.groups == groups:
-                group = new_group(now)
-            write_slide(kind, sliding.members[i], group, now, at.events)
-
-
-@kernel
-def _is_held(i: int, sliding: Sliding, state: Ints, at: Instant) -> bool:
-    """Whether others that stick keep a member from sliding, which is at the bound of friction."""
-    k, rows, count = sliding.members.size, np.empty(2 * sliding.members.size + 1, np.int64), 0
-    for a in range(2 * k):
-        if sliding.rows[a] >= 0 and (state[a] != OPEN if a < k else state[a - k] == STICK):
-            rows[count] = sliding.rows[a]
-            count += 1
-    rows[count] = sliding.rows[k + i]
-    return not are_independent(_matrix(rows[: count + 1], at))[count]
 
 
 @kernel
@@ -353,17 +238,9 @@ def _ways(sliding: Sliding, at: Instant) -> tuple[Ints, Bools]:
             continue
         if at.gap_rate[t] != 0.0:
             ways[i] = 1 if at.gap_rate[t] > 0.0 else -1
-        elif at.released[t] or _is_at_bound(sliding.members[i], t, at):
+        elif at.released[t] or is_at_bound(sliding.members[i], t, at):
             ways[i], bound[i] = at.branch[L - K + t], True
     return ways, bound
-
-
-@scalar_kernel
-def _is_at_bound(j: int, t: int, at: Instant) -> bool:
-    """Whether contact j, which has not slid, was one of those that slip all the same."""
-    slid = difference(at.before, at.left[t], at.right[t])
-    slips = at.branch[at.branch.size - at.gap.size + t] != 0
-    return at.resting[j] and slips and abs(slid) <= still_rate(at.length, at.time)
 
 
 @kernel
@@ -375,7 +252,7 @@ def _solve(
     They are those of the first order in which one is about to move.
     """
     rows, k = sliding.rows, sliding.members.size
-    G, friction = _matrix(rows, at), rubs.friction[sliding.members]
+    G, friction = matrix_of_rows(rows, at), rubs.friction[sliding.members]
     x, w, state = np.zeros(2 * k), np.zeros(2 * k), np.full(k, STICK)
     q, level, (ways, bound) = np.zeros(2 * k), np.zeros(2 * k), _ways(sliding, at)
     for highest in (1, ORDER):
@@ -488,24 +365,3 @@ def _take_ways(
                 at.opening[t] = -difference(at.u, at.left[t], at.right[t])
         elif state[i] != OPEN:
             at.branch[a] = 1 if state[i] == FORWARD else -1
-
-
-def friction_message(
-    ended: int,
-    names: Sequence[str],
-    rubs: Rubs,
-    gap: Floats,
-    gap_rate: Floats,
-    resting: Bools,
-) -> str:
-    """What to say where an instant cannot be settled at contacts with friction.
-
-    names (K,): of the contacts. gap, gap_rate, resting (K,): as of an `Instant`.
-    """
-    told = []
-    for t, j in enumerate(rubs.contact.tolist(), gap.size - rubs.contact.size):
-        if gap[j] == 0.0 or resting[j]:
-            rate = gap_rate[t]
-            way = f"slides with {rate:.3g} m/s" if rate != 0.0 else "does not slide"
-            told.append(f"{names[j]!r} (friction {rubs.friction[j]:g}, {way})")
-    return f"{FRICTION_MEANING[ended]}: {', '.join(told)}; try less friction there"

@@ -33,7 +33,13 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.graph import root
 from eventpound.numerics.lemke import solve_lemke
-from eventpound.numerics.small_systems import dot, invert
+from eventpound.numerics.small_systems import (
+    dot,
+    independent_columns,
+    invert,
+    rounding_growth,
+    solve_by_inverse,
+)
 from eventpound.tolerances import DEPENDENT, LCP_ROUNDING, SAME_ANSWER, TAKEN_OVER
 
 OPEN, FORWARD, BACKWARD, STICK = range(4)
@@ -115,38 +121,6 @@ def _columns(state: Ints, problem: Rubbing) -> tuple[Ints, Floats]:
 
 
 @kernel
-def _solved(matrix: Floats, inverse: Floats, right: Floats) -> Floats:
-    """Solve by an inverse, and once more for what rounding has left."""
-    found = np.zeros(right.size)
-    for _ in range(2):
-        left = right.copy()
-        for a in range(right.size):
-            for b in range(right.size):
-                left[a] -= matrix[a, b] * found[b]
-        for a in range(right.size):
-            for b in range(right.size):
-                found[a] += inverse[a, b] * left[b]
-    return found
-
-
-@kernel
-def are_independent(effect: Floats) -> Bools:
-    """Unknowns (n,) that do what those before them do not, from what each does, (2k, n)."""
-    rest, kept = effect.copy(), np.zeros(effect.shape[1], np.bool_)
-    for a in range(kept.size):
-        # Twice is enough: the first turn leaves the rounding of what it took away.
-        for _ in range(2):
-            for b in range(a):
-                if kept[b]:
-                    rest[:, a] -= dot(rest[:, b], rest[:, a]) * rest[:, b]
-        length = np.sqrt(dot(rest[:, a], rest[:, a]))
-        kept[a] = length > DEPENDENT * np.sqrt(dot(effect[:, a], effect[:, a]))
-        if kept[a]:
-            rest[:, a] /= length
-    return kept
-
-
-@kernel
 def _least_forces(
     stuck: Bools, matrix: Floats, effect: Floats, right: Floats
 ) -> tuple[Floats, float]:
@@ -155,7 +129,7 @@ def _least_forces(
     Forces of contacts that stick (n,) alone may do nothing together: any other would take part in
     the motion.
     """
-    kept = are_independent(effect)
+    kept = independent_columns(effect, DEPENDENT)
     own = np.flatnonzero(kept)
     m, n = own.size, kept.size
     part, inverse, found = np.empty((m, m)), np.empty((m, m)), np.zeros(n)
@@ -163,13 +137,13 @@ def _least_forces(
         part[a] = matrix[own[a]][own]
     if not invert(part.copy(), inverse, DEPENDENT):
         return found, np.inf
-    found[own] = _solved(part, inverse, right[own])
+    found[own] = solve_by_inverse(part, inverse, right[own])
     idle, count = np.zeros((n - m, n)), 0
     for a in range(n):
         if kept[a]:
             continue
         z = idle[count]
-        z[own], z[a] = -_solved(part, inverse, matrix[own, a]), 1.0
+        z[own], z[a] = -solve_by_inverse(part, inverse, matrix[own, a]), 1.0
         for b in range(n):
             if not stuck[b] and abs(z[b]) > DEPENDENT:
                 return found, np.inf
@@ -178,19 +152,7 @@ def _least_forces(
         z /= np.sqrt(dot(z, z))
         found -= dot(z, found) * z
         count += 1
-    return found, _row_sum(inverse)
-
-
-@scalar_kernel
-def _row_sum(inverse: Floats) -> float:
-    """What equations make, at the most, of the rounding of their right-hand sides, and that."""
-    most = 1.0
-    for a in range(inverse.shape[0]):
-        total = 1.0
-        for b in range(inverse.shape[1]):
-            total += abs(inverse[a, b])
-        most = max(most, total)
-    return most
+    return found, rounding_growth(inverse)
 
 
 @kernel
@@ -203,7 +165,7 @@ def _unknowns(state: Ints, rows: Ints, effect: Floats, problem: Rubbing) -> tupl
         matrix[a], right[a] = effect[rows[a]], -problem.q[rows[a]]
         stuck[a] = state[rows[a] % k] == STICK
     if invert(matrix.copy(), inverse, DEPENDENT):
-        return _solved(matrix, inverse, right), _row_sum(inverse)
+        return solve_by_inverse(matrix, inverse, right), rounding_growth(inverse)
     return _least_forces(stuck, matrix, effect, right)
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 
 
@@ -83,3 +83,47 @@ def invert(matrix: Floats, inverse: Floats, least: float) -> bool:
                 matrix[i] -= factor * matrix[c]
                 inverse[i] -= factor * inverse[c]
     return True
+
+
+@kernel
+def solve_by_inverse(matrix: Floats, inverse: Floats, right: Floats) -> Floats:
+    """Solve by an inverse, and once more for what rounding has left."""
+    found = np.zeros(right.size)
+    for _ in range(2):
+        left = right.copy()
+        for a in range(right.size):
+            for b in range(right.size):
+                left[a] -= matrix[a, b] * found[b]
+        for a in range(right.size):
+            for b in range(right.size):
+                found[a] += inverse[a, b] * left[b]
+    return found
+
+
+@scalar_kernel
+def rounding_growth(inverse: Floats) -> float:
+    """What equations make, at the most, of the rounding of their right-hand sides, and that."""
+    most = 1.0
+    for a in range(inverse.shape[0]):
+        total = 1.0
+        for b in range(inverse.shape[1]):
+            total += abs(inverse[a, b])
+        most = max(most, total)
+    return most
+
+
+@kernel
+def independent_columns(matrix: Floats, least: float) -> Bools:
+    """Columns (n,) of which more than a `least` part is no sum of those before them."""
+    rest, kept = matrix.copy(), np.zeros(matrix.shape[1], np.bool_)
+    for a in range(kept.size):
+        # Twice is enough: the first turn leaves the rounding of what it took away.
+        for _ in range(2):
+            for b in range(a):
+                if kept[b]:
+                    rest[:, a] -= dot(rest[:, b], rest[:, a]) * rest[:, b]
+        length = np.sqrt(dot(rest[:, a], rest[:, a]))
+        kept[a] = length > least * np.sqrt(dot(matrix[:, a], matrix[:, a]))
+        if kept[a]:
+            rest[:, a] /= length
+    return kept

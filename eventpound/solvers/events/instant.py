@@ -14,7 +14,6 @@ import numpy as np
 from eventpound.contact.cascade import LONGEST_CASCADE, is_fleeting
 from eventpound.contact.event_rows import end_cascade, events_wanted
 from eventpound.contact.friction import (
-    Rubs,
     begin_beside_friction,
     decide_friction,
     settle_with_friction,
@@ -22,6 +21,7 @@ from eventpound.contact.friction import (
 from eventpound.contact.impacts import DONE, FULL
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import lacks_branch, pass_kinks
+from eventpound.contact.rubbing import Rubs
 from eventpound.contact.sliders import begin_beside_sliders, decide_sticks
 from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series

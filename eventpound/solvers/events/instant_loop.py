@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import endless_message, long_message
-from eventpound.contact.friction import FRICTION_MEANING, Rubs, friction_message
 from eventpound.contact.impacts import DONE, ENDLESS, FULL, MEANING, NO_FORCES
 from eventpound.contact.instant import no_forces_message
 from eventpound.contact.kinks import choose_branches, choose_clear_branches
 from eventpound.contact.rest import ORDER
+from eventpound.contact.rubbing import FRICTION_MEANING, Rubs, friction_message
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import CurrentPiece, ground_onset

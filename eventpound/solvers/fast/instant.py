@@ -10,7 +10,6 @@ import numpy as np
 
 from eventpound.contact.cascade import last_speed
 from eventpound.contact.friction import (
-    Rubs,
     begin_beside_friction,
     decide_friction,
     settle_with_friction,
@@ -18,6 +17,7 @@ from eventpound.contact.friction import (
 from eventpound.contact.impacts import DONE, put_as_one
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import still_rate
+from eventpound.contact.rubbing import Rubs
 from eventpound.contact.sliders import (
     begin_beside_sliders,
     decide_sticks,

@@ -16,9 +16,10 @@ from eventpound.contact.cascade import (
     long_message,
 )
 from eventpound.contact.event_rows import EVENT_WIDTH, events_of, events_wanted
-from eventpound.contact.friction import FRICTION_MEANING, Rubs, decide_friction, friction_message
+from eventpound.contact.friction import decide_friction
 from eventpound.contact.impacts import ENDLESS, FULL, NO_FORCES
 from eventpound.contact.instant import no_forces_message
+from eventpound.contact.rubbing import FRICTION_MEANING, Rubs, friction_message
 from eventpound.errors import ComputationError
 from eventpound.mechanics.backbone import Hysteresis
 from eventpound.mechanics.model import Model, assemble, shape_of, with_friction, with_sliders

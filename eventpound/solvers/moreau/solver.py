@@ -8,14 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from eventpound.contact.rubbing import PLACE
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.supported import lowered
-from eventpound.numerics.arrays import Bools
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import FrictionRecording, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.moreau.step import Active, Rubbed, advance
+from eventpound.solvers.moreau.step import Active, advance
 from eventpound.solvers.settings import Settings, number
 from eventpound.solvers.supported import with_supports
 from eventpound.solvers.timestepping.run import carry_to_end, prepared
@@ -60,7 +61,7 @@ def _solve(task: Task) -> Recording:
     step = time_step(task, run.model, run.scales, math.inf)
     contacts = np.zeros(run.model.contacts, np.int64)
     marked, struck, resting = np.zeros((3, contacts.size), np.bool_)
-    rubbed = Rubbed(*np.zeros((4, contacts.size)))
+    rubbed = np.zeros((5, contacts.size))
     column, slides = np.zeros(run.model.coordinates), np.full(contacts.size, -1)
     active = Active(contacts, marked, struck, resting, column, rubbed, slides)
     try:
@@ -80,11 +81,11 @@ def _rubbing(scene: Scene, marked: Bools) -> str:
     return ", ".join(f"{c.name!r} (friction {c.friction:g})" for c in closed)
 
 
-def _with_friction(recording: Recording, model: Model, rubbed: Rubbed) -> Recording:
+def _with_friction(recording: Recording, model: Model, rubbed: Floats) -> Recording:
     """A recording with what friction did, in a scene that has some."""
     if not model.friction.any():
         return recording
-    return replace(recording, friction=FrictionRecording(*rubbed))
+    return replace(recording, friction=FrictionRecording(*rubbed[:PLACE]))
 
 
 def _theta(settings: Settings) -> float:

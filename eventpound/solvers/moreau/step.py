@@ -35,6 +35,7 @@ from eventpound.contact.event_rows import (
     new_group,
     write_event,
 )
+from eventpound.contact.rubbing import PATH, keep_friction
 from eventpound.mechanics.contact_problem import Joints, solve_contacts
 from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.observables import difference
@@ -79,25 +80,13 @@ RELAXED_AFTER = 15
 """Iterations after which Newton's steps are halved: by then they swing between branches."""
 
 
-class Rubbed(NamedTuple):
-    """What friction at each contact has done so far, (K,) each.
-
-    path: way slid while closed (m). work: energy taken, in impacts too (J). impulse, tangential:
-    largest normal and tangential impulse of an impact (N s).
-    """
-
-    path: Floats
-    work: Floats
-    impulse: Floats
-    tangential: Floats
-
-
 class Active(NamedTuple):
     """Room for the contacts that take part in a step, and what they did in the last one.
 
     contacts (K,): their numbers, in front. marked (K,): who they are. struck, resting (K,): who
-    took an impulse, who rested. column (N + D,): for ``Â⁻¹ W`` of one of them. rubbed: what
-    friction has done. slides (K,): the kind of row that told how a contact rests.
+    took an impulse, who rested. column (N + D,): for ``Â⁻¹ W`` of one of them. rubbed (5, K): what
+    friction has done, as `eventpound.contact.rubbing` keeps it. slides (K,): the kind of row that
+    told how a contact rests.
     """
 
     contacts: Ints
@@ -105,7 +94,7 @@ class Active(NamedTuple):
     struck: Bools
     resting: Bools
     column: Floats
-    rubbed: Rubbed
+    rubbed: Floats
     slides: Ints
 
 
@@ -302,22 +291,20 @@ def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
 
 
 @step_kernel
-def _keep_rubbing(j: int, h: float, struck: bool, rubbed: Rubbed, run: Stepping) -> float:
+def _keep_rubbing(j: int, h: float, struck: bool, rubbed: Floats, run: Stepping) -> float:
     """Keep what the friction of a contact has done in a step; the energy it took (J)."""
     structure, p_T = run.structure, run.trial.rubbing[j]
     rates = slip_rate(structure, j, run.state.v) + slip_rate(structure, j, run.trial.v)
     lost = -0.5 * p_T * rates
-    rubbed.work[j] += lost
-    if struck:
-        rubbed.impulse[j] = max(rubbed.impulse[j], run.trial.contact[j])
-        rubbed.tangential[j] = max(rubbed.tangential[j], abs(p_T))
-    elif run.trial.contact[j] > 0.0:
-        rubbed.path[j] += 0.5 * h * abs(rates)
+    normal, tangential = (run.trial.contact[j], p_T) if struck else (0.0, 0.0)
+    keep_friction(j, normal, tangential, lost, rubbed)
+    if not struck and run.trial.contact[j] > 0.0:
+        rubbed[PATH, j] += 0.5 * h * abs(rates)
     return lost
 
 
 @step_kernel
-def _take_losses(h: float, still: float, rubbed: Rubbed, run: Stepping) -> tuple[float, int, bool]:
+def _take_losses(h: float, still: float, rubbed: Floats, run: Stepping) -> tuple[float, int, bool]:
     """Keep what the impulses of a step took; what impacts lost (J), how many, and if they gained.
 
     still: gap rate that counts as none (m/s).

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.contact.event_rows import EVENT_WIDTH
+from eventpound.contact.rubbing import AMBIGUOUS, GAINING
 from eventpound.contact.state import Now
 from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.link_law import LinkLaw
@@ -158,16 +159,15 @@ def blank_equations(model: Model, bandwidth: int) -> Equations:
 DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED, NOT_UNIQUE, GAINED = range(6)
 """All steps taken; too little room for the events of the next; Newton's iteration or the
 complementarity problem of the next fails, or has several answers, or one that gains energy."""
+_IN_STEP = ", in a step of {step:.6g} s: {contacts}; try less friction there"
 MESSAGES = {
     DONE: "reached the end of the run in steps of at most {step:.6g} s",
     NOT_CONVERGED: "Newton's iteration of a step of {step:.6g} s does not converge; "
     "try a smaller time_step",
     NOT_SOLVED: "the complementarity problem of a step of {step:.6g} s is not solved; "
     "try a smaller time_step",
-    NOT_UNIQUE: "what follows is not unique in a step of {step:.6g} s at {contacts}; less friction "
-    "has one answer",
-    GAINED: "an impact of a step of {step:.6g} s gains kinetic energy, as Newton's law with "
-    "friction may, at {contacts}; less friction or restitution does not",
+    NOT_UNIQUE: AMBIGUOUS + _IN_STEP,
+    GAINED: GAINING + _IN_STEP,
 }
 INPUT, VISCOUS, HYSTERETIC, CONTACT, FRICTION = range(5)
 """Places of `FixedStepRecord.work` (J)."""
