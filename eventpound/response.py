@@ -294,8 +294,8 @@ class Response:
 
         places = [names.index(name) for name in wanted]
 
-        def numbers(run: Recording) -> dict[str, tuple[Floats, Floats]]:
-            found = largest_responses(run.history, self.scene, places, period, ratios)
+        def numbers(recording: Recording) -> dict[str, tuple[Floats, Floats]]:
+            found = largest_responses(recording.history, self.scene, places, period, ratios)
             return {"floor spectrum": (found, found)}
 
         found, apart = settled(self.task, self._rerun, numbers)

@@ -63,7 +63,7 @@ def response_of(
 
 def made_ready(
     case: Case | Scene,
-    run: RunOptions,
+    run_options: RunOptions,
     options: SolverOptions,
     solver: str | Solver | None,
     rtol: float | str | None,
@@ -78,11 +78,13 @@ def made_ready(
             raise InputError(f"settings: found beside solver = {solver!r}; accepted: one of them")
         options = replace(options, settings=settings_in_si(settings))
     scene = case_of(case).scene
-    task = task_with(scene, run, options, progress)
-    asked([(scene, run.stated)])
+    task = task_with(scene, run_options, options, progress)
+    asked([(scene, run_options.stated)])
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
-    return ReadyScene(solver_named(options.name), task, run.stated, run.in_equilibrium)
+    return ReadyScene(
+        solver_named(options.name), task, run_options.stated, run_options.in_equilibrium
+    )
 
 
 class ReadyScene:
@@ -203,7 +205,7 @@ _AT_LEAST = 1.0
 
 
 def check_solver(
-    options: SolverOptions, scene: Scene | None = None, run: RunOptions | None = None
+    options: SolverOptions, scene: Scene | None = None, run_options: RunOptions | None = None
 ) -> None:
     """Refuse a solver, a setting or a tolerance that there is not, or cannot serve a scene.
 
@@ -217,7 +219,7 @@ def check_solver(
         What a case, the command line or a call asks for.
     scene : Scene, optional
         What it is to carry.
-    run : RunOptions, optional
+    run_options : RunOptions, optional
         How: for how long, and whether it is to tell the events of its springs, too.
 
     Raises
@@ -230,9 +232,15 @@ def check_solver(
         solver = solver_named(options.name)
         problems += _setting_problems(solver, options.settings)
         if scene is not None:
-            problems += _scene_problems(solver, scene, bool(run and run.stated.events))
-            start = run.start_time if run else 0.0
-            length = run.duration if run and run.duration < math.inf else _AT_LEAST
+            problems += _scene_problems(
+                solver, scene, bool(run_options and run_options.stated.events)
+            )
+            start = run_options.start_time if run_options else 0.0
+            length = (
+                run_options.duration
+                if run_options and run_options.duration < math.inf
+                else _AT_LEAST
+            )
             task = Task(scene, start, start + length, options.rtol, settings=options.settings)
             problems = problems or _own_problems(solver, "check_task", task)
     except InputError as error:
@@ -300,24 +308,24 @@ def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
 
 
 def task_with(
-    scene: Scene, run: RunOptions, options: SolverOptions, progress: Reached | None
+    scene: Scene, run_options: RunOptions, options: SolverOptions, progress: Reached | None
 ) -> Task:
     """The task of a scene with these options, which are checked."""
-    check_solver(options, scene, run)
+    check_solver(options, scene, run_options)
     return Task(
         scene,
-        run.start_time,
-        run.start_time + run.duration,
+        run_options.start_time,
+        run_options.start_time + run_options.duration,
         options.rtol,
         options.atol,
-        output_times(run),
-        run.energy or needs_energy(run.stated.quantities),
+        output_times(run_options),
+        run_options.energy or needs_energy(run_options.stated.quantities),
         options.settings,
         progress,
     )
 
 
-def output_times(run: RunOptions) -> Floats:
+def output_times(options: RunOptions) -> Floats:
     """Times of the history; the last is the end of the run."""
-    count = int(np.floor(run.duration / run.output_step * (1.0 + 1e-12)))
-    return run.start_time + run.output_step * np.arange(count + 1, dtype=np.float64)
+    count = int(np.floor(options.duration / options.output_step * (1.0 + 1e-12)))
+    return options.start_time + options.output_step * np.arange(count + 1, dtype=np.float64)

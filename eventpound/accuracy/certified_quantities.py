@@ -105,9 +105,11 @@ def compare_routes(
     return RoutesCompared(runs, reference, truth, agreement, tight)
 
 
-def from_truth(truth: Truth, scene: Scene, run: Recording, moments: Sequence[float]) -> Difference:
+def from_truth(
+    truth: Truth, scene: Scene, recording: Recording, moments: Sequence[float]
+) -> Difference:
     """How far a run is from the one that is stated, its events paired with that one's."""
-    return difference(truth, values_by_name(scene, run, moments), run.events, KINDS)
+    return difference(truth, values_by_name(scene, recording, moments), recording.events, KINDS)
 
 
 def in_order(truth: Truth, found: Difference) -> Floats:

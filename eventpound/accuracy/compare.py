@@ -256,7 +256,7 @@ def _check_restitution(case: Case, restitution: float | None) -> None:
 
 
 def _with_rigid(
-    case: Case, run: RunOptions, reference: Reference, restitution: float | None = None
+    case: Case, options: RunOptions, reference: Reference, restitution: float | None = None
 ) -> Reference:
     """A reference with that of the rigid law beside it, where contacts have laws.
 
@@ -264,7 +264,7 @@ def _with_rigid(
     ----------
     case : Case
         What is run.
-    run : RunOptions
+    options : RunOptions
         The stretch of time.
     reference : Reference
         Of the case over that.
@@ -277,7 +277,7 @@ def _with_rigid(
     scene = rigid(case.scene, restitution)
     try:
         check_scene(scene)
-        beside = reference_of(replace(case, scene=scene), run, None)
+        beside = reference_of(replace(case, scene=scene), options, None)
     except (InputError, ComputationError) as error:
         return replace(reference, rigid_words=f"not to be had: {error}")
     names = {contact.name for contact in laws}

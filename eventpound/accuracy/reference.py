@@ -161,14 +161,14 @@ class Reference:
         return self._rows[key]
 
 
-def reference_of(case: Case, run: RunOptions, stated: StatedBounds | None) -> Reference:
+def reference_of(case: Case, options: RunOptions, stated: StatedBounds | None) -> Reference:
     """Run the reference of a case and its check.
 
     Parameters
     ----------
     case : Case
         The case.
-    run : RunOptions
+    options : RunOptions
         The stretch of time.
     stated : StatedBounds or None
         What a certificate says of this case over this stretch.
@@ -178,7 +178,7 @@ def reference_of(case: Case, run: RunOptions, stated: StatedBounds | None) -> Re
     ComputationError
         Where the reference fails.
     """
-    task = task_with(case.scene, run, SolverOptions(REFERENCE, TIGHTEST), None)
+    task = task_with(case.scene, options, SolverOptions(REFERENCE, TIGHTEST), None)
     reference = solver_named(REFERENCE).solve(task)
     checking = _checking_run(task)
     truth = truth_of(task, reference)

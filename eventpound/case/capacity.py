@@ -92,7 +92,7 @@ def _of_part(
     return found
 
 
-def read_capacities(top: Table, run: RunOptions | None) -> RunOptions | None:
+def read_capacities(top: Table, options: RunOptions | None) -> RunOptions | None:
     """Options with capacities (SI), and the fractile where it is given; problems are noted.
 
     Whether a unit is one of its quantity is known where quantities are.
@@ -109,8 +109,8 @@ def read_capacities(top: Table, run: RunOptions | None) -> RunOptions | None:
             dimensions += [] if dimension is None else [(name, dimension)]
             table.require(name, value > 0.0, "a positive capacity")
     table.require(_FRACTILE, not table.has(_FRACTILE) or bool(found), "a capacity beside it")
-    if run is None:
+    if options is None:
         return None
     held, of = tuple(found), tuple(dimensions)
-    stated = replace(run.stated, capacities=held, capacity_dimensions=of, fractile=fractile)
-    return replace(run, stated=stated)
+    stated = replace(options.stated, capacities=held, capacity_dimensions=of, fractile=fractile)
+    return replace(options, stated=stated)

@@ -218,28 +218,28 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
 
 
 def _doubts(
-    top: Table, document: Mapping[str, object], scene: Scene, run: RunOptions
+    top: Table, document: Mapping[str, object], scene: Scene, options: RunOptions
 ) -> Iterator[str]:
     """What of a sound case is hardly meant so, or unlike earthquakes and structures."""
     kinds = ("dashpot", "rayleigh", "modal_damping")
     ratios = given_ratios([each for kind in kinds for each in top.tables(kind)])
-    step = run.output_step if top.table("run").has("output_step") else None
-    yield from doubts(scene, step, ratios, bare_accelerations(document), run.start_time)
-    yield from unusual(scene, _given(top, run, ratios))
+    step = options.output_step if top.table("run").has("output_step") else None
+    yield from doubts(scene, step, ratios, bare_accelerations(document), options.start_time)
+    yield from unusual(scene, _given(top, options, ratios))
 
 
 def _given(
-    top: Table, run: RunOptions, ratios: Sequence[tuple[str, float]]
+    top: Table, options: RunOptions, ratios: Sequence[tuple[str, float]]
 ) -> dict[str, tuple[str, float]]:
     """Numbers of a sound case that its scene has not, by rows of `USUAL`: where, and in SI."""
     found = {
-        "run.start_time": ("run", run.start_time),
-        "run.threshold_speed": ("run", run.stated.threshold_speed),
+        "run.start_time": ("run", options.start_time),
+        "run.threshold_speed": ("run", options.stated.threshold_speed),
     }
     small = [each for each in ratios if 0.0 < each[1] < SMALLEST_RATIO]
     found |= {"damping.ratio": small[0]} if small else {}
     if top.table("run").has("duration"):
-        found["run.duration"] = "run", run.duration
+        found["run.duration"] = "run", options.duration
     excitation = top.table("excitation")
     for key, dimension in (("rest", Dimension.TIME), ("psa_damping", Dimension.NUMBER)):
         if excitation.has(key):

@@ -304,7 +304,7 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
     return None
 
 
-def with_given(run: RunOptions, given: dict[str, Any], scene: Scene) -> RunOptions:
+def with_given(options: RunOptions, given: dict[str, Any], scene: Scene) -> RunOptions:
     """Options with what a call gives instead, by their keys; None where it gives nothing.
 
     Raises
@@ -314,17 +314,17 @@ def with_given(run: RunOptions, given: dict[str, Any], scene: Scene) -> RunOptio
     """
     of_stated = {key: value for key, value in given.items() if key in keys_of(Stated)}
     of_run = {key: value for key, value in given.items() if key not in of_stated}
-    stated = replace(run.stated, **read_given(Stated, of_stated, scene))
-    run = replace(run, stated=stated, **read_given(RunOptions, of_run)).completed(scene)
-    if found := [f"{key}: {problem}" for key, problem in run.problems()]:
+    stated = replace(options.stated, **read_given(Stated, of_stated, scene))
+    options = replace(options, stated=stated, **read_given(RunOptions, of_run)).completed(scene)
+    if found := [f"{key}: {problem}" for key, problem in options.problems()]:
         raise InputError(found)
-    return run
+    return options
 
 
-def given_options(run: RunOptions) -> list[str]:
+def given_options(options: RunOptions) -> list[str]:
     """Options that say something else than their defaults; times always have a value."""
     found = []
-    for made, owner in ((RunOptions, run), (Stated, run.stated)):
+    for made, owner in ((RunOptions, options), (Stated, options.stated)):
         for name, (key, usual) in keys_of(made).items():
             value = getattr(owner, name)
             if key.dimension is not Dimension.TIME and value is not False and value != usual:
@@ -332,12 +332,12 @@ def given_options(run: RunOptions) -> list[str]:
     return found
 
 
-def refuse_options(run: RunOptions, way: Way, varied: Iterable[str] = ()) -> None:
+def refuse_options(run_options: RunOptions, way: Way, varied: Iterable[str] = ()) -> None:
     """Refuse options that make no sense in a way to run a case.
 
     Parameters
     ----------
-    run : RunOptions
+    run_options : RunOptions
         Of the case.
     way : Way
         How it is run.
@@ -351,7 +351,7 @@ def refuse_options(run: RunOptions, way: Way, varied: Iterable[str] = ()) -> Non
     """
     # Those of the ground motion move no equilibrium.
     moving = any(not key.startswith("excitation.") for key in varied)
-    given = given_options(run)
+    given = given_options(run_options)
     problems = [
         f"[run]: {name}: not for {way}; accepted: {key.refused[way]}"
         for name, key in options()
@@ -361,7 +361,7 @@ def refuse_options(run: RunOptions, way: Way, varied: Iterable[str] = ()) -> Non
         raise InputError(problems)
 
 
-def warn_left_out(run: RunOptions, way: Way) -> None:
+def warn_left_out(run_options: RunOptions, way: Way) -> None:
     """Say which options play no part in what is computed of a case.
 
     Warns
@@ -369,7 +369,7 @@ def warn_left_out(run: RunOptions, way: Way) -> None:
     OptionWarning
         In one line, where there are some.
     """
-    given = given_options(run)
+    given = given_options(run_options)
     left = [name for name, key in options() if name in given and way not in key.holds]
     if left:
         warn_caller(without_part(left, way), OptionWarning)

@@ -27,7 +27,7 @@ def understood_case(
     title: str,
     excitation: Mapping[str, object],
     scene: Scene,
-    run: RunOptions,
+    options: RunOptions,
     solver: SolverOptions,
     sources: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> dict[str, object]:
@@ -41,7 +41,7 @@ def understood_case(
         ``[excitation]`` in SI.
     scene : Scene
         Its bodies, springs, dashpots (Rayleigh damping among them) and contacts.
-    run, solver : RunOptions, SolverOptions
+    options, solver : RunOptions, SolverOptions
         The options.
     sources : mapping of str to sequence of str
         Where numbers are from, of each of the `SOURCED`, empty where that is not said.
@@ -68,7 +68,7 @@ def understood_case(
             }
             for contact in scene.contacts
         ],
-        "run": _run(run),
+        "run": _run(options),
         "solver": {
             "name": solver.name,
             "rtol": solver.rtol,
@@ -80,8 +80,8 @@ def understood_case(
         found["deck"] = deck_tables(scene.decks, {body.name: body for body in scene.bodies})
     if scene.seats:
         found["seat"] = [{"name": s.name, "between": list(s.between)} for s in scene.seats]
-    if run.stated.capacities:
-        found["capacity"] = {"fractile": run.stated.fractile, **dict(run.stated.capacities)}
+    if options.stated.capacities:
+        found["capacity"] = {"fractile": options.stated.fractile, **dict(options.stated.capacities)}
     for kind, said in sources.items():
         # What joints, bearings and piers stand for comes last, and has none of its own.
         for row, source in zip(found[kind], said, strict=False):
@@ -128,12 +128,12 @@ def contact_law_keys(contact: Contact) -> dict[str, object]:
     return {key: value for key, value in keys.items() if value is not None}
 
 
-def _run(run: RunOptions) -> dict[str, object]:
+def _run(run_options: RunOptions) -> dict[str, object]:
     """Options but those that are left open, and stated numbers but defaults."""
     apart = ("stated", "in_equilibrium")
-    given = {key: v for key, v in asdict(run).items() if key not in apart and v is not None}
+    given = {key: v for key, v in asdict(run_options).items() if key not in apart and v is not None}
     # What a suite leaves to each record is no number.
     options = {key: v for key, v in given.items() if v == v}
     usual = asdict(DEFAULTS)
-    stated = {key: v for key, v in asdict(run.stated).items() if key not in _OF_CAPACITY}
+    stated = {key: v for key, v in asdict(run_options.stated).items() if key not in _OF_CAPACITY}
     return options | {key: v for key, v in stated.items() if v != usual[key]}

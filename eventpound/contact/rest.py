@@ -132,9 +132,9 @@ def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
         force, after, solved = solve_contacts(joints, opening[members], noise)
         if not solved:
             return undecided, pressed, False
-        passed_over = touching.at.released & (order == 0)
+        just_released = touching.at.released & (order == 0)
         # The next turn would be this one again.
-        if not _take_decided(members, force, after, level, passed_over, undecided, pressed):
+        if not _take_decided(members, force, after, level, just_released, undecided, pressed):
             break
     return pressed | kept | undecided, pressed, True
 
@@ -189,7 +189,7 @@ def _take_decided(
     force: Floats,
     after: Floats,
     level: Floats,
-    passed_over: Bools,
+    just_released: Bools,
     undecided: Bools,
     pressed: Bools,
 ) -> bool:
@@ -202,7 +202,7 @@ def _take_decided(
         j = members[i]
         # Where both are nothing a higher order decides.
         opens, holds = after[i] > level[j], force[i] > 0.0
-        if (opens or holds) and not passed_over[j]:
+        if (opens or holds) and not just_released[j]:
             decided = True
             undecided[j] = False
             pressed[j] = not opens

@@ -226,9 +226,9 @@ COLUMNS = ("quantity", "value", "bound", "amplification", "scale")
 EVENT_COLUMNS = ("kind", "contact", "t", "t_bound", "before", "after")
 
 
-def moments_of(run: RunOptions) -> list[float]:
+def moments_of(options: RunOptions) -> list[float]:
     """The times (s) at which a history is stated, the ends of the run not among them."""
-    return [run.start_time + run.duration * k / MOMENTS for k in range(1, MOMENTS)]
+    return [options.start_time + options.duration * k / MOMENTS for k in range(1, MOMENTS)]
 
 
 def answer_of(

@@ -137,9 +137,9 @@ def _around(t: Floats, places: Ints, way: int) -> Floats:
     return np.ravel(t[places, None] + (t[beside] - t[places])[:, None] * _CLOSER)
 
 
-def signals_of(scene: Scene, run: Recording) -> dict[str, Floats]:
+def signals_of(scene: Scene, recording: Recording) -> dict[str, Floats]:
     """Values at every row of what no solver locates (SI), by names."""
-    h = run.history
+    h = recording.history
     found = {
         f"velocity.{body.name}.*": h.v[:, i]
         for i, body in enumerate(scene.bodies)
@@ -148,9 +148,9 @@ def signals_of(scene: Scene, run: Recording) -> dict[str, Floats]:
     for i, spring in enumerate(scene.springs):
         if isinstance(spring.law, Hysteretic):
             found[f"springs.{spring.name}.*_force"] = h.force[:, i]
-    rate = {end: v for end, (v, _) in _motions(scene, run).items()}
+    rate = {end: v for end, (v, _) in _motions(scene, recording).items()}
     ground = {GROUND} | {support.name for support in scene.supports if not support.moves_apart}
-    u = _displacements(scene, run) if scene.seats else {}
+    u = _displacements(scene, recording) if scene.seats else {}
     for seat in scene.seats:
         left, right = seat.between
         found[f"seats.{seat.name}.*_opening"] = u[right] - u[left]
@@ -166,9 +166,9 @@ def signals_of(scene: Scene, run: Recording) -> dict[str, Floats]:
     return found
 
 
-def works_of(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:
+def works_of(scene: Scene, recording: Recording) -> dict[str, tuple[Floats, Floats]]:
     """Energy dissipated in Bouc-Wen springs and dashpots, and what flows through them (J)."""
-    found, motions, h = {}, _motions(scene, run), run.history
+    found, motions, h = {}, _motions(scene, recording), recording.history
     for spring in scene.springs:
         law = spring.law
         if isinstance(law, BoucWen) and not law.beyond_bouc_wen:
@@ -196,25 +196,25 @@ def _cells(t: Floats, values: Floats, slopes: Floats) -> Floats:
     return h * (values[:-1] + values[1:]) / 2.0 + h**2 * (slopes[:-1] - slopes[1:]) / 12.0
 
 
-def _displacements(scene: Scene, run: Recording) -> dict[str, Floats]:
+def _displacements(scene: Scene, recording: Recording) -> dict[str, Floats]:
     """Of all ends of seats, relative to the ground (m)."""
-    found = {GROUND: np.zeros_like(run.history.t)}
-    found |= {body.name: run.history.u[:, i] for i, body in enumerate(scene.bodies)}
+    found = {GROUND: np.zeros_like(recording.history.t)}
+    found |= {body.name: recording.history.u[:, i] for i, body in enumerate(scene.bodies)}
     for i, support in enumerate(scene.supports):
-        assert run.supports is not None
-        found[support.name] = run.supports.s[:, i]
+        assert recording.supports is not None
+        found[support.name] = recording.supports.s[:, i]
     return found
 
 
-def _motions(scene: Scene, run: Recording) -> dict[str, tuple[Floats, Floats]]:
+def _motions(scene: Scene, recording: Recording) -> dict[str, tuple[Floats, Floats]]:
     """Velocity relative to the ground and acceleration in space of all ends of springs."""
-    h = run.history
+    h = recording.history
     found = {GROUND: (np.zeros_like(h.t), h.ground)}
     found |= {body.name: (h.v[:, i], h.a[:, i]) for i, body in enumerate(scene.bodies)}
     for i, support in enumerate(scene.supports):
-        assert run.supports is not None
+        assert recording.supports is not None
         acceleration = support.moved_by(scene.motion).acceleration(h.t)
-        found[support.name] = run.supports.sv[:, i], acceleration
+        found[support.name] = recording.supports.sv[:, i], acceleration
     return found
 
 

@@ -72,7 +72,7 @@ class SpringEvent(NamedTuple):
 
 
 def spring_events(
-    scene: Scene, run: Recording, words: Collection[str] = tuple(LISTED)
+    scene: Scene, recording: Recording, words: Collection[str] = tuple(LISTED)
 ) -> list[SpringEvent]:
     """Events of springs, in order of time.
 
@@ -80,7 +80,7 @@ def spring_events(
     ----------
     scene : Scene
         What moved.
-    run : Recording
+    recording : Recording
         Of a solver that says ``lists_springs``.
     words : collection of str
         Keys of `eventpound.case.run_options.LISTED`.
@@ -89,21 +89,21 @@ def spring_events(
     found: list[SpringEvent] = []
     for i, spring in enumerate(scene.springs):
         if isinstance(spring.law, Hysteretic) and spring.law.word in laws:
-            found += _events_of(i, spring.law.word, scene, run)
+            found += _events_of(i, spring.law.word, scene, recording)
     return sorted(found, key=lambda event: event.time_s)
 
 
-def _events_of(i: int, law: LawName, scene: Scene, run: Recording) -> list[SpringEvent]:
+def _events_of(i: int, law: LawName, scene: Scene, recording: Recording) -> list[SpringEvent]:
     """Those of spring i."""
-    h, name = run.history, scene.springs[i].name
-    first, last = _segments(run)
-    x, rate = motion_of_spring(scene, run, i)
+    h, name = recording.history, scene.springs[i].name
+    first, last = _segments(recording)
+    x, rate = motion_of_spring(scene, recording, i)
     z = h.z[:, scene.hysteretic_springs.index(name)]
     still = OF_ROWS * np.abs(h.v).max(initial=0.0)
     if law is LawName.SLIDER:
         # What stands still sticks until the run begins.
         begun = [int(np.sign(v)) if abs(v) > still else 0 for v in rate[:1].tolist()]
-        states = begun + _slips(i, first, z, run)
+        states = begun + _slips(i, first, z, recording)
     else:
         sides = _sides(first, last, z, rate, still)
         states = sides[:1] + sides
@@ -115,25 +115,25 @@ def _events_of(i: int, law: LawName, scene: Scene, run: Recording) -> list[Sprin
     return found
 
 
-def _segments(run: Recording) -> tuple[Ints, Ints]:
+def _segments(recording: Recording) -> tuple[Ints, Ints]:
     """First and last rows of the history between two events.
 
     The end of a run that reached it is one, too: what begins there is told.
     """
-    t = run.history.t
+    t = recording.history.t
     cuts = np.flatnonzero(t[1:] == t[:-1]) + 1
     first, last = np.append(0, cuts), np.append(cuts, t.size) - 1
     if t.size == 0:
         return first[:0], last[:0]
     lasts = t[last] > t[first] * (1.0 + SAME_INSTANT)
-    lasts[-1] |= run.success
+    lasts[-1] |= recording.success
     return first[lasts], last[lasts]
 
 
-def _slips(i: int, first: Ints, z: Floats, run: Recording) -> list[int]:
+def _slips(i: int, first: Ints, z: Floats, recording: Recording) -> list[int]:
     """State of slider i from each of these rows on."""
-    own = [stick for stick in run.sticks if stick.spring == i]
-    latest = np.searchsorted([stick.t for stick in own], run.history.t[first], "right") - 1
+    own = [stick for stick in recording.sticks if stick.spring == i]
+    latest = np.searchsorted([stick.t for stick in own], recording.history.t[first], "right") - 1
     sticks = [place >= 0 and own[place].begins for place in latest.tolist()]
     signs = np.sign(z[first]).astype(int).tolist()
     return [0 if stuck else sign for stuck, sign in zip(sticks, signs, strict=True)]

@@ -145,16 +145,16 @@ def slip_path(many: Runs, i: int) -> Floats:
     return found
 
 
-def motion_of_spring(scene: Scene, run: Recording, i: int) -> Floats:
+def motion_of_spring(scene: Scene, recording: Recording, i: int) -> Floats:
     """Elongation of spring i (m) and its rate (m/s) at every row of the history, shape (2, n)."""
     spring = scene.springs[i]
-    motions = {end: _motion_of(end, scene, run) for end in spring.ends}
+    motions = {end: _motion_of(end, scene, recording) for end in spring.ends}
     return np.asarray(opening(spring, 0.0, motions))
 
 
-def _motion_of(end: str, scene: Scene, run: Recording) -> Floats:
+def _motion_of(end: str, scene: Scene, recording: Recording) -> Floats:
     """Displacement (m) and velocity (m/s) of an end of a spring at every row, shape (2, n)."""
-    h, moved = run.history, run.supports
+    h, moved = recording.history, recording.supports
     for k, body in enumerate(scene.bodies):
         if body.name == end:
             return np.array((h.u[:, k], h.v[:, k]))

@@ -170,9 +170,13 @@ def _driven(case: Case) -> dict[str, list[Row]]:
     return found
 
 
-def _run(run: RunOptions) -> Row:
+def _run(options: RunOptions) -> Row:
     """Options; what each record of a suite sets for itself is left out."""
-    times = {"start": run.start_time, "duration": run.duration, "output_step": run.output_step}
+    times = {
+        "start": options.start_time,
+        "duration": options.duration,
+        "output_step": options.output_step,
+    }
     return {key: value for key, value in times.items() if value == value}
 
 

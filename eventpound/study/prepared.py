@@ -104,10 +104,10 @@ class Prepared:
     It stays what it was when it was prepared.
     """
 
-    def __init__(self, base: Base, ready: ReadyScene, run: RunOptions) -> None:
-        self._base, self._ready, self._run = base, ready, run
+    def __init__(self, base: Base, ready: ReadyScene, options: RunOptions) -> None:
+        self._base, self._ready, self._run = base, ready, options
         self._places = number_places(self.scene)
-        self._ranges = CheckedRanges(self.scene, run.start_time)
+        self._ranges = CheckedRanges(self.scene, options.start_time)
         lengths = () if base.own_duration else kinds_that_set_lengths(self.scene)
         kinds = {*lengths, *kinds_that_set_periods(self.scene)}
         # Numbers by these keys change nothing but themselves.

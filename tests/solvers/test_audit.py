@@ -9,7 +9,7 @@ from eventpound.mechanics.monitored import places_in
 from eventpound.mechanics.observables import Observed, blank_observed
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Energy
-from eventpound.solvers.events.event_bounds import Watched
+from eventpound.solvers.events.event_bounds import Guards
 from eventpound.solvers.events.step_check import broken_contact, check_energy, contact_error
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -23,15 +23,15 @@ SCENE = Scene(
 LENGTH_NOISE, FORCE_NOISE = 1e-15, 1e-12
 
 
-def _watched(*, rests: bool) -> Watched:
+def _watched(*, rests: bool) -> Guards:
     none = np.array([np.inf])
     marks = np.array([not rests]), np.array([rests])
     forces, turns = (np.zeros(1), none), np.zeros(1, np.bool_)
     at, rubs = places_in(assemble(SCENE)), (np.full(1, -1), np.zeros(1))
-    return Watched(*marks, False, *forces, -none, none, turns, FORCE_NOISE, at, *rubs)
+    return Guards(*marks, False, *forces, -none, none, turns, FORCE_NOISE, at, *rubs)
 
 
-def _check(t: float, observed: Observed, watched: Watched) -> None:
+def _check(t: float, observed: Observed, watched: Guards) -> None:
     j = broken_contact(observed, watched, LENGTH_NOISE)
     if j >= 0:
         raise contact_error(t, j, observed, watched, ["joint"])

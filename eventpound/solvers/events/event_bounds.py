@@ -26,7 +26,7 @@ DOUBT = 0.03
 """Part of a quantity's spread over the step by which its Hermite bound is widened."""
 
 
-class Watched(NamedTuple):
+class Guards(NamedTuple):
     """What the present mode has to watch.
 
     open_contacts (K,): gaps that may close. unlocked (K,): resting contacts
@@ -97,7 +97,7 @@ def _may_peak(i: int, a: Observed, b: Observed, h: float, running: Running) -> b
 
 
 @kernel
-def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, marks: Marks) -> None:
+def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Guards, marks: Marks) -> None:
     at = watched.at
     for j in range(a.gap.shape[1]):
         marks.closing[j] = False
@@ -119,7 +119,7 @@ def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, mark
 
 
 @kernel
-def _may_slip(j: int, a: Observed, b: Observed, h: float, watched: Watched) -> bool:
+def _may_slip(j: int, a: Observed, b: Observed, h: float, watched: Guards) -> bool:
     """Whether what sticks may come to the bound of friction inside a step."""
     i, mu, may = watched.presses[j], watched.friction[j], False
     x, y = a.contact_force, b.contact_force
@@ -132,7 +132,7 @@ def _may_slip(j: int, a: Observed, b: Observed, h: float, watched: Watched) -> b
 
 
 @kernel
-def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, marks: Marks) -> None:
+def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Guards, marks: Marks) -> None:
     for link in range(marks.kink.size):
         marks.kink[link] = False
         if watched.kink_low[link] == -np.inf and watched.kink_high[link] == np.inf:
@@ -149,7 +149,7 @@ def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, marks: 
 
 
 @scalar_kernel
-def margin_on_branch(link: int, watched: Watched, elongation: Floats) -> tuple[float, float]:
+def margin_on_branch(link: int, watched: Guards, elongation: Floats) -> tuple[float, float]:
     """How far a link is from the end of its branch, positive inside (m, or m/s), and the rate."""
     order = 1 if watched.turns[link] else 0
     x, x_rate = elongation[order, link], elongation[order + 1, link]
@@ -157,7 +157,7 @@ def margin_on_branch(link: int, watched: Watched, elongation: Floats) -> tuple[f
 
 
 @scalar_kernel
-def margin_at_rest(j: int, watched: Watched, contact_force: Floats) -> tuple[float, float]:
+def margin_at_rest(j: int, watched: Guards, contact_force: Floats) -> tuple[float, float]:
     """How far the force of a resting contact is from where its rest ends (N), and the rate."""
     i, mu = watched.presses[j], watched.friction[j]
     if i >= 0:
@@ -195,14 +195,14 @@ def _margin_between(low: float, high: float, x: float, x_rate: float) -> tuple[f
 
 
 @scalar_kernel
-def noise_on_branch(link: int, watched: Watched, length: float, time: float) -> float:
+def noise_on_branch(link: int, watched: Guards, length: float, time: float) -> float:
     """Size of `margin_on_branch` that means nothing, of a scene's own scales (m, s)."""
     return still_rate(length, time) if watched.turns[link] else LENGTH * length
 
 
 @kernel
 def inspect_step(
-    a: Observed, b: Observed, h: float, watched: Watched, running: Running, marks: Marks
+    a: Observed, b: Observed, h: float, watched: Guards, running: Running, marks: Marks
 ) -> bool:
     """Mark what may have happened between two instants.
 
@@ -212,7 +212,7 @@ def inspect_step(
         Both ends of the step, in the same mode.
     h : float
         Length of the step (s).
-    watched : Watched
+    watched : Guards
         What to look for.
     running : Running
         Extremes known so far; a peak is marked only where it may exceed them.

@@ -63,22 +63,22 @@ NOT_FINITE, UNENDING = 30, 32
 
 
 @deferred_kernel.but(ahead=True)
-def short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
+def short_step(arrays: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
-    rules, state, record, located = run.rules, run.state, run.record, run.located
+    rules, state, record, located = arrays.rules, arrays.state, arrays.record, arrays.located
     now, progress = state.now[0], state.progress[0]
     t = now.t
     # Neither over a corner of the motion nor over a pulse that is still to come.
     stop = min(next_corner(piece, t, piece.stop), t + longest_safe_step(piece, t))
     forcing = by_address(forcing_now(piece, t))
-    series = local_series(run, forcing, mode, stop - t)
+    series = local_series(arrays, forcing, mode, stop - t)
     if not series.finite:
         return NOT_FINITE
     # The arrays of `series` are kept alive by its use at the end.
-    step = by_address(DenseStep(series.dense, mode, forcing, run.observations[2]))
+    step = by_address(DenseStep(series.dense, mode, forcing, arrays.observations[2]))
     tau = series.dense.end
-    observe_at(tau, by_address(DenseStep(series.dense, mode, forcing, run.observations[1])))
-    first, marked = search_between(tau, run, mode, step)
+    observe_at(tau, by_address(DenseStep(series.dense, mode, forcing, arrays.observations[1])))
+    first, marked = search_between(tau, arrays, mode, step)
     if first < np.inf:
         tau = first
     else:
@@ -90,9 +90,9 @@ def short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     # Where a mode is none no time passes either.
     end = t if fleeting else t + tau
     if marked or is_due(end, record.journal):
-        record_inside(tau, marked, run, step)
-    if run.laws.contact.size > 0:
-        add_shares(tau, run, step)
+        record_inside(tau, marked, arrays, step)
+    if arrays.laws.contact.size > 0:
+        add_shares(tau, arrays, step)
     observe_at(tau, step)
     observed = step.observed
     # What was recorded since is of a mode that is none.
@@ -107,7 +107,7 @@ def short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         return BROKEN
     since = now.since_impact
     set_state(evaluate_series(series.dense.Y, tau)[0], end, mode, forcing, state)
-    pass_kinks(located.kinked, state.z, run.instant)
+    pass_kinks(located.kinked, state.z, arrays.instant)
     # The differences of times are none where intervals are short.
     now.since_impact = since + tau
     for j in range(state.gap.size):
@@ -127,7 +127,7 @@ def short_step(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
 def proceed(
     wanted: int,
     most: int,
-    run: Run,
+    arrays: Run,
     mode: Dynamics,
     piece: CurrentPiece,
     dense: Dense,
@@ -143,7 +143,7 @@ def proceed(
         Which of them.
     most : int
         Steps of the run after which SETTLE pauses.
-    run : Run
+    arrays : Run
         The run; SETTLE goes on where the `phase` of its progress says.
     mode : Dynamics
         The present mode.
@@ -158,37 +158,39 @@ def proceed(
         OVER, where the run is made ready for an integrator, or another of the ends above.
     """
     if wanted == SETTLE:
-        return _settle(most, run, mode, piece)
+        return _settle(most, arrays, mode, piece)
     if wanted == SEARCH:
-        return search_step(run, mode, piece, dense)
+        return search_step(arrays, mode, piece, dense)
     if wanted == SET_STATE:
         t = dense.end
-        set_state(run.y[: mode.system.size], t, mode, by_address(forcing_now(piece, t)), run.state)
+        set_state(
+            arrays.y[: mode.system.size], t, mode, by_address(forcing_now(piece, t)), arrays.state
+        )
         return OVER
-    make_ready(run, mode, piece)
+    make_ready(arrays, mode, piece)
     if wanted == LAST:
-        put_present(run, False)
+        put_present(arrays, False)
     return OVER
 
 
 @kernel
-def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
+def _settle(most: int, arrays: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """Follow the motion from the present instant until nothing is near; ends as `proceed`."""
-    state, at = run.state, run.instant
+    state, at = arrays.state, arrays.instant
     now, progress, sliders = state.now[0], state.progress[0], mode.bodies.sliders
     rubbing = mode.bodies.rubbing.size
     ended = DONE
     while ended == DONE:
-        if not _has_room(run):
+        if not _has_room(arrays):
             return FULL
         if progress.phase == IMPACTS:
             # The last observation is at the event.
-            force = run.observations[2].contact_force[0]
+            force = arrays.observations[2].contact_force[0]
             if sliders.size > 0:
-                begin_beside_sliders(force, run.located.kinked, sliders, at)
+                begin_beside_sliders(force, arrays.located.kinked, sliders, at)
             if rubbing > 0:
                 rubs = _rubs(mode)
-                begin_beside_friction(force, run.located.kinked, rubs, at)
+                begin_beside_friction(force, arrays.located.kinked, rubs, at)
                 ended = settle_with_friction(rubs, at)
             else:
                 ended = settle_impacts(at)
@@ -199,20 +201,20 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
             # Only at the start of a run: first branches need accelerations, and these a mode.
             if lacks_branch(at):
                 return FIRST_BRANCHES
-            if run.laws.contact.size > 0:
-                switch_elements(run.laws, at)
+            if arrays.laws.contact.size > 0:
+                switch_elements(arrays.laws, at)
             if sliders.size > 0 or any_may_rest(at):
-                ended = _decide(run, mode, piece)
+                ended = _decide(arrays, mode, piece)
                 if ended != DONE:
                     return ended
             progress.phase = HISTORY
         if progress.phase == HISTORY:
             if now.stale:
                 return NEW_MODE
-            if is_fleeting(0.0, now, run.rules.time):
-                save_record(run.record)
-            make_ready(run, mode, piece)
-            put_present(run, True)
+            if is_fleeting(0.0, now, arrays.rules.time):
+                save_record(arrays.record)
+            make_ready(arrays, mode, piece)
+            put_present(arrays, True)
             progress.phase = SHORT_STEP
         if now.t >= piece.stop:
             ended = OVER
@@ -221,11 +223,11 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
         elif progress.short_steps >= LONGEST_CASCADE:
             return UNENDING
         else:
-            ended = short_step(run, mode, piece)
+            ended = short_step(arrays, mode, piece)
             if progress.phase == SHORT_STEP:
-                make_ready(run, mode, piece)
+                make_ready(arrays, mode, piece)
     if ended == OVER:
-        end_cascade(state.resting, now, run.record.events)
+        end_cascade(state.resting, now, arrays.record.events)
     return ended
 
 
@@ -237,10 +239,10 @@ def _rubs(mode: Dynamics) -> Rubs:
 
 
 @kernel
-def _decide(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
+def _decide(arrays: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     """Who rests, or sticks, after the impacts of an instant; ends as `decide_rests`."""
-    z, at, sliders = run.state.z, run.instant, mode.bodies.sliders
-    forcing = by_address(forcing_now(piece, run.state.now[0].t))
+    z, at, sliders = arrays.state.z, arrays.instant, mode.bodies.sliders
+    forcing = by_address(forcing_now(piece, arrays.state.now[0].t))
     if sliders.size > 0:
         return decide_sticks(z, forcing, mode.watched.force_noise, sliders, at)
     if mode.bodies.rubbing.size > 0:
@@ -249,9 +251,9 @@ def _decide(run: Run, mode: Dynamics, piece: CurrentPiece) -> int:
 
 
 @kernel
-def _has_room(run: Run) -> bool:
+def _has_room(arrays: Run) -> bool:
     """Whether the record can take what an instant and a step may write, at the least."""
-    journal, events = run.record.journal, run.record.events
+    journal, events = arrays.record.journal, arrays.record.events
     rows = journal.cursor[WRITTEN] + journal.times.size - journal.cursor[PASSED] + 4
-    wanted = events_wanted(run.state.gap.size, run.state.now[0])
+    wanted = events_wanted(arrays.state.gap.size, arrays.state.now[0])
     return rows <= journal.rows.shape[0] and wanted <= events.shape[0]

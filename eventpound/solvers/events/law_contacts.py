@@ -112,9 +112,9 @@ def switch_elements(laws: Laws, at: Instant) -> None:
 
 
 @deferred_kernel
-def add_shares(end: float, run: Run, step: DenseStep) -> None:
+def add_shares(end: float, arrays: Run, step: DenseStep) -> None:
     """Add what the closed elements do from the start of a step to `end` (s, local)."""
-    laws = run.laws
+    laws = arrays.laws
     if not (laws.touch[CLOSED] != 0.0).any():
         return
     half = 0.5 * (end - step.dense.start)

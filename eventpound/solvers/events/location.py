@@ -31,8 +31,8 @@ from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein
 from eventpound.solvers.events.dense import DenseStep, observe_at
 from eventpound.solvers.events.event_bounds import (
+    Guards,
     Marks,
-    Watched,
     margin_at_rest,
     margin_on_branch,
     noise_on_branch,
@@ -224,7 +224,7 @@ def _rate_at(tau: float, of: tuple[EventFunction, DenseStep]) -> float:
 
 @kernel
 def first_event(
-    marks: Marks, watched: Watched, rules: Rules, located: Located, step: DenseStep
+    marks: Marks, watched: Guards, rules: Rules, located: Located, step: DenseStep
 ) -> float:
     """The earliest closing, release or change of branch among what an inspection marked.
 
@@ -232,7 +232,7 @@ def first_event(
     ----------
     marks : Marks
         Of the inspection.
-    watched : Watched
+    watched : Guards
         What was inspected.
     rules : Rules
         Constants of the run: which sizes mean nothing.
@@ -318,7 +318,7 @@ def any_located(located: Located) -> bool:
 
 
 @kernel
-def add_vanished(observed: Observed, watched: Watched, rules: Rules, located: Located) -> None:
+def add_vanished(observed: Observed, watched: Guards, rules: Rules, located: Located) -> None:
     """Add what happens in the instant in which a contact force vanishes.
 
     Of links that pass their kink in it, what follows is told by the other branch.

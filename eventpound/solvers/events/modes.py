@@ -22,7 +22,7 @@ from eventpound.mechanics.reduced import Branches, Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.by_address import with_address
 from eventpound.numerics.compiled import in_python
-from eventpound.solvers.events.event_bounds import Watched
+from eventpound.solvers.events.event_bounds import Guards
 from eventpound.solvers.events.run import Dynamics
 
 
@@ -38,7 +38,7 @@ class Mode:
     clusters: Clusters
     system: Reduced
     bodies: Bodies
-    watched: Watched
+    watched: Guards
     dynamics: Dynamics
 
     @cached_property
@@ -172,7 +172,7 @@ class ModeTable:
         presses, friction = np.full(model.contacts, -1), np.zeros(model.contacts)
         presses[model.own_contacts :][: model.rubbing.size] = model.rubbing
         friction[model.own_contacts :][: model.rubbing.size] = model.friction[model.rubbing]
-        watched = Watched(
+        watched = Guards(
             opened,
             unlocked,
             bool((branch[model.plain :] < 0).any()),

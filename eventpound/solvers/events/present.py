@@ -81,13 +81,13 @@ def set_state(y: Floats, t: float, mode: Dynamics, forcing: Forcing, state: Stat
 
 
 @scalar_kernel
-def close_located(run: Run) -> None:
+def close_located(arrays: Run) -> None:
     """Put what has closed exactly on its constraint, and links on the branch that follows."""
-    located, state = run.located, run.state
+    located, state = arrays.located, arrays.state
     for j in range(state.gap.size):
         if located.closing[j]:
             state.gap[j] = 0.0
-    pass_kinks(located.kinked, state.z, run.instant)
+    pass_kinks(located.kinked, state.z, arrays.instant)
 
 
 @kernel
@@ -98,20 +98,20 @@ def put_instant(t: float, observed: Observed, record: RunRecord) -> None:
 
 
 @kernel
-def make_ready(run: Run, mode: Dynamics, piece: CurrentPiece) -> None:
+def make_ready(arrays: Run, mode: Dynamics, piece: CurrentPiece) -> None:
     """Leave the present instant as a step begins with it: `y`, `rate`, `atol`, what is observed.
 
     The gaps observed are their own variables.
     """
-    system, bodies, state = mode.system, mode.bodies, run.state
-    rate = run.rate[: system.size]
+    system, bodies, state = mode.system, mode.bodies, arrays.state
+    rate = arrays.rate[: system.size]
     forcing = by_address(forcing_now(piece, state.now[0].t))
     # What links of one cluster are observed with: their z are not in the state.
     copy_numbers(state.z, bodies.frozen_z)
     y = state_vector(bodies, system, bodies.mass, state.u, state.v, state.z, state.ledger)
-    copy_numbers(y, run.y)
-    copy_numbers(tolerances_of_state(run.rules, system, bodies), run.atol)
-    observed = run.observations[0]
+    copy_numbers(y, arrays.y)
+    copy_numbers(tolerances_of_state(arrays.rules, system, bodies), arrays.atol)
+    observed = arrays.observations[0]
     observe_motion(0.0, y, rate, system, bodies, forcing, observed)
     for j in range(state.gap.size):
         if state.gap[j] < np.inf:
@@ -119,13 +119,13 @@ def make_ready(run: Run, mode: Dynamics, piece: CurrentPiece) -> None:
 
 
 @kernel
-def put_present(run: Run, settled: bool) -> None:
+def put_present(arrays: Run, settled: bool) -> None:
     """Put the present instant, which is ready, into history and extremes.
 
     The bodies of a `settled` one are on their constraints.
     """
-    record, t = run.record, run.state.now[0].t
-    observed = run.observations[0]
+    record, t = arrays.record, arrays.state.now[0].t
+    observed = arrays.observations[0]
     if settled:
         at = record.running.at
         for i in range(at.gap, at.acceleration):

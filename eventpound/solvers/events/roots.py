@@ -21,7 +21,7 @@ from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python, scalar_kernel
 from eventpound.solvers.events.event_bounds import (
-    Watched,
+    Guards,
     margin_at_rest,
     margin_on_branch,
     noise_on_branch,
@@ -53,7 +53,7 @@ def sundials_finds(settings: Settings, default: str) -> bool:
 
 
 @scalar_kernel
-def values_and_rates(observed: Observed, watched: Watched, pairs: Floats) -> None:
+def values_and_rates(observed: Observed, watched: Guards, pairs: Floats) -> None:
     """Fill `pairs` (n, 2), a value and its rate each, in the order of `owners`."""
     place = 0
     for j in range(observed.gap.shape[1]):
@@ -124,13 +124,13 @@ def on_the_root(pairs: Floats, noise: Floats, start: float, tau: float, reach: f
     return first if first > start else tau
 
 
-def owners(watched: Watched) -> tuple[Bools, Bools, Bools]:
+def owners(watched: Guards) -> tuple[Bools, Bools, Bools]:
     """Contacts (K,) whose gap and whose force is a value, and links (L,) with one."""
     kinked = np.isfinite(watched.kink_low) | np.isfinite(watched.kink_high)
     return watched.open_contacts, watched.unlocked & ~watched.open_contacts, kinked
 
 
-def noise_of(watched: Watched, length: float, time: float) -> Floats:
+def noise_of(watched: Guards, length: float, time: float) -> Floats:
     """Noise of every value of a mode, (n,); `length` (m) and `time` (s) are the scene's own."""
     gaps, forces, kinked = owners(watched)
     of_contacts = np.where(gaps, GAP * length, watched.force_noise)[gaps | forces]
@@ -139,7 +139,7 @@ def noise_of(watched: Watched, length: float, time: float) -> Floats:
     return np.concatenate((of_contacts, of_links))
 
 
-def located_of(watched: Watched, fallen: Bools) -> tuple[Bools, Bools, Bools]:
+def located_of(watched: Guards, fallen: Bools) -> tuple[Bools, Bools, Bools]:
     """The events, from which values (n,) fell: closing (K,), released (K,), kinked (L,)."""
     gaps, forces, kinked = owners(watched)
     whose = gaps | forces

@@ -15,7 +15,7 @@ from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Bools, Floats, Ints, Records
 from eventpound.numerics.records import NamedNumbers
-from eventpound.solvers.events.event_bounds import Marks, Watched
+from eventpound.solvers.events.event_bounds import Guards, Marks
 from eventpound.solvers.events.recorder import Journal
 
 
@@ -135,4 +135,4 @@ class Dynamics(NamedTuple):
 
     system: Reduced
     bodies: Bodies
-    watched: Watched
+    watched: Guards

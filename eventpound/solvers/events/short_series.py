@@ -262,14 +262,14 @@ class ShortSeries(NamedTuple):
 
 
 @kernel
-def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> ShortSeries:
+def local_series(arrays: Run, forcing: Forcing, mode: Dynamics, limit: float) -> ShortSeries:
     """Expand the motion from the present instant, which is made ready, up to `limit` (s)."""
-    rules, state, system, bodies = run.rules, run.state, mode.system, mode.bodies
+    rules, state, system, bodies = arrays.rules, arrays.state, mode.system, mode.bodies
     acceleration = rules.length / rules.time**2
-    y = run.y[: system.size]
+    y = arrays.y[: system.size]
     weight = np.empty(y.size)
     for i in range(y.size):
-        weight[i] = run.atol[i] + rules.rtol * abs(y[i])
+        weight[i] = arrays.atol[i] + rules.rtol * abs(y[i])
     Y = motion_series(0.0, y, system, forcing, ORDER, still_rate(rules.length, rules.time))
     if not all_finite(Y):
         none = np.zeros(state.gap.size, np.bool_)

@@ -26,7 +26,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.solvers.base import Energy
-from eventpound.solvers.events.event_bounds import Marks, Watched, inspect_step, margin_at_rest
+from eventpound.solvers.events.event_bounds import Guards, Marks, inspect_step, margin_at_rest
 from eventpound.solvers.events.run import Dynamics, RunRecord
 from eventpound.tolerances import ENERGY_ERROR, GAP_NOISE, PULLED, SAME_SAMPLE
 
@@ -178,7 +178,7 @@ def examine(
 
 
 @scalar_kernel
-def broken_contact(observed: Observed, watched: Watched, length_noise: float) -> int:
+def broken_contact(observed: Observed, watched: Guards, length_noise: float) -> int:
     """The first contact that penetrates or pulls although no event was found, or -1.
 
     `length_noise`: gaps below this have no sign (m).
@@ -195,7 +195,7 @@ def broken_contact(observed: Observed, watched: Watched, length_noise: float) ->
 
 
 def contact_error(
-    t: float, j: int, observed: Observed, watched: Watched, names: Sequence[str]
+    t: float, j: int, observed: Observed, watched: Guards, names: Sequence[str]
 ) -> ComputationError:
     """What to raise of contact j, which `broken_contact` names, those of sliders included."""
     name = names[j]

@@ -39,7 +39,7 @@ def _observed_at(step: DenseStep, tau: float) -> Observed:
 
 
 @kernel
-def search_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple[float, bool]:
+def search_between(h: float, arrays: Run, mode: Dynamics, step: DenseStep) -> tuple[float, bool]:
     """Search a step for events between the first two observations of a run, h (s) apart.
 
     The end of the local series tells itself which gaps close there.
@@ -51,37 +51,37 @@ def search_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple
     marked : bool
         Whether anything was marked.
     """
-    marks, watched, (before, after, _) = run.marks, mode.watched, run.observations
-    if not inspect_step(before, after, h, watched, run.record.running, marks):
+    marks, watched, (before, after, _) = arrays.marks, mode.watched, arrays.observations
+    if not inspect_step(before, after, h, watched, arrays.record.running, marks):
         return np.inf, False
-    if not step.dense.own and run.state.progress[0].finder != OURSELVES:
+    if not step.dense.own and arrays.state.progress[0].finder != OURSELVES:
         # Events are found by the library: only turning points are left to look for.
         return np.inf, True
     if step.dense.own:
         for j in range(marks.closing.size):
             marks.closing[j] = False
-    return first_event(marks, watched, run.rules, run.located, step), True
+    return first_event(marks, watched, arrays.rules, arrays.located, step), True
 
 
 @kernel
-def record_inside(end: float, marked: bool, run: Run, step: DenseStep) -> None:
+def record_inside(end: float, marked: bool, arrays: Run, step: DenseStep) -> None:
     """Take the turning points of a step up to `end` (s), where marked, and what is due there."""
-    record, origin = run.record, step.forcing.start
+    record, origin = arrays.record, step.forcing.start
     if marked:
-        update_peaks(run.marks.peak, end, run.rules.near, record.running, step)
+        update_peaks(arrays.marks.peak, end, arrays.rules.near, record.running, step)
     if is_due(origin + end, record.journal):
         write_samples(_observed_at, step, origin, step.dense.start, end, record.journal)
 
 
 @deferred_kernel.but(ahead=True)
-def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> int:
+def search_step(arrays: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> int:
     """Search a step of an integrator that was marked for events, from sample to sample.
 
     The step is recorded up to the first of them, whose state becomes the present one.
 
     Parameters
     ----------
-    run, mode, piece : Run, Dynamics, CurrentPiece
+    arrays, mode, piece : Run, Dynamics, CurrentPiece
         The run, at the start of the segment.
     dense : Dense
         The step, in times from there.
@@ -91,10 +91,10 @@ def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> 
     int
         CLEAR, EVENT or BROKEN; of a broken contact the last of `run.observations` tells.
     """
-    rules, state, record = run.rules, run.state, run.record
+    rules, state, record = arrays.rules, arrays.state, arrays.record
     origin = state.now[0].t
     forcing = by_address(forcing_now(piece, origin))
-    observations, watched = run.observations, mode.watched
+    observations, watched = arrays.observations, mode.watched
     low, high = dense.start, dense.start
     while high < dense.end:
         low, high = high, dense.end
@@ -105,21 +105,21 @@ def search_step(run: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> 
         observe_at(low, by_address(DenseStep(part, mode, forcing, observations[0])))
         observe_at(high, by_address(DenseStep(part, mode, forcing, observations[1])))
         step = by_address(DenseStep(part, mode, forcing, observations[2]))
-        tau, marked = search_between(high - low, run, mode, step)
+        tau, marked = search_between(high - low, arrays, mode, step)
         # The integrator stands on its root: `located` has it, and what vanishes with it is added.
         if high == dense.end and state.progress[0].finder == FOUND_AT_END:
             tau = high
             observe_at(tau, step)
-            add_vanished(step.observed, watched, rules, run.located)
+            add_vanished(step.observed, watched, rules, arrays.located)
         end = min(high, tau)
-        record_inside(end, marked, run, step)
-        if run.laws.contact.size > 0:
-            add_shares(end, run, step)
+        record_inside(end, marked, arrays, step)
+        if arrays.laws.contact.size > 0:
+            add_shares(end, arrays, step)
         if tau < np.inf:
             observe_at(tau, step)
             put_instant(origin + tau, step.observed, record)
             set_state(state_at(tau, step), origin + tau, mode, forcing, state)
-            close_located(run)
+            close_located(arrays)
             return EVENT
         # Beyond an event there is another mode, in which none of these need hold.
         after = observations[1]

@@ -99,13 +99,13 @@ class Active(NamedTuple):
 
 
 @step_kernel
-def _find_active(h: float, active: Active, run: Stepping) -> int:
+def _find_active(h: float, active: Active, stepping: Stepping) -> int:
     """Write down and mark the contacts whose gap half a step ahead, ``g + h γ / 2``, is not open.
 
     A gap that a rate which counts as none would make in a step is not open either;
     else rounding would let go of a contact at rest. Returns their number.
     """
-    structure, state = run.structure, run.state
+    structure, state = stepping.structure, stepping.state
     closed = h * STILL_GAP_RATE * structure.speed
     count = 0
     for j in range(structure.gap.size):
@@ -118,11 +118,11 @@ def _find_active(h: float, active: Active, run: Stepping) -> int:
 
 
 @step_kernel
-def _take_impulses(sign: float, run: Stepping) -> None:
+def _take_impulses(sign: float, stepping: Stepping) -> None:
     """Take ``sign W p`` from the residual."""
-    structure, residual = run.structure, run.equations.residual
+    structure, residual = stepping.structure, stepping.equations.residual
     for j in range(structure.gap.size):
-        p, p_T = run.trial.contact[j], run.trial.rubbing[j]
+        p, p_T = stepping.trial.contact[j], stepping.trial.rubbing[j]
         if p != 0.0:
             pull_together(residual, structure.left[j], structure.right[j], sign * p)
         if p_T != 0.0:
@@ -131,50 +131,50 @@ def _take_impulses(sign: float, run: Stepping) -> None:
 
 
 @step_kernel
-def _answer(left: int, right: int, column: Floats, run: Stepping) -> None:
+def _answer(left: int, right: int, column: Floats, stepping: Stepping) -> None:
     """``Â⁻¹ W`` of one row, (N + D,)."""
     for b in range(column.size):
         column[b] = 0.0
     pull_together(column, left, right, -1.0)
-    hand_on(run.structure.weights, column)
-    solve_banded(run.equations.band, column)
-    place_points(run.structure.weights, column)
+    hand_on(stepping.structure.weights, column)
+    solve_banded(stepping.equations.band, column)
+    place_points(stepping.structure.weights, column)
 
 
 @step_kernel
-def _strike(active: Active, j: int, run: Stepping) -> None:
+def _strike(active: Active, j: int, stepping: Stepping) -> None:
     """Impulse of the only active contact, added to the free velocities in `increment`."""
-    structure, equations = run.structure, run.equations
-    _answer(structure.left[j], structure.right[j], active.column, run)
+    structure, equations = stepping.structure, stepping.equations
+    _answer(structure.left[j], structure.right[j], active.column, stepping)
     q = gap_rate(structure, j, equations.increment)
-    q += structure.restitution[j] * gap_rate(structure, j, run.state.v)
+    q += structure.restitution[j] * gap_rate(structure, j, stepping.state.v)
     # Newton's law in Moreau's form: γ₁ + ε γ₀ = 0, unless that would pull.
     p = max(0.0, -q / gap_rate(structure, j, active.column))
-    run.trial.contact[j] = p
+    stepping.trial.contact[j] = p
     for b in range(active.column.size):
         equations.increment[b] += active.column[b] * p
 
 
 @kernel
-def _strike_together(active: Ints, run: Stepping) -> bool:
+def _strike_together(active: Ints, stepping: Stepping) -> bool:
     """The same for several contacts: their complementarity problem; False where not solved.
 
     Between two barriers different ε may ask for gap rates that no motion has (their sum
     is fixed); the step is then taken as plastic, which every group can be.
     """
-    structure, equations = run.structure, run.equations
+    structure, equations = stepping.structure, stepping.equations
     q = np.empty(active.size)
     for share in (1.0, 0.0):
         for a in range(active.size):
             j = active[a]
             q[a] = gap_rate(structure, j, equations.increment)
-            q[a] += share * structure.restitution[j] * gap_rate(structure, j, run.state.v)
+            q[a] += share * structure.restitution[j] * gap_rate(structure, j, stepping.state.v)
             # What decays at rest without forces would underflow on the way through the problem.
             if abs(q[a]) < NO_SPEED * structure.speed:
                 q[a] = 0.0
-        p, change, solved = _impulses(active, q, run)
+        p, change, solved = _impulses(active, q, stepping)
         if solved:
-            put_numbers(p, active, run.trial.contact)
+            put_numbers(p, active, stepping.trial.contact)
             for b in range(change.size):
                 equations.increment[b] += change[b]
             return True
@@ -182,17 +182,17 @@ def _strike_together(active: Ints, run: Stepping) -> bool:
 
 
 @kernel
-def _rub_together(active: Ints, run: Stepping) -> int:
+def _rub_together(active: Ints, stepping: Stepping) -> int:
     """The same for contacts some of which have friction; an outcome.
 
     What friction does is first order whatever θ is: the way of slip is that of the end of the step.
     """
-    structure, equations, k = run.structure, run.equations, active.size
+    structure, equations, k = stepping.structure, stepping.equations, active.size
     ends = np.concatenate((structure.tangent[active], structure.tangent[active]))
     ends[:k, 0], ends[:k, 1] = structure.left[active], structure.right[active]
     columns, G = np.zeros((2 * k, equations.increment.size)), np.empty((2 * k, 2 * k))
     for a in range(2 * k):
-        _answer(ends[a, 0], ends[a, 1], columns[a], run)
+        _answer(ends[a, 0], ends[a, 1], columns[a], stepping)
         for b in range(2 * k):
             G[a, b] = difference(columns[a], ends[b, 0], ends[b, 1])
     x, w, q, free = np.zeros(2 * k), np.zeros(2 * k), np.empty(2 * k), np.zeros(k, np.int64)
@@ -201,7 +201,7 @@ def _rub_together(active: Ints, run: Stepping) -> int:
         for a in range(2 * k):
             q[a] = difference(equations.increment, ends[a, 0], ends[a, 1])
             if a < k:
-                before = gap_rate(structure, active[a], run.state.v)
+                before = gap_rate(structure, active[a], stepping.state.v)
                 q[a] += share * structure.restitution[active[a]] * before
             if abs(q[a]) < NO_SPEED * structure.speed:
                 q[a] = 0.0
@@ -212,8 +212,8 @@ def _rub_together(active: Ints, run: Stepping) -> int:
             return NOT_UNIQUE
         if found == NO_ANSWER:
             continue
-        put_numbers(x[:k], active, run.trial.contact)
-        put_numbers(x[k:], active, run.trial.rubbing)
+        put_numbers(x[:k], active, stepping.trial.contact)
+        put_numbers(x[k:], active, stepping.trial.rubbing)
         for a in range(2 * k):
             for b in range(equations.increment.size):
                 equations.increment[b] += columns[a, b] * x[a]
@@ -222,11 +222,11 @@ def _rub_together(active: Ints, run: Stepping) -> int:
 
 
 @kernel
-def _impulses(active: Ints, q: Floats, run: Stepping) -> tuple[Floats, Floats, bool]:
+def _impulses(active: Ints, q: Floats, stepping: Stepping) -> tuple[Floats, Floats, bool]:
     """Impulses p with ``0 <= G p + q ⊥ p >= 0``, ``Â⁻¹ W p``, and whether they were found."""
-    structure, band = run.structure, run.equations.band
+    structure, band = stepping.structure, stepping.equations.band
     left, right = structure.left[active], structure.right[active]
-    change = np.zeros(run.equations.increment.size)
+    change = np.zeros(stepping.equations.increment.size)
     noise = QUIET * np.max(np.abs(q))
     if structure.weights.size == 0 and np.all(band[:, 1:] == 0.0):
         # No link between bodies: masses of their own, and a row of contacts is quickly solved.
@@ -239,7 +239,7 @@ def _impulses(active: Ints, q: Floats, run: Stepping) -> tuple[Floats, Floats, b
     # Rows of `columns` are those of Â⁻¹ W transposed (k, N); G = Wᵀ Â⁻¹ W (k, k).
     columns, G = np.zeros((left.size, change.size)), np.empty((left.size, left.size))
     for a in range(left.size):
-        _answer(left[a], right[a], columns[a], run)
+        _answer(left[a], right[a], columns[a], stepping)
         for b in range(left.size):
             G[a, b] = difference(columns[a], left[b], right[b])
     p, _, solved = solve_dense(G, q, noise)
@@ -249,25 +249,25 @@ def _impulses(active: Ints, q: Floats, run: Stepping) -> tuple[Floats, Floats, b
 
 
 @step_kernel
-def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
+def _solve_step(step: FixedStep, active: Active, stepping: Stepping) -> int:
     """Newton's iteration for the end of the step; an outcome."""
-    structure, trial, equations = run.structure, run.trial, run.equations
-    count = _find_active(step.h, active, run)
-    predict(step, run)
+    structure, trial, equations = stepping.structure, stepping.trial, stepping.equations
+    count = _find_active(step.h, active, stepping)
+    predict(step, stepping)
     rubs = False
     for j in range(trial.contact.size):
         trial.contact[j] = trial.rubbing[j] = 0.0
         rubs |= active.marked[j] and structure.friction[j] > 0.0
     for iteration in range(MOST_ITERATIONS):
-        end_of_step(step.h, run)
-        momentum_residual(step, run)
-        _take_impulses(1.0, run)
+        end_of_step(step.h, stepping)
+        momentum_residual(step, stepping)
+        _take_impulses(1.0, stepping)
         # The impulses of active contacts are known only after a first turn.
-        if (iteration > 0 or count == 0) and balanced(run):
+        if (iteration > 0 or count == 0) and balanced(stepping):
             return DONE
         # Out again: the complementarity problem finds the impulses anew.
-        _take_impulses(-1.0, run)
-        fill_newton_matrix(step.h, run)
+        _take_impulses(-1.0, stepping)
+        fill_newton_matrix(step.h, stepping)
         if not factor_banded(equations.band):
             return NOT_CONVERGED
         copy_values(equations.residual, equations.increment)
@@ -277,12 +277,12 @@ def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
             equations.increment[b] = trial.v[b] - equations.increment[b]
         place_points(structure.weights, equations.increment)
         if rubs:
-            outcome = _rub_together(active.contacts[:count], run)
+            outcome = _rub_together(active.contacts[:count], stepping)
             if outcome != DONE:
                 return outcome
         elif count == 1:
-            _strike(active, active.contacts[0], run)
-        elif count > 1 and not _strike_together(active.contacts[:count], run):
+            _strike(active, active.contacts[0], stepping)
+        elif count > 1 and not _strike_together(active.contacts[:count], stepping):
             return NOT_SOLVED
         share = 1.0 if iteration < RELAXED_AFTER else 0.5
         for b in range(trial.v.size):
@@ -291,25 +291,32 @@ def _solve_step(step: FixedStep, active: Active, run: Stepping) -> int:
 
 
 @step_kernel
-def _keep_rubbing(j: int, h: float, struck: bool, rubbed: Floats, run: Stepping) -> float:
+def _keep_rubbing(j: int, h: float, struck: bool, rubbed: Floats, stepping: Stepping) -> float:
     """Keep what the friction of a contact has done in a step; the energy it took (J)."""
-    structure, p_T = run.structure, run.trial.rubbing[j]
-    rates = slip_rate(structure, j, run.state.v) + slip_rate(structure, j, run.trial.v)
+    structure, p_T = stepping.structure, stepping.trial.rubbing[j]
+    rates = slip_rate(structure, j, stepping.state.v) + slip_rate(structure, j, stepping.trial.v)
     lost = -0.5 * p_T * rates
-    normal, tangential = (run.trial.contact[j], p_T) if struck else (0.0, 0.0)
+    normal, tangential = (stepping.trial.contact[j], p_T) if struck else (0.0, 0.0)
     keep_friction(j, normal, tangential, lost, rubbed)
-    if not struck and run.trial.contact[j] > 0.0:
+    if not struck and stepping.trial.contact[j] > 0.0:
         rubbed[PATH, j] += 0.5 * h * abs(rates)
     return lost
 
 
 @step_kernel
-def _take_losses(h: float, still: float, rubbed: Floats, run: Stepping) -> tuple[float, int, bool]:
+def _take_losses(
+    h: float, still: float, rubbed: Floats, stepping: Stepping
+) -> tuple[float, int, bool]:
     """Keep what the impulses of a step took; what impacts lost (J), how many, and if they gained.
 
     still: gap rate that counts as none (m/s).
     """
-    structure, state, trial, work = run.structure, run.state, run.trial, run.record.work
+    structure, state, trial, work = (
+        stepping.structure,
+        stepping.state,
+        stepping.trial,
+        stepping.record.work,
+    )
     lost, by_friction, passed, impacts = 0.0, 0.0, 0.0, 0
     for j in range(structure.gap.size):
         before, after = gap_rate(structure, j, state.v), gap_rate(structure, j, trial.v)
@@ -320,7 +327,7 @@ def _take_losses(h: float, still: float, rubbed: Floats, run: Stepping) -> tuple
             impacts += 1
     for j in range(structure.gap.size):
         if structure.friction[j] > 0.0:
-            by_friction += _keep_rubbing(j, h, impacts > 0, rubbed, run)
+            by_friction += _keep_rubbing(j, h, impacts > 0, rubbed, stepping)
     gained = False
     if impacts > 0:
         # Without friction only what restitutions contradict each other in could.
@@ -332,27 +339,34 @@ def _take_losses(h: float, still: float, rubbed: Floats, run: Stepping) -> tuple
 
 
 @step_kernel
-def _list_slide(j: int, t: float, still: float, group: int, active: Active, run: Stepping) -> int:
+def _list_slide(
+    j: int, t: float, still: float, group: int, active: Active, stepping: Stepping
+) -> int:
     """Write down that a contact at rest begins to stick or to slip; group of the step's events."""
-    kind, now = -1, run.record.now[0]
+    kind, now = -1, stepping.record.now[0]
     if active.resting[j]:
-        rate = slip_rate(run.structure, j, run.trial.v)
+        rate = slip_rate(stepping.structure, j, stepping.trial.v)
         kind = SLIPS_FORWARD if rate > still else SLIPS_BACKWARD if rate < -still else STICKS
         if kind != active.slides[j]:
             group = new_group(now) if group < 0 else group
             row = EventRow(t, kind, group, j, 0.0, 0.0, 0.0, 0.0, 0)
-            write_event(row, now, run.record.events)
+            write_event(row, now, stepping.record.events)
     active.slides[j] = kind
     return group
 
 
 @step_kernel
-def _close_step(step: FixedStep, active: Active, run: Stepping) -> int:
+def _close_step(step: FixedStep, active: Active, stepping: Stepping) -> int:
     """Write the events of a step, and make forces of its impulses; an outcome."""
-    structure, state, trial, resting = run.structure, run.state, run.trial, active.resting
-    now, events, t = run.record.now[0], run.record.events, step.start
+    structure, state, trial, resting = (
+        stepping.structure,
+        stepping.state,
+        stepping.trial,
+        active.resting,
+    )
+    now, events, t = stepping.record.now[0], stepping.record.events, step.start
     still, group = STILL_GAP_RATE * structure.speed, -1
-    lost, impacts, gained = _take_losses(step.h, still, active.rubbed, run)
+    lost, impacts, gained = _take_losses(step.h, still, active.rubbed, stepping)
     if gained:
         return GAINED
     for j in range(structure.gap.size):
@@ -373,7 +387,7 @@ def _close_step(step: FixedStep, active: Active, run: Stepping) -> int:
             write_event(row, now, events)
         resting[j] = rests
         if structure.friction[j] > 0.0:
-            group = _list_slide(j, t, still, group, active, run)
+            group = _list_slide(j, t, still, group, active, stepping)
         active.struck[j] = p > 0.0
         if not rests:
             trial.contact[j] = trial.rubbing[j] = 0.0
@@ -386,13 +400,13 @@ def _close_step(step: FixedStep, active: Active, run: Stepping) -> int:
 
 
 @step_kernel
-def _take_step(step: FixedStep, active: Active, run: Stepping) -> int:
+def _take_step(step: FixedStep, active: Active, stepping: Stepping) -> int:
     """The rule; an outcome."""
-    outcome = _solve_step(step, active, run)
-    return _close_step(step, active, run) if outcome == DONE else outcome
+    outcome = _solve_step(step, active, stepping)
+    return _close_step(step, active, stepping) if outcome == DONE else outcome
 
 
 @scalar_kernel.but(recipe=SMALL)
-def advance(span: Span, forcing: Forcing, active: Active, run: Stepping) -> tuple[int, int]:
+def advance(span: Span, forcing: Forcing, active: Active, stepping: Stepping) -> tuple[int, int]:
     """Take steps; see `eventpound.solvers.timestepping.run.Advance`."""
-    return take_steps(_take_step, 3 * active.marked.size, span, forcing, active, run)
+    return take_steps(_take_step, 3 * active.marked.size, span, forcing, active, stepping)

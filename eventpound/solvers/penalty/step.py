@@ -52,9 +52,14 @@ MOST_HALVINGS = 40
 
 
 @step_kernel
-def _take_elements(step: FixedStep, elements: PenaltyElements, run: Stepping) -> None:
+def _take_elements(step: FixedStep, elements: PenaltyElements, stepping: Stepping) -> None:
     """Take the forces of the elements into the balance, their slopes into `pressing`."""
-    structure, state, trial, equations = run.structure, run.state, run.trial, run.equations
+    structure, state, trial, equations = (
+        stepping.structure,
+        stepping.state,
+        stepping.trial,
+        stepping.equations,
+    )
     half = 0.5 * step.h
     for j in range(structure.gap.size):
         left, right = structure.left[j], structure.right[j]
@@ -83,22 +88,22 @@ def _take_elements(step: FixedStep, elements: PenaltyElements, run: Stepping) ->
 
 
 @step_kernel
-def _evaluate(step: FixedStep, elements: PenaltyElements, run: Stepping) -> float:
+def _evaluate(step: FixedStep, elements: PenaltyElements, stepping: Stepping) -> float:
     """Residual of the trial velocities; returns its size, ``Σ r²/m`` (J)."""
-    end_of_step(step.h, run)
-    momentum_residual(step, run)
-    _take_elements(step, elements, run)
+    end_of_step(step.h, stepping)
+    momentum_residual(step, stepping)
+    _take_elements(step, elements, stepping)
     total = 0.0
-    for b in range(run.structure.mass.size):
-        total += run.equations.residual[b] ** 2 / run.structure.mass[b]
+    for b in range(stepping.structure.mass.size):
+        total += stepping.equations.residual[b] ** 2 / stepping.structure.mass[b]
     return total
 
 
 @step_kernel
-def _newton_increment(h: float, run: Stepping) -> bool:
+def _newton_increment(h: float, stepping: Stepping) -> bool:
     """Solve Newton's equations for the increment of the velocities."""
-    structure, equations = run.structure, run.equations
-    fill_newton_matrix(h, run)
+    structure, equations = stepping.structure, stepping.equations
+    fill_newton_matrix(h, stepping)
     for j in range(structure.gap.size):
         if equations.pressing[j] != 0.0:
             left, right = structure.left[j], structure.right[j]
@@ -111,10 +116,10 @@ def _newton_increment(h: float, run: Stepping) -> bool:
 
 
 @step_kernel
-def _solve_step(step: FixedStep, elements: PenaltyElements, run: Stepping) -> int:
+def _solve_step(step: FixedStep, elements: PenaltyElements, stepping: Stepping) -> int:
     """Newton's iteration for the end of the step; an outcome."""
-    structure, v, contact = run.structure, run.trial.v, run.state.contact
-    predict(step, run)
+    structure, v, contact = stepping.structure, stepping.trial.v, stepping.state.contact
+    predict(step, stepping)
     # As if the contact forces stayed, as `predict` has it of the links.
     for j in range(structure.gap.size):
         left, right = structure.left[j], structure.right[j]
@@ -122,19 +127,19 @@ def _solve_step(step: FixedStep, elements: PenaltyElements, run: Stepping) -> in
             v[left] -= step.h * contact[j] / structure.mass[left]
         if right >= 0:
             v[right] += step.h * contact[j] / structure.mass[right]
-    size = _evaluate(step, elements, run)
+    size = _evaluate(step, elements, stepping)
     for _ in range(MOST_ITERATIONS):
-        if balanced(run):
+        if balanced(stepping):
             return DONE
-        if not _newton_increment(step.h, run):
+        if not _newton_increment(step.h, stepping):
             return NOT_CONVERGED
         copy_values(v, elements.origin)
         length = 1.0
         for _ in range(MOST_HALVINGS):
             for b in range(v.size):
-                v[b] = elements.origin[b] - length * run.equations.increment[b]
-            new_size = _evaluate(step, elements, run)
-            if new_size < size or balanced(run):
+                v[b] = elements.origin[b] - length * stepping.equations.increment[b]
+            new_size = _evaluate(step, elements, stepping)
+            if new_size < size or balanced(stepping):
                 break
             length *= 0.5
         size = new_size
@@ -142,9 +147,9 @@ def _solve_step(step: FixedStep, elements: PenaltyElements, run: Stepping) -> in
 
 
 @step_kernel
-def _take_closing_drags(laws: Laws, run: Stepping) -> None:
+def _take_closing_drags(laws: Laws, stepping: Stepping) -> None:
     """Let the damping of every open element be as if it closed at the start of this step."""
-    structure, state = run.structure, run.state
+    structure, state = stepping.structure, stepping.state
     for j in range(structure.gap.size):
         if laws.touch[CLOSED, j] == 0.0:
             gap, rate = gap_of(structure, j, state.u), gap_rate(structure, j, state.v)
@@ -152,12 +157,17 @@ def _take_closing_drags(laws: Laws, run: Stepping) -> None:
 
 
 @step_kernel
-def _follow_contacts(step: FixedStep, laws: Laws, run: Stepping) -> None:
+def _follow_contacts(step: FixedStep, laws: Laws, stepping: Stepping) -> None:
     """Sum impulse and work of the contacts over a step; write those that end.
 
     The time in contact of an element is one impact, from its closing to its opening.
     """
-    structure, state, trial, record = run.structure, run.state, run.trial, run.record
+    structure, state, trial, record = (
+        stepping.structure,
+        stepping.state,
+        stepping.trial,
+        stepping.record,
+    )
     t, h = step.start, step.h
     for j in range(structure.gap.size):
         gap_0, gap_1 = gap_of(structure, j, state.u), gap_of(structure, j, trial.u)
@@ -177,18 +187,18 @@ def _follow_contacts(step: FixedStep, laws: Laws, run: Stepping) -> None:
 
 
 @step_kernel
-def _take_step(step: FixedStep, elements: PenaltyElements, run: Stepping) -> int:
+def _take_step(step: FixedStep, elements: PenaltyElements, stepping: Stepping) -> int:
     """The rule; an outcome."""
-    _take_closing_drags(elements.laws, run)
-    outcome = _solve_step(step, elements, run)
+    _take_closing_drags(elements.laws, stepping)
+    outcome = _solve_step(step, elements, stepping)
     if outcome == DONE:
-        _follow_contacts(step, elements.laws, run)
+        _follow_contacts(step, elements.laws, stepping)
     return outcome
 
 
 @scalar_kernel.but(recipe=SMALL)
 def advance(
-    span: Span, forcing: Forcing, elements: PenaltyElements, run: Stepping
+    span: Span, forcing: Forcing, elements: PenaltyElements, stepping: Stepping
 ) -> tuple[int, int]:
     """Take steps; see `eventpound.solvers.timestepping.run.Advance`."""
-    return take_steps(_take_step, elements.stiffness.size, span, forcing, elements, run)
+    return take_steps(_take_step, elements.stiffness.size, span, forcing, elements, stepping)

@@ -22,7 +22,7 @@ from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.by_address import change_group, type_by_address, with_address
 from eventpound.numerics.compiled import callback, in_python, kernel
-from eventpound.solvers.events.event_bounds import Watched
+from eventpound.solvers.events.event_bounds import Guards
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
     lift,
@@ -44,7 +44,7 @@ class Roots(NamedTuple):
     """
 
     fresh: Bools
-    watched: Watched
+    watched: Guards
     noise: Floats
     lifted: Floats
     pairs: Floats
@@ -101,7 +101,7 @@ def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int
     return with_address(
         Roots(
             np.zeros(1, np.bool_),
-            Watched(
+            Guards(
                 *(gaps, forces, False, least, most, low, high, turns, 0.0, at, presses, friction)
             ),
             np.zeros(0),

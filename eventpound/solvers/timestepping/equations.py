@@ -136,24 +136,29 @@ def _step_of(i: int, span: Span, ground: float, forcing: Forcing, theta: float) 
 
 
 @step_kernel
-def predict(step: FixedStep, run: Stepping) -> None:
+def predict(step: FixedStep, stepping: Stepping) -> None:
     """Velocities at the end of the step if the forces of the links stayed."""
-    state, mass = run.state, run.structure.mass
-    load = run.equations.load[0]
+    state, mass = stepping.state, stepping.structure.mass
+    load = stepping.equations.load[0]
     for b in range(mass.size):
-        run.trial.v[b] = state.v[b] + step.h * ((state.f[b] + load[b]) / mass[b] - step.ground)
-    place_points(run.structure.weights, run.trial.v)
+        stepping.trial.v[b] = state.v[b] + step.h * ((state.f[b] + load[b]) / mass[b] - step.ground)
+    place_points(stepping.structure.weights, stepping.trial.v)
 
 
 @step_kernel
-def end_of_step(h: float, run: Stepping) -> None:
+def end_of_step(h: float, stepping: Stepping) -> None:
     """Displacements and forces of the links at the end of a step, from the trial velocities.
 
     The sizes of the forces are left in `terms`.
     """
-    structure, state, trial, equations = run.structure, run.state, run.trial, run.equations
+    structure, state, trial, equations = (
+        stepping.structure,
+        stepping.state,
+        stepping.trial,
+        stepping.equations,
+    )
     theta, elastic, law = structure.theta, structure.elastic, structure.law
-    run.record.progress[0].evaluations += 1
+    stepping.record.progress[0].evaluations += 1
     for b in range(structure.mass.size):
         trial.u[b] = state.u[b] + h * ((1.0 - theta) * state.v[b] + theta * trial.v[b])
     for b in range(trial.f.size):
@@ -184,9 +189,14 @@ def end_of_step(h: float, run: Stepping) -> None:
 
 
 @step_kernel
-def momentum_residual(step: FixedStep, run: Stepping) -> None:
+def momentum_residual(step: FixedStep, stepping: Stepping) -> None:
     """What is missing in the balance of momentum without contacts (N s)."""
-    structure, state, trial, equations = run.structure, run.state, run.trial, run.equations
+    structure, state, trial, equations = (
+        stepping.structure,
+        stepping.state,
+        stepping.trial,
+        stepping.equations,
+    )
     theta, h = structure.theta, step.h
     for b in range(structure.mass.size):
         m = structure.mass[b]
@@ -198,9 +208,9 @@ def momentum_residual(step: FixedStep, run: Stepping) -> None:
 
 
 @step_kernel
-def balanced(run: Stepping) -> bool:
+def balanced(stepping: Stepping) -> bool:
     """Whether nothing but the tolerance of Newton's method or rounding is missing."""
-    structure, equations = run.structure, run.equations
+    structure, equations = stepping.structure, stepping.equations
     for b in range(structure.mass.size):
         allowed = BALANCE * structure.speed * structure.mass[b]
         # So asked, a number that is none is no balance.
@@ -238,9 +248,9 @@ def _couple_at_points(
 
 
 @step_kernel
-def fill_newton_matrix(h: float, run: Stepping) -> None:
+def fill_newton_matrix(h: float, stepping: Stepping) -> None:
     """``M + h θ (C + h θ K)`` at the trial state, contacts apart."""
-    structure, equations = run.structure, run.equations
+    structure, equations = stepping.structure, stepping.equations
     reach = h * structure.theta
     equations.band[:, :] = 0.0
     for b in range(structure.mass.size):
@@ -256,15 +266,20 @@ def fill_newton_matrix(h: float, run: Stepping) -> None:
 
 
 @step_kernel
-def _add_work(step: FixedStep, run: Stepping) -> None:
+def _add_work(step: FixedStep, stepping: Stepping) -> None:
     """Add the step's input, viscous and hysteretic work (J), forces by θ, paths by the mean."""
-    structure, state, trial, work = run.structure, run.state, run.trial, run.record.work
+    structure, state, trial, work = (
+        stepping.structure,
+        stepping.state,
+        stepping.trial,
+        stepping.record.work,
+    )
     theta, law, h = structure.theta, structure.law, step.h
     for b in range(structure.mass.size):
         # With the mean velocity M (v₁ - v₀) does exactly the change of the kinetic energy.
         mean = 0.5 * (state.v[b] + trial.v[b])
         work[INPUT] -= h * structure.mass[b] * mean * step.ground
-        work[INPUT] += h * run.equations.load[0, b] * mean
+        work[INPUT] += h * stepping.equations.load[0, b] * mean
     for link in range(structure.bound.size):
         first, second = structure.ends[link, 0], structure.ends[link, 1]
         before, after = difference(state.v, first, second), difference(trial.v, first, second)
@@ -278,10 +293,10 @@ def _add_work(step: FixedStep, run: Stepping) -> None:
 
 
 @step_kernel
-def _end_step(step: FixedStep, run: Stepping) -> None:
+def _end_step(step: FixedStep, stepping: Stepping) -> None:
     """Make the end of the step the present state, and record it."""
-    _add_work(step, run)
-    state, trial = run.state, run.trial
+    _add_work(step, stepping)
+    state, trial = stepping.state, stepping.trial
     copy_values(trial.u, state.u)
     copy_values(trial.v, state.v)
     copy_values(trial.f, state.f)
@@ -289,18 +304,18 @@ def _end_step(step: FixedStep, run: Stepping) -> None:
     copy_values(trial.link, state.link)
     copy_values(trial.contact, state.contact)
     copy_values(trial.rubbing, state.rubbing)
-    run.record.progress[0].steps += 1
-    record_step(step.end, step.ground_end, run)
+    stepping.record.progress[0].steps += 1
+    record_step(step.end, step.ground_end, stepping)
 
 
 @step_kernel
-def _take_loads(t: float, forcing: Forcing, run: Stepping) -> None:
+def _take_loads(t: float, forcing: Forcing, stepping: Stepping) -> None:
     """Loads of the step that ends at t (s), those at its start being known."""
-    load, theta = run.equations.load, run.structure.theta
+    load, theta = stepping.equations.load, stepping.structure.theta
     for b in range(load.shape[1]):
         load[0, b], load[1, b] = (1.0 - theta) * load[1, b], 0.0
     # None of them drives a support.
-    add_body_loads(forcing, t, load[1], run.equations.terms)
+    add_body_loads(forcing, t, load[1], stepping.equations.terms)
     for b in range(load.shape[1]):
         load[0, b] += theta * load[1, b]
 
@@ -312,7 +327,7 @@ def take_steps(
     span: Span,
     forcing: Forcing,
     contacts: Any,
-    run: Stepping,
+    stepping: Stepping,
 ) -> tuple[int, int]:
     """Take the steps of a span; see `eventpound.solvers.timestepping.run.Advance`.
 
@@ -325,21 +340,21 @@ def take_steps(
     span, forcing, contacts, run
         Of `Advance`.
     """
-    now = run.record.now[0]
+    now = stepping.record.now[0]
     ground = ground_acceleration(forcing, forcing.start + span.first * span.h)
     loaded = forcing.family == LOADED
     if loaded:
-        _take_loads(forcing.start + span.first * span.h, forcing, run)
+        _take_loads(forcing.start + span.first * span.h, forcing, stepping)
     for i in range(span.first, span.last):
         # No step begins whose events may find no room, as none can be taken back.
-        if now.events + most_events > run.record.events.shape[0]:
+        if now.events + most_events > stepping.record.events.shape[0]:
             return i, NO_ROOM
-        step = _step_of(i, span, ground, forcing, run.structure.theta)
+        step = _step_of(i, span, ground, forcing, stepping.structure.theta)
         if loaded:
-            _take_loads(step.end, forcing, run)
-        outcome = take(step, contacts, run)
+            _take_loads(step.end, forcing, stepping)
+        outcome = take(step, contacts, stepping)
         if outcome != DONE:
             return i, outcome
-        _end_step(step, run)
+        _end_step(step, stepping)
         ground = step.ground_end
     return span.last, DONE

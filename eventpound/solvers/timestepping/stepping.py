@@ -346,7 +346,7 @@ def _observe_present(
 
 
 @step_kernel
-def record_step(t: float, ground: float, run: Stepping) -> None:
+def record_step(t: float, ground: float, stepping: Stepping) -> None:
     """Record the present state: its extremes, and the rows up to it.
 
     Parameters
@@ -355,13 +355,15 @@ def record_step(t: float, ground: float, run: Stepping) -> None:
         Time of the state (s).
     ground : float
         Ground acceleration there (m/s²).
-    run : Stepping
+    stepping : Stepping
         With the state; `record.last[1]` is that before, or anything at the start.
     """
-    record = run.record
+    record = stepping.record
     before, now = record.last[0], record.last[1]
     copy_values(now, before)
-    _observe_present(t, ground, run.equations.load[1], run.structure, run.state, record)
+    _observe_present(
+        t, ground, stepping.equations.load[1], stepping.structure, stepping.state, record
+    )
     update_extremes(record.observed, t, record.running)
     i = record.progress[0].rows
     while i < record.times.size and record.times[i] <= t:
