@@ -89,11 +89,11 @@ def test_frequencies_are_those_of_closed_forms(name, low, high):
     assert found == pytest.approx([low, high], rel=1e-3)
 
 
-@pytest.mark.parametrize("case", ["passing-wave", "pair-with-law"])
+@pytest.mark.parametrize("case", ["passing-wave", "pair-with-law", "skew-deck-friction"])
 def test_what_the_files_have_no_place_for_is_refused(tmp_path, case):
-    """Supports and contact laws would be left out."""
+    """Supports, contact laws and decks would be left out."""
     folder = tmp_path / "01-wave"
     shutil.copytree(SET.folder.parent / case, folder)
     problem = replace(SET.problems[0], folder=folder)
-    with pytest.raises(InputError, match=r"01-wave: has supports, forces or .*eventpound run"):
+    with pytest.raises(InputError, match=r"01-wave: has supports, .*eventpound run"):
         problem_json(SET, problem)
