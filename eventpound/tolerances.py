@@ -67,7 +67,8 @@ the bodies that the undecided contacts join."""
 QUIET = 1e-13
 """Speeds an impact leaves below this part of the fastest approach count as none."""
 CANCELLED = 1e-13
-"""Part of its terms below which what is left of a gap rate is their rounding."""
+"""Part of its terms below which what is left of a gap rate is their rounding; so is a tangential
+impulse below this part of the normal one."""
 BALANCE_ROUNDING = 64.0 * EPS
 """Part of the sum of its terms up to which a balance of momentum is rounding."""
 TIE_ROUNDING = 64.0 * EPS

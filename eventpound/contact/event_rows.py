@@ -17,10 +17,8 @@ from eventpound.contact.state import Now
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
 
-IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED, UNLISTED_LAST = (
-    0, 1, 2, 3, 4, -1, -2, -3,
-)  # fmt: skip
-STICKS, SLIPS_FORWARD, SLIPS_BACKWARD = 5, 6, 7
+IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, STICKS, SLIPS_FORWARD, SLIPS_BACKWARD = range(8)
+ERASED, UNLISTED, UNLISTED_LAST = -1, -2, -3
 """Kinds of an event row; an impact too slow to be listed may yet be counted. The last of a
 cascade, after which there is no speed left, stands for all that would follow."""
 _KINDS = {
@@ -133,9 +131,9 @@ def write_change(
 
 
 @scalar_kernel
-def write_slide(kind: int, contact: int, group: int, now: Now, events: Floats) -> None:
-    """Write down that a contact at rest begins to stick or to slip, by the kind of its row."""
-    write_event(EventRow(now.t, kind, group, contact, 0.0, 0.0, 0.0, 0.0, 0), now, events)
+def write_slide(t: float, kind: int, contact: int, group: int, now: Now, events: Floats) -> None:
+    """Write down that a contact at rest begins to stick or to slip at t (s), by the kind of row."""
+    write_event(EventRow(t, kind, group, contact, 0.0, 0.0, 0.0, 0.0, 0), now, events)
 
 
 @scalar_kernel

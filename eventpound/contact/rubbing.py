@@ -145,7 +145,7 @@ def list_slides(sliding: Sliding, before: Ints, state: Ints, groups: int, at: In
         if kind != before[i]:
             if now.groups == groups:
                 group = new_group(now)
-            write_slide(kind, sliding.members[i], group, now, at.events)
+            write_slide(now.t, kind, sliding.members[i], group, now, at.events)
 
 
 @kernel

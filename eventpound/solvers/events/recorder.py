@@ -388,7 +388,7 @@ def friction_of(
     model : Model
         The scene.
     rubbed : ndarray, shape (5, F)
-        What `eventpound.contact.friction` has kept.
+        What `eventpound.contact.rubbing` has kept.
     u, branch : ndarray, shapes (N,) and (L,)
         Displacements at the end (m), and which way links slip there.
     ledger : ndarray, shape (E,), optional

@@ -34,6 +34,7 @@ from eventpound.contact.event_rows import (
     EventRow,
     new_group,
     write_event,
+    write_slide,
 )
 from eventpound.contact.rubbing import PATH, keep_friction
 from eventpound.mechanics.contact_problem import Joints, solve_contacts
@@ -311,12 +312,8 @@ def _take_losses(
 
     still: gap rate that counts as none (m/s).
     """
-    structure, state, trial, work = (
-        stepping.structure,
-        stepping.state,
-        stepping.trial,
-        stepping.record.work,
-    )
+    structure, state = stepping.structure, stepping.state
+    trial, work = stepping.trial, stepping.record.work
     lost, by_friction, passed, impacts = 0.0, 0.0, 0.0, 0
     for j in range(structure.gap.size):
         before, after = gap_rate(structure, j, state.v), gap_rate(structure, j, trial.v)
@@ -349,8 +346,7 @@ def _list_slide(
         kind = SLIPS_FORWARD if rate > still else SLIPS_BACKWARD if rate < -still else STICKS
         if kind != active.slides[j]:
             group = new_group(now) if group < 0 else group
-            row = EventRow(t, kind, group, j, 0.0, 0.0, 0.0, 0.0, 0)
-            write_event(row, now, stepping.record.events)
+            write_slide(t, kind, j, group, now, stepping.record.events)
     active.slides[j] = kind
     return group
 
@@ -358,12 +354,8 @@ def _list_slide(
 @step_kernel
 def _close_step(step: FixedStep, active: Active, stepping: Stepping) -> int:
     """Write the events of a step, and make forces of its impulses; an outcome."""
-    structure, state, trial, resting = (
-        stepping.structure,
-        stepping.state,
-        stepping.trial,
-        active.resting,
-    )
+    structure, state = stepping.structure, stepping.state
+    trial, resting = stepping.trial, active.resting
     now, events, t = stepping.record.now[0], stepping.record.events, step.start
     still, group = STILL_GAP_RATE * structure.speed, -1
     lost, impacts, gained = _take_losses(step.h, still, active.rubbed, stepping)

@@ -54,12 +54,8 @@ MOST_HALVINGS = 40
 @step_kernel
 def _take_elements(step: FixedStep, elements: PenaltyElements, stepping: Stepping) -> None:
     """Take the forces of the elements into the balance, their slopes into `pressing`."""
-    structure, state, trial, equations = (
-        stepping.structure,
-        stepping.state,
-        stepping.trial,
-        stepping.equations,
-    )
+    structure, state = stepping.structure, stepping.state
+    trial, equations = stepping.trial, stepping.equations
     half = 0.5 * step.h
     for j in range(structure.gap.size):
         left, right = structure.left[j], structure.right[j]
@@ -162,12 +158,8 @@ def _follow_contacts(step: FixedStep, laws: Laws, stepping: Stepping) -> None:
 
     The time in contact of an element is one impact, from its closing to its opening.
     """
-    structure, state, trial, record = (
-        stepping.structure,
-        stepping.state,
-        stepping.trial,
-        stepping.record,
-    )
+    structure, state = stepping.structure, stepping.state
+    trial, record = stepping.trial, stepping.record
     t, h = step.start, step.h
     for j in range(structure.gap.size):
         gap_0, gap_1 = gap_of(structure, j, state.u), gap_of(structure, j, trial.u)

@@ -151,12 +151,8 @@ def end_of_step(h: float, stepping: Stepping) -> None:
 
     The sizes of the forces are left in `terms`.
     """
-    structure, state, trial, equations = (
-        stepping.structure,
-        stepping.state,
-        stepping.trial,
-        stepping.equations,
-    )
+    structure, state = stepping.structure, stepping.state
+    trial, equations = stepping.trial, stepping.equations
     theta, elastic, law = structure.theta, structure.elastic, structure.law
     stepping.record.progress[0].evaluations += 1
     for b in range(structure.mass.size):
@@ -191,12 +187,8 @@ def end_of_step(h: float, stepping: Stepping) -> None:
 @step_kernel
 def momentum_residual(step: FixedStep, stepping: Stepping) -> None:
     """What is missing in the balance of momentum without contacts (N s)."""
-    structure, state, trial, equations = (
-        stepping.structure,
-        stepping.state,
-        stepping.trial,
-        stepping.equations,
-    )
+    structure, state = stepping.structure, stepping.state
+    trial, equations = stepping.trial, stepping.equations
     theta, h = structure.theta, step.h
     for b in range(structure.mass.size):
         m = structure.mass[b]
@@ -268,12 +260,8 @@ def fill_newton_matrix(h: float, stepping: Stepping) -> None:
 @step_kernel
 def _add_work(step: FixedStep, stepping: Stepping) -> None:
     """Add the step's input, viscous and hysteretic work (J), forces by θ, paths by the mean."""
-    structure, state, trial, work = (
-        stepping.structure,
-        stepping.state,
-        stepping.trial,
-        stepping.record.work,
-    )
+    structure, state = stepping.structure, stepping.state
+    trial, work = stepping.trial, stepping.record.work
     theta, law, h = structure.theta, structure.law, step.h
     for b in range(structure.mass.size):
         # With the mean velocity M (v₁ - v₀) does exactly the change of the kinetic energy.
@@ -337,7 +325,7 @@ def take_steps(
         The rule of a method: takes one step, writes its events, returns an outcome.
     most_events : int
         Of one step.
-    span, forcing, contacts, run
+    span, forcing, contacts, stepping
         Of `Advance`.
     """
     now = stepping.record.now[0]
