@@ -213,10 +213,7 @@ def write_certificate(certificate: Certificate, directory: str | os.PathLike[str
     """
     write_together(
         directory,
-        {
-            TEXT: certificate_text(certificate).encode(),
-            JSON: to_json(certificate.as_dict()),
-        },
+        {TEXT: certificate_text(certificate).encode(), JSON: to_json(certificate.as_dict())},
     )
 
 

@@ -65,9 +65,7 @@ def motion_scales(task: Task, recording: Recording) -> MotionScales:
 
 
 def values_by_name(
-    scene: Scene,
-    recording: Recording,
-    moments: Sequence[float] = (),
+    scene: Scene, recording: Recording, moments: Sequence[float] = ()
 ) -> dict[str, float]:
     """Values of a run by name.
 

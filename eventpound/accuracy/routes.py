@@ -146,7 +146,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
 )
 """Module, what it does, and the formulations that run through it."""
 SHARED_AT_POINTS = {
-    f"{_MECHANICS}.followers": "what follows from what at points, forces of contacts there",
+    f"{_MECHANICS}.followers": "what follows from what at points, forces of contacts there"
 }
 """What routes of a scene with ends at points between bodies share besides."""
 SHARED_WITH_LAWS = {

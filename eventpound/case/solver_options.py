@@ -27,11 +27,7 @@ LARGEST_RTOL, SMALLEST_RTOL = 1e-2, 1e-14
 """Relative tolerances that a solver is given; beyond, they mean nothing in doubles."""
 HERTZIAN = tuple(element.word for element in Element if element.hertzian)
 """Values of ``contact`` with which ``contact_stiffness`` is that of a force k δ^1.5."""
-_ATOL = {
-    "displacement": Dimension.LENGTH,
-    "velocity": Dimension.VELOCITY,
-    "z": Dimension.NUMBER,
-}
+_ATOL = {"displacement": Dimension.LENGTH, "velocity": Dimension.VELOCITY, "z": Dimension.NUMBER}
 # Solvers' own keys that have a dimension; any other is taken as it is.
 _SETTINGS = {"time_step": Dimension.TIME, "contact_stiffness": Dimension.STIFFNESS}
 

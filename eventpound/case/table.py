@@ -60,11 +60,7 @@ class Table:
     """
 
     def __init__(
-        self,
-        data: Mapping[str, object],
-        where: str,
-        problems: list[CaseProblem],
-        prefix: str = "",
+        self, data: Mapping[str, object], where: str, problems: list[CaseProblem], prefix: str = ""
     ) -> None:
         self.data = data
         self.where = where

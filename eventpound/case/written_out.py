@@ -144,11 +144,7 @@ def damping_tables(
 
 
 def _values(
-    table: Table,
-    key: str,
-    dimension: Dimension,
-    count: int,
-    weights: Sequence[float] | None = None,
+    table: Table, key: str, dimension: Dimension, count: int, weights: Sequence[float] | None = None
 ) -> list[float]:
     """A value for each storey, given as one or as a list; NaN where they are wrong."""
     if not table.has(key):

@@ -162,12 +162,7 @@ def _is_held(i: int, sliding: Sliding, state: Ints, at: Instant) -> bool:
 
 
 def friction_message(
-    ended: int,
-    names: Sequence[str],
-    rubs: Rubs,
-    gap: Floats,
-    gap_rate: Floats,
-    resting: Bools,
+    ended: int, names: Sequence[str], rubs: Rubs, gap: Floats, gap_rate: Floats, resting: Bools
 ) -> str:
     """What to say where an instant cannot be settled at contacts with friction.
 

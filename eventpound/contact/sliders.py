@@ -28,13 +28,7 @@ import numpy as np
 from eventpound.contact.impacts import DONE, clusters_of, put_as_one
 from eventpound.contact.instant import any_may_rest, take_rests
 from eventpound.contact.kinks import still_rate
-from eventpound.contact.rest import (
-    ORDER,
-    Touching,
-    free_accelerations,
-    rest_contacts,
-    touching_of,
-)
+from eventpound.contact.rest import ORDER, Touching, free_accelerations, rest_contacts, touching_of
 from eventpound.contact.state import Instant, between_now
 from eventpound.mechanics.clusters import ContactEnds
 from eventpound.mechanics.followers import is_support, rows_of

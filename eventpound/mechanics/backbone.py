@@ -23,14 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.link_law import (
-    BETA,
-    EXPONENT,
-    GAMMA,
-    YIELD,
-    has_backbone,
-    z_bound,
-)
+from eventpound.mechanics.link_law import BETA, EXPONENT, GAMMA, YIELD, has_backbone, z_bound
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python, scalar_kernel
 from eventpound.numerics.power_series import integer_power, power_coefficient

@@ -178,13 +178,7 @@ def inverse_mass(left: int, right: int, mass: Floats) -> float:
 
 @scalar_kernel
 def push_apart(
-    j: int,
-    impulse: float,
-    mass: Floats,
-    left: Ints,
-    right: Ints,
-    gap_rate: Floats,
-    v: Floats,
+    j: int, impulse: float, mass: Floats, left: Ints, right: Ints, gap_rate: Floats, v: Floats
 ) -> None:
     """Give the bodies of contact j its impulse (N s), and all gaps (K,) the rates that follow.
 

@@ -31,12 +31,7 @@ from eventpound.mechanics.elements import (
 from eventpound.mechanics.followers import answers, is_support, own_mass
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
-from eventpound.mechanics.reduced_loads import (
-    add_load_coefficients,
-    placed,
-    support_of,
-    taken,
-)
+from eventpound.mechanics.reduced_loads import add_load_coefficients, placed, support_of, taken
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED
@@ -241,13 +236,7 @@ def _layout(
 
 @kernel
 def state_vector(
-    clusters: Any,
-    system: Reduced,
-    mass: Floats,
-    u: Floats,
-    v: Floats,
-    z: Floats,
-    ledger: Floats,
+    clusters: Any, system: Reduced, mass: Floats, u: Floats, v: Floats, z: Floats, ledger: Floats
 ) -> Floats:
     """State vector of a mode: clusters move with the momentum of their bodies, or with a support.
 

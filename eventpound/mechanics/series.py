@@ -183,12 +183,7 @@ def _set_forces(
 
 @kernel
 def motion_series(
-    tau: float,
-    y: Floats,
-    system: Reduced,
-    forcing: Forcing,
-    order: int,
-    speed_noise: float,
+    tau: float, y: Floats, system: Reduced, forcing: Forcing, order: int, speed_noise: float
 ) -> Floats:
     """Taylor coefficients of the state.
 

@@ -84,11 +84,7 @@ def lowered(scene: Scene, start: float) -> Scene:
     return replace(
         bare,
         motion=LoadedMotion(
-            reference,
-            tuple(loads),
-            assemble(bare).links,
-            _strongest(scene),
-            _push(scene),
+            reference, tuple(loads), assemble(bare).links, _strongest(scene), _push(scene)
         ),
     )
 

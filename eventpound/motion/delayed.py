@@ -49,10 +49,7 @@ class Delayed:
         numbers = piece.coefficients.copy()
         numbers[:1] += self.delay
         return replace(
-            piece,
-            start=piece.start + self.delay,
-            end=piece.end + self.delay,
-            coefficients=numbers,
+            piece, start=piece.start + self.delay, end=piece.end + self.delay, coefficients=numbers
         )
 
     def acceleration(self, t: Floats) -> Floats:

@@ -41,11 +41,7 @@ if TYPE_CHECKING:
 
 
 def largest_responses(
-    history: History,
-    scene: Scene,
-    bodies: Sequence[int],
-    periods: Floats,
-    ratios: Sequence[float],
+    history: History, scene: Scene, bodies: Sequence[int], periods: Floats, ratios: Sequence[float]
 ) -> Floats:
     """Largest |q| (m) and |q'' + U''| (m/s^2) of oscillators on bodies, shape (b, r, k, 2).
 

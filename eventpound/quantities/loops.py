@@ -20,13 +20,7 @@ _PARTS = 16
 """Of the way from one row to the next."""
 
 
-def loop_of(
-    law: Law,
-    t: Floats,
-    x: Floats,
-    rate: Floats,
-    *memory: Floats,
-) -> tuple[Floats, Floats]:
+def loop_of(law: Law, t: Floats, x: Floats, rate: Floats, *memory: Floats) -> tuple[Floats, Floats]:
     """Elongation and force of a spring along a motion.
 
     Parameters

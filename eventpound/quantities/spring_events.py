@@ -36,11 +36,7 @@ class SpringEventKind(StrEnum):
 
 
 _KINDS: Mapping[LawName, Mapping[int, SpringEventKind]] = {
-    LawName.SLIDER: {
-        -1: SpringEventKind.SLIP,
-        0: SpringEventKind.STICK,
-        1: SpringEventKind.SLIP,
-    },
+    LawName.SLIDER: {-1: SpringEventKind.SLIP, 0: SpringEventKind.STICK, 1: SpringEventKind.SLIP},
     LawName.BACKFILL: {-1: SpringEventKind.CLOSED, 1: SpringEventKind.OPENED},
 }
 """By the law and the state that begins."""

@@ -362,10 +362,7 @@ def _page_table(
 
 
 def shock_cells(
-    shocks: Sequence[Mapping[str, Any]],
-    table: pd.DataFrame,
-    trade: Trade,
-    most: int | None = None,
+    shocks: Sequence[Mapping[str, Any]], table: pd.DataFrame, trade: Trade, most: int | None = None
 ) -> Cells:
     """Demands of each shock of a sequence by itself, all of them or the largest of each kind.
 

@@ -35,10 +35,7 @@ def colours_of(values: Floats, high: float | None, around_one: bool) -> tuple[No
 
 
 def draw_map(
-    axes: Axes,
-    grid: pd.DataFrame,
-    colours: tuple[Normalize, str],
-    levels: Sequence[float],
+    axes: Axes, grid: pd.DataFrame, colours: tuple[Normalize, str], levels: Sequence[float]
 ) -> None:
     """Draw a quantity in colours, with a bar beside them.
 

@@ -245,10 +245,7 @@ def _width(
 
 
 def _place_below(
-    names: Sequence[str],
-    height: int,
-    carried: Mapping[str, Sequence[str]],
-    boxes: dict[str, Box],
+    names: Sequence[str], height: int, carried: Mapping[str, Sequence[str]], boxes: dict[str, Box]
 ) -> None:
     """Carriers of one level, each below the middle of what it carries, or the next free place."""
     wanted: list[tuple[float, float, str]] = []

@@ -177,12 +177,7 @@ def _places(contact: Contact) -> Sequence[PlanPoint]:
 
 
 def _draw_contact(
-    axes: Axes,
-    scene: Scene,
-    contact: Contact,
-    state: _State | None,
-    times: float,
-    trade: Trade,
+    axes: Axes, scene: Scene, contact: Contact, state: _State | None, times: float, trade: Trade
 ) -> None:
     """A contact: a mark at its place, the wall beside it, and how wide its gap is."""
     decks = {deck.name: deck for deck in scene.decks}

@@ -21,13 +21,7 @@ from matplotlib.patches import Patch
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.report.map_panel import colours_of, draw_map
 from eventpound.report.notes import LETTER, LINE, letters, wrapped, write_below
-from eventpound.report.style import (
-    colors,
-    largest_size,
-    plain_logarithms,
-    show_as_written,
-    styled,
-)
+from eventpound.report.style import colors, largest_size, plain_logarithms, show_as_written, styled
 from eventpound.report.symbols import axis_label, display_unit, plain_value, symbol, value_label
 from eventpound.report.view import stretches
 from eventpound.results.trade import Unit

@@ -122,10 +122,7 @@ class _Plain(Formatter):
 
 def plain_logarithms(axes: Axes, x: bool = True, y: bool = True) -> None:
     """Axes logarithmic, with numbers as one writes them; between decades where few show."""
-    for axis, wanted, scale in (
-        (axes.xaxis, x, axes.set_xscale),
-        (axes.yaxis, y, axes.set_yscale),
-    ):
+    for axis, wanted, scale in ((axes.xaxis, x, axes.set_xscale), (axes.yaxis, y, axes.set_yscale)):
         if not wanted:
             continue
         scale("log")

@@ -126,11 +126,7 @@ def _draw_line(axes: Axes, ends: Floats, order: Order) -> None:
 
 def _words(order: Order) -> list[str]:
     """Numbers of a panel; what is the same for all motions has no rank and no line."""
-    ranks = {
-        "$L_e$": order.rank_length,
-        "PGA": order.rank_acceleration,
-        "$T_m$": order.rank_period,
-    }
+    ranks = {"$L_e$": order.rank_length, "PGA": order.rank_acceleration, "$T_m$": order.rank_period}
     known = [f"{name} {rank:.2f}" for name, rank in ranks.items() if math.isfinite(rank)]
     words = [f"{order.records} motions"]
     if known:

@@ -131,11 +131,7 @@ def _panels(view: View, kept: Ints, trade: Trade) -> Iterator[dict[str, Any]]:
     ):
         unit, size = trade.unit(dimension.unit)
         lines = [
-            {
-                "name": own,
-                "y": _short(values[kept] / size),
-                "hue": hues.setdefault(own, len(hues)),
-            }
+            {"name": own, "y": _short(values[kept] / size), "hue": hues.setdefault(own, len(hues))}
             for own, values in curves
         ]
         if lines:

@@ -61,7 +61,7 @@ WITH_SUPPORTS = {
         " to the ground; sa is linear between rows. C_s has a column a support, B_s and W_s a row:"
         " M u'' + C u' + C_s s' + sum_s B[:,s] F_s - W lambda = -M 1 a_g(t),"
         " x = B^T u + B_s^T s, g = delta + W^T u + W_s^T s, gap rates W^T v + W_s^T s'"
-    ),
+    )
 }
 WITH_LAWS = {
     "contact laws": (
@@ -70,19 +70,19 @@ WITH_LAWS = {
         " k d^1.5 (hertz), k d^1.5 (1 + damping d'/d0') with d0' the d' as it closed (hertz-damp),"
         " k d^1.5 + 2 damping sqrt(k sqrt(d) m) d' while d' > 0 and then k d^1.5 (jankowski);"
         " k is its stiffness, m = 1/sum_i W_i^2/M_i"
-    ),
+    )
 }
 WITH_WEIGHTS = {
-    "weight": "a spring with a weight P and a height h pulls with F - (P/h) x (P-Delta)",
+    "weight": "a spring with a weight P and a height h pulls with F - (P/h) x (P-Delta)"
 }
 WITH_FORCES = {
-    "forces": "motion.csv has the force p.<body> (N) on bodies, to be added to -M 1 a_g(t)",
+    "forces": "motion.csv has the force p.<body> (N) on bodies, to be added to -M 1 a_g(t)"
 }
 IN_PLAN = {
     "in plan": (
         "iota has a row a body: -M (iota[:,0] a_g + iota[:,1] a_across) stands in the place of"
         " -M 1 a_g. A deck is three bodies: x, y and r theta, r the radius at its contacts"
-    ),
+    )
 }
 
 
@@ -116,10 +116,7 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
     lines = "".join(",".join(map(repr, row)) + "\n" for row in rows)
     write_together(
         directory,
-        {
-            "motion.csv": f"{','.join(columns)}\n{lines}".encode(),
-            "scene.json": to_json(scene_json),
-        },
+        {"motion.csv": f"{','.join(columns)}\n{lines}".encode(), "scene.json": to_json(scene_json)},
     )
 
 

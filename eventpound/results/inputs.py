@@ -190,11 +190,7 @@ def _mass_on(case: Case, spring: Spring) -> float | None:
 
 def _spring(spring: Spring, at_rest: float, mass: float | None) -> Row:
     law = spring.law
-    row: Row = {
-        "name": spring.name,
-        "between": spring.written,
-        "law": law.word.value,
-    }
+    row: Row = {"name": spring.name, "between": spring.written, "law": law.word.value}
     row |= storey_keys(spring)
     if isinstance(law, BilinearElastic | Series):
         return row | asdict(reduced(law)) | {"at_rest": at_rest}

@@ -53,8 +53,7 @@ if TYPE_CHECKING:
 
 
 def summarise(
-    response: Response,
-    error_estimate: Mapping[str, object] | None = None,
+    response: Response, error_estimate: Mapping[str, object] | None = None
 ) -> dict[str, object]:
     """Summary of a run.
 

@@ -90,9 +90,7 @@ def scale_columns(scene: Scene, columns: Mapping[str, Floats]) -> ScaleColumns |
 
 
 def numbers_with_terms(
-    scene: Scene,
-    terms: Mapping[str, Numbers],
-    columns: Mapping[str, Floats] | None = None,
+    scene: Scene, terms: Mapping[str, Numbers], columns: Mapping[str, Floats] | None = None
 ) -> dict[str, Numbers]:
     """Numbers that give variants of a scene the given Π-terms.
 
@@ -138,11 +136,7 @@ class _Solving:
     """The numbers of one set of terms, found oscillator by oscillator."""
 
     def __init__(
-        self,
-        scene: Scene,
-        first: Body,
-        terms: Mapping[str, Numbers],
-        columns: Mapping[str, Floats],
+        self, scene: Scene, first: Body, terms: Mapping[str, Numbers], columns: Mapping[str, Floats]
     ) -> None:
         self.scene, self.first, self.terms = scene, first, terms
         self.columns, self.places = columns, number_places(scene)

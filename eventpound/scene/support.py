@@ -29,9 +29,7 @@ class Support:
 
     name: str
     delay: Annotated[
-        OptionalNumber,
-        Dimension.TIME,
-        Accepted("a time that is not negative (s)", not_negative),
+        OptionalNumber, Dimension.TIME, Accepted("a time that is not negative (s)", not_negative)
     ] = default(None)
     motion: GroundMotion | None = None
 

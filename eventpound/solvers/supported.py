@@ -12,12 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.supported import (
-    components,
-    lowered,
-    moving_supports,
-    support_motion,
-)
+from eventpound.mechanics.supported import components, lowered, moving_supports, support_motion
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.ends import Joining, opening

@@ -24,14 +24,7 @@ from eventpound.units import Dimension, quantity
 PI = "pi."
 """What the key of a Π-term begins with."""
 _FILE = "excitation.file"
-_WORDS = (
-    "excitation.kind",
-    "excitation.reverse",
-    _FILE,
-    "pi.structure",
-    "pi.row",
-    "pi.periods",
-)
+_WORDS = ("excitation.kind", "excitation.reverse", _FILE, "pi.structure", "pi.row", "pi.periods")
 MOST_VALUES = 1_000_000
 """Values of a range; more is a slip."""
 _RUN = "run."

@@ -146,9 +146,7 @@ class DesignRuns:
 
 
 def made_of_run(
-    case: Case,
-    progress: Reached | None = None,
-    again: Callable[[], None] | None = None,
+    case: Case, progress: Reached | None = None, again: Callable[[], None] | None = None
 ) -> DesignRuns:
     """Run a case once, then what its design numbers need; `again` is called in between."""
     response = response_of(asking(case), progress=progress)
@@ -158,10 +156,7 @@ def made_of_run(
 
 
 def made_of_suite(
-    case: Case,
-    out: Path,
-    progress: Counted | None = None,
-    workers: int | None = None,
+    case: Case, out: Path, progress: Counted | None = None, workers: int | None = None
 ) -> DesignRuns:
     """Run a case under every record, with what its design numbers need."""
     own = asking(case)

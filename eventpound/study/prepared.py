@@ -16,13 +16,7 @@ from eventpound.response import Response
 from eventpound.scene.check import motion_problems
 from eventpound.scene.parameters import motion_with, number_places
 from eventpound.scene.scene import Scene
-from eventpound.simulation import (
-    ReadyScene,
-    check_case,
-    made_ready,
-    options_of,
-    output_times,
-)
+from eventpound.simulation import ReadyScene, check_case, made_ready, options_of, output_times
 from eventpound.solvers.base import Solver, Task
 from eventpound.study.axes import given_axes
 from eventpound.study.checked_numbers import CheckedRanges

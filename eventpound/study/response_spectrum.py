@@ -32,9 +32,7 @@ _RTOL = 1e-8
 
 
 def response_spectrum(
-    motion: GroundMotion,
-    damping: float | str = 0.05,
-    periods: Sequence[float] | Floats = PERIODS,
+    motion: GroundMotion, damping: float | str = 0.05, periods: Sequence[float] | Floats = PERIODS
 ) -> pd.DataFrame:
     """Compute the response spectrum of a ground motion.
 

@@ -129,10 +129,7 @@ def _halved(base: Base, low: int, high: int, wanted: WantedRuns) -> Iterator[Res
 
 
 def results_of(
-    rows: Rows,
-    wanted: WantedRuns,
-    workers: int = 1,
-    progress: Counted | None = None,
+    rows: Rows, wanted: WantedRuns, workers: int = 1, progress: Counted | None = None
 ) -> Results:
     """Run rows, and those without contact that quantities need.
 

@@ -5,18 +5,9 @@ from dataclasses import replace
 import pytest
 
 from eventpound.accuracy import routes
-from eventpound.accuracy.certificate import (
-    certificate_text,
-    significant,
-)
+from eventpound.accuracy.certificate import certificate_text, significant
 from eventpound.accuracy.verify import verify
-from eventpound.scene import (
-    BARRIER,
-    Body,
-    Contact,
-    ContactLaw,
-    Scene,
-)
+from eventpound.scene import BARRIER, Body, Contact, ContactLaw, Scene
 from tests.accuracy.test_verify import _by, _wall
 
 

@@ -13,16 +13,7 @@ from eventpound.accuracy.judge import judge_of
 from eventpound.cli import main
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.motion.pulses import Sine
-from eventpound.scene import (
-    BARRIER,
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Scene, Spring
 from eventpound.simulation import response_of
 from eventpound.solvers.fast import solver as fast
 from tests.models import CASES

@@ -5,11 +5,7 @@ from dataclasses import replace
 import pytest
 
 from eventpound.accuracy.judge import judge_of, rtol_of_judge
-from eventpound.scene import (
-    BARRIER,
-    Contact,
-    ContactLaw,
-)
+from eventpound.scene import BARRIER, Contact, ContactLaw
 from eventpound.simulation import response_of
 from tests.accuracy.test_estimate import WALL
 

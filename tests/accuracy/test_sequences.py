@@ -160,11 +160,7 @@ def test_rests_after_soft_impacts_need_not_be_in_both_runs():
         return [
             row
             for t, speed in each
-            for row in (
-                (t, IMPACT, 0, speed),
-                (t, REST, 0, 0.0),
-                (t + 0.5, OPEN, 0, 0.0),
-            )
+            for row in ((t, IMPACT, 0, speed), (t, REST, 0, 0.0), (t + 0.5, OPEN, 0, 0.0))
         ]
 
     few, many = _events(hit, *turns(2, 16)), _events(hit, *turns(2, 19))

@@ -10,27 +10,13 @@ import pytest
 import eventpound
 from eventpound.accuracy import routes
 from eventpound.accuracy.bound import Limit
-from eventpound.accuracy.certificate import (
-    Certificate,
-    CertifiedQuantity,
-    certificate_text,
-)
+from eventpound.accuracy.certificate import Certificate, CertifiedQuantity, certificate_text
 from eventpound.accuracy.certified_quantities import is_as_good
 from eventpound.accuracy.verify import CertificateInterrupted, verify
 from eventpound.cli import main
 from eventpound.errors import ComputationError
 from eventpound.motion.record import Record
-from eventpound.scene import (
-    BARRIER,
-    GROUND,
-    Body,
-    Contact,
-    Dashpot,
-    Linear,
-    Point,
-    Scene,
-    Spring,
-)
+from eventpound.scene import BARRIER, GROUND, Body, Contact, Dashpot, Linear, Point, Scene, Spring
 from tests.accuracy.storeys import DURATION, SCENE, TRUE
 from tests.solvers.random_scenes import random_scene
 

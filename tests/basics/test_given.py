@@ -183,12 +183,7 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
     ),
     "sensitivities": (
         {"case": SCENE},
-        {
-            THINGS: "case of to",
-            NEEDED: "rtol",
-            NUMBER: "duration workers",
-            "BITLMO": "progress",
-        },
+        {THINGS: "case of to", NEEDED: "rtol", NUMBER: "duration workers", "BITLMO": "progress"},
     ),
     "simulate_many": (
         {"case": SCENE, "parameters": {"contact.joint.gap": [0.01]}},

@@ -24,12 +24,7 @@ from eventpound.numerics.compiling import Stopwatch
 from eventpound.scene import Scene
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Recording, Task
-from tests.solvers.random_scenes import (
-    driven_scene,
-    nudged,
-    random_scene,
-    resting_scene,
-)
+from tests.solvers.random_scenes import driven_scene, nudged, random_scene, resting_scene
 
 LOOSE, FINE, TIGHT = 1e-7, 1e-9, 1e-12
 TIMES = 20.0

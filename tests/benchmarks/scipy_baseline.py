@@ -196,9 +196,7 @@ class _Run:
             trouble = str(reason)
         u = self.y[: self.count]
         return BaselineRun(
-            Answer(self.lowest, self.highest, u, tuple(self.impacts)),
-            trouble,
-            self.penetration,
+            Answer(self.lowest, self.highest, u, tuple(self.impacts)), trouble, self.penetration
         )
 
     def _stretch(self, equation: Rates, stop: float) -> None:

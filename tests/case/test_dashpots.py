@@ -4,9 +4,7 @@ import math
 
 import pytest
 
-from eventpound.scene import (
-    Dashpot,
-)
+from eventpound.scene import Dashpot
 from tests.case.test_damping import HYSTERETIC
 from tests.case.test_springs import CLOSE, Table, case_with, problems, spring
 

@@ -4,9 +4,7 @@ import math
 
 import pytest
 
-from eventpound.scene import (
-    Linear,
-)
+from eventpound.scene import Linear
 from tests.case.test_springs import CLOSE, case_with, problems, spring
 
 

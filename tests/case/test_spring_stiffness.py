@@ -2,9 +2,7 @@
 
 import pytest
 
-from eventpound.scene import (
-    Linear,
-)
+from eventpound.scene import Linear
 from tests.case.test_springs import CLOSE, Table, case_with, problems, spring
 
 

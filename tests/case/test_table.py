@@ -192,11 +192,7 @@ BROKEN: list[tuple[str, str, str, tuple[str, ...]]] = [
     ("broken TOML", 'name = "deck1"', "name = deck1", ("not valid TOML", "line 9")),
 ]  # fmt: skip
 
-FILES = {
-    "good.txt": "0.1\n-0.2\n0.3\n0.05\n",
-    "nan.txt": "0.1\n-0.2\nnan\n0.05\n",
-    "empty.txt": "",
-}
+FILES = {"good.txt": "0.1\n-0.2\n0.3\n0.05\n", "nan.txt": "0.1\n-0.2\nnan\n0.05\n", "empty.txt": ""}
 
 
 @pytest.fixture

@@ -239,11 +239,7 @@ def test_numbers_that_are_none(case, capsys, words):
 @pytest.mark.parametrize(
     ("text", "columns", "message"),
     [
-        (
-            "t,x\n0,0\n4,0\n",
-            "",
-            "no column u.deck; found t, x; accepted: t, u.deck, v.deck; --col",
-        ),
+        ("t,x\n0,0\n4,0\n", "", "no column u.deck; found t, x; accepted: t, u.deck, v.deck; --col"),
         (
             "t,x\n0,0\n4,0\n",
             "u.deck=y",

@@ -8,9 +8,7 @@ from eventpound import load_case
 from eventpound.case import Case
 from tests.hard.generated import FOLDER, folder_of
 
-REFUSED = {
-    "endless": "impacts in one instant do not end",
-}
+REFUSED = {"endless": "impacts in one instant do not end"}
 """Cases without an answer, and what the refusal must say."""
 WARNED = ("chaotic", "event-at-breakpoint", "graze-hit-1e-12", "stiff-beside-soft")
 """Cases whose counts the tolerance cannot tell, as the runs say."""

@@ -26,17 +26,7 @@ from eventpound.accuracy.sequences import KINDS, weights_for
 from eventpound.errors import ComputationError
 from eventpound.motion.pulses import Cosine, Sine, TypeC
 from eventpound.response import Response
-from eventpound.scene import (
-    BARRIER,
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    Dashpot,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.scene.check import check_scene
 from eventpound.score.levels import UNIT_OF_TIME
 from eventpound.score.pairing import pair_events

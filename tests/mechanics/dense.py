@@ -10,14 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.mechanics.link_law import link_law
-from eventpound.scene import (
-    BARRIER,
-    GROUND,
-    BilinearElastic,
-    BoucWen,
-    Linear,
-    Scene,
-)
+from eventpound.scene import BARRIER, GROUND, BilinearElastic, BoucWen, Linear, Scene
 
 
 def spring_force(law: Linear | BilinearElastic | BoucWen, x: float, z: float = 0.0) -> float:

@@ -3,13 +3,7 @@
 import numpy as np
 import pytest
 
-from eventpound.motion import (
-    AntisymmetricRicker,
-    Cosine,
-    NoMotion,
-    Ricker,
-    Sine,
-)
+from eventpound.motion import AntisymmetricRicker, Cosine, NoMotion, Ricker, Sine
 from eventpound.motion.delayed import Delayed, travelled
 from tests.motion.test_loaded import RECORD, ends_beside
 

@@ -4,20 +4,10 @@ import numpy as np
 import pytest
 
 from eventpound.mechanics.reduced import forcing_of
-from eventpound.motion import (
-    AntisymmetricRicker,
-    Cosine,
-    GroundMotion,
-    NoMotion,
-    Ricker,
-    Sine,
-)
+from eventpound.motion import AntisymmetricRicker, Cosine, GroundMotion, NoMotion, Ricker, Sine
 from eventpound.motion.base import Family
 from eventpound.motion.delayed import Delayed, travelled
-from eventpound.motion.forcing import (
-    ground_acceleration,
-    ground_taylor,
-)
+from eventpound.motion.forcing import ground_acceleration, ground_taylor
 from eventpound.motion.loaded import Load, LoadedMotion
 from eventpound.motion.loads import add_body_loads, load_taylor, load_value, support_motion
 from tests.motion.test_loaded import RECORD, SIGNALS, loaded

@@ -77,8 +77,7 @@ def test_grazes(depth, factor, place):
 
 
 @pytest.mark.parametrize(
-    "c",
-    [(1.0,), (0.0, 1.0), (1.0, 1.0, 1.0), (1.0, -1.0, 0.2501), (0.0, 0.0, 2.0, 1.0), (0.0,)],
+    "c", [(1.0,), (0.0, 1.0), (1.0, 1.0, 1.0), (1.0, -1.0, 0.2501), (0.0, 0.0, 2.0, 1.0), (0.0,)]
 )
 def test_no_root(c):
     assert _root(_series(*c), 100.0) == math.inf

@@ -249,10 +249,7 @@ def ledger(case: Case) -> Iterator[str]:
         yield f"fails to close by {energy.closure:.3e}"
     kinetic = 0.5 * float(case.model.mass @ recording.v**2)
     lost = sum(e.energy_lost for e in recording.events)
-    for what, said, is_ in (
-        ("kinetic", energy.kinetic, kinetic),
-        ("impact", energy.impact, lost),
-    ):
+    for what, said, is_ in (("kinetic", energy.kinetic, kinetic), ("impact", energy.impact, lost)):
         if abs(said - is_) > ROUNDING * max(case.scales.energy, abs(is_)):
             yield f"{what} energy {said:.6e} instead of {is_:.6e}"
     if energy.viscous < -case.rtol * case.scales.energy or energy.impact < 0.0:

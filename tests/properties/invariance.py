@@ -161,12 +161,7 @@ def variants(
 
 
 def _in_two_parts(
-    scene: Scene,
-    end: float,
-    solver: str,
-    rtol: float,
-    split: float,
-    kick: np.ndarray | float = 0.0,
+    scene: Scene, end: float, solver: str, rtol: float, split: float, kick: np.ndarray | float = 0.0
 ) -> Recording:
     """A run stopped at `split` (s) and continued from the state there.
 

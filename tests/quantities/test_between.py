@@ -13,17 +13,7 @@ from eventpound.motion import Cosine, Record
 from eventpound.quantities import between, rows
 from eventpound.quantities.between import SETTLED
 from eventpound.quantities.rows import AGREEMENT
-from eventpound.scene import (
-    BARRIER,
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    Dashpot,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.scene.contact_law import Element
 from tests.solvers.scenes import pounding_pair, with_springs
 
@@ -129,10 +119,7 @@ def test_free_vibration_in_closed_form():
     # u = 0.1 cos(w t), w = 3 rad/s beside a body that swings back with 5 rad/s.
     scene = Scene(
         (Body("a", 2.0, 0.1), Body("b", 1.0, -0.2)),
-        (
-            Spring("a", (GROUND, "a"), Linear(2.0 * 9.0)),
-            Spring("b", (GROUND, "b"), Linear(25.0)),
-        ),
+        (Spring("a", (GROUND, "a"), Linear(2.0 * 9.0)), Spring("b", (GROUND, "b"), Linear(25.0))),
         contacts=(Contact("far", "a", "b", 1.0, 0.5),),
     )
     response = simulate(scene, rtol=1e-11, duration=4.0)

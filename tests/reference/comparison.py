@@ -95,8 +95,7 @@ def compare(problem: Problem, response: Response, accuracy: float) -> Comparison
 
     x = run.displacement
     judge(
-        "extremes",
-        max(np.abs(x.maximum - u_max).max(), np.abs(x.minimum - u_min).max()) / length,
+        "extremes", max(np.abs(x.maximum - u_max).max(), np.abs(x.minimum - u_min).max()) / length
     )
     times = np.concatenate(
         (

@@ -96,13 +96,7 @@ def _problem(case: dict[str, Any], result: dict[str, Any], records: dict[str, An
         )
         for i, c in enumerate(case["contacts"])
     )
-    scene = Scene(
-        bodies,
-        tuple(springs),
-        dashpots,
-        contacts,
-        _motion(case["excitation"], records),
-    )
+    scene = Scene(bodies, tuple(springs), dashpots, contacts, _motion(case["excitation"], records))
     end = case["t_end"]
     if case.get("t_end_exact"):
         factor, _, _ = case["t_end_exact"].partition("*")

@@ -1,12 +1,7 @@
 """Laws of springs drawn beside a model."""
 
 from eventpound.report.law_panel import laws_shown
-from eventpound.scene import (
-    GROUND,
-    BoucWen,
-    Linear,
-    Spring,
-)
+from eventpound.scene import GROUND, BoucWen, Linear, Spring
 
 
 def test_laws_of_many_springs_are_one_of_each_kind():

@@ -5,17 +5,7 @@ import pytest
 
 from eventpound.report.model_layout import HIGH, LEVEL, layout_of
 from eventpound.report.model_links import links_drawn
-from eventpound.scene import (
-    BARRIER,
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    Dashpot,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from tests.report.test_model_figure import assert_nothing_is_in_the_way, places, storeys
 
 

@@ -3,15 +3,7 @@
 from eventpound import modal_damping
 from eventpound.report.model_layout import layout_of
 from eventpound.report.model_links import links_drawn
-from eventpound.scene import (
-    GROUND,
-    Body,
-    Contact,
-    Dashpot,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
 from tests.report.test_model_figure import assert_nothing_is_in_the_way, everything, storeys
 
 

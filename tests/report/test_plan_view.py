@@ -24,10 +24,7 @@ def bridge():
         for d, at in zip(bare, places, strict=True)
     ]
     known = {deck.name: deck for deck in decks}
-    joints = (
-        Joint("west", (BARRIER, "A"), "6 cm", 0.5),
-        Joint("middle", ("A", "B"), "4 cm", 0.5),
-    )
+    joints = (Joint("west", (BARRIER, "A"), "6 cm", 0.5), Joint("middle", ("A", "B"), "4 cm", 0.5))
     contacts = [contact for joint in joints for contact in joint.contacts(known)]
     return Scene([b for d in decks for b in d.bodies()], contacts=contacts, decks=decks)
 

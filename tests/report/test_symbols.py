@@ -3,13 +3,7 @@
 import numpy as np
 import pytest
 
-from eventpound.motion import (
-    AntisymmetricRicker,
-    Harmonic,
-    MavroeidisPapageorgiou,
-    Record,
-    TypeC,
-)
+from eventpound.motion import AntisymmetricRicker, Harmonic, MavroeidisPapageorgiou, Record, TypeC
 from eventpound.motion.base import GroundMotion
 from eventpound.report.symbols import axis_label, display_unit, symbol, value_label
 from eventpound.results.trade import Unit

@@ -10,11 +10,7 @@ from eventpound import load_case
 from eventpound.accuracy.compare import entries, judge_entries
 from eventpound.accuracy.comparison_tables import run_table
 from eventpound.accuracy.reference import StatedBounds
-from eventpound.report.work_precision import (
-    graph_measure,
-    peak_measure,
-    work_precision_figure,
-)
+from eventpound.report.work_precision import graph_measure, peak_measure, work_precision_figure
 from tests.models import CASES
 
 

@@ -35,10 +35,7 @@ def read(data: bytes) -> dict[str, list[list[str | float | None]]]:
 def test_numbers_and_texts_come_back():
     data = workbook(SHEETS)
     first, second = read(data).items()
-    assert first == (
-        "Piers  a b",
-        [["pier", "force (kN)"], ["A & <B>", 12.34567890123457], ["C"]],
-    )
+    assert first == ("Piers  a b", [["pier", "force (kN)"], ["A & <B>", 12.34567890123457], ["C"]])
     # Names that are told apart by capitals or blanks only are one in a workbook.
     assert second == ("piers  a b 2", [["a" * 40], ["_x0007_bell"]])
     assert workbook(SHEETS) == data

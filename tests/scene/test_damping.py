@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 from eventpound.scene import BilinearElastic, Body, BoucWen, Linear, Series, Spring
-from eventpound.scene.damping import (
-    ratio_coefficient,
-    rayleigh_coefficients,
-    rayleigh_dashpots,
-)
+from eventpound.scene.damping import ratio_coefficient, rayleigh_coefficients, rayleigh_dashpots
 
 EPS = np.finfo(float).eps
 

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from eventpound.scene import (
-    BoucWen,
-)
+from eventpound.scene import BoucWen
 from eventpound.scene.loaded_straight import Loops
 
 

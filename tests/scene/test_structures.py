@@ -2,16 +2,7 @@
 
 import pytest
 
-from eventpound.scene import (
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    Dashpot,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.scene.structures import isolated, mass_on, structure_names, structures_of
 from tests.scene.test_modes import FLOORS, ISOLATORS, building, isolated_building
 

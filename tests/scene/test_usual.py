@@ -74,9 +74,7 @@ CASE: dict[str, Any] = {
             "stiffness": 1e6,
         },
     ],
-    "dashpot": [
-        {"between": ["ground", "deck"], "ratio": 0.05, "refers_to": 6.0},
-    ],
+    "dashpot": [{"between": ["ground", "deck"], "ratio": 0.05, "refers_to": 6.0}],
     "contact": [
         {
             "between": ["deck", "other"],
@@ -139,11 +137,7 @@ def test_no_number_is_accepted_without_a_word(path, times):
 @pytest.mark.parametrize(
     ("path", "value", "said"),
     [
-        (
-            ("spring", 5, "friction"),
-            6.0,
-            "'bearing': friction = 6; usual is from 0.001 to 1.5",
-        ),
+        (("spring", 5, "friction"), 6.0, "'bearing': friction = 6; usual is from 0.001 to 1.5"),
         (("spring", 4, "wall_width"), 1e4, "wall_width = 1e+04 m; usual is from 1 to 100 m"),
         (("spring", 0, "strength_degradation"), 500.0, "strength_degradation = 500; usual is"),
         (("dashpot", 0, "ratio"), 5e-4, "[[dashpot]] 1: ratio = 0.0005; usual is from 0.001"),

@@ -28,10 +28,7 @@ def corner_contacts(
 
 
 def block(
-    friction: float,
-    slope: float = 0.0,
-    speed: float = 0.0,
-    motion: GroundMotion | None = None,
+    friction: float, slope: float = 0.0, speed: float = 0.0, motion: GroundMotion | None = None
 ) -> Scene:
     """A block of 4 m x 2 m at rest on a plane, which is down to the right by an angle (rad)."""
     deck = Deck("B", MASS, 4.0, 2.0)

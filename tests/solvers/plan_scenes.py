@@ -26,13 +26,7 @@ def random_plan(seed: int) -> tuple[Scene, list[Joint], float]:
     restitution = float(rng.choice([0.0, 0.5, 0.7, 1.0]))
     gaps = rng.uniform(0.005, 0.03, count + 1)
     bare = [
-        Deck(
-            f"D{i}",
-            rng.uniform(3e5, 2e6),
-            rng.uniform(20.0, 60.0),
-            rng.uniform(8.0, 16.0),
-            skew,
-        )
+        Deck(f"D{i}", rng.uniform(3e5, 2e6), rng.uniform(20.0, 60.0), rng.uniform(8.0, 16.0), skew)
         for i in range(count)
     ]
     places = place_in_a_row(bare, [float(gap) for gap in gaps[1:-1]])

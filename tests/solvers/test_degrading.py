@@ -15,16 +15,7 @@ from eventpound.case import read_case
 from eventpound.errors import InputError
 from eventpound.motion import MavroeidisPapageorgiou, NoMotion
 from eventpound.response import Response
-from eventpound.scene import (
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    DegradingBoucWen,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import GROUND, Body, BoucWen, Contact, DegradingBoucWen, Linear, Scene, Spring
 from tests.solvers.random_scenes import random_scene
 
 PLAIN = BoucWen("2 MN/m", "500 kN", "1 cm", exponent=2.0)

@@ -9,17 +9,7 @@ import pytest
 from eventpound.mechanics.model import assemble
 from eventpound.motion.pulses import Cosine, Sine
 from eventpound.motion.ricker import Ricker
-from eventpound.scene import (
-    BARRIER,
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    Dashpot,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.fast.constants import links_of

@@ -11,16 +11,7 @@ from eventpound.mechanics.model import assemble
 from eventpound.motion.harmonic import Harmonic
 from eventpound.motion.pulses import Sine
 from eventpound.motion.record import Record
-from eventpound.scene import (
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    Dashpot,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.simulation import response_of
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import (

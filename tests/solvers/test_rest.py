@@ -102,10 +102,7 @@ def test_a_gap_opened_by_its_third_derivative(solver, omega):
     scene = Scene(
         (Body("a", 1.0, start, -v), Body("b", 1.0, start, -v)),
         (Spring("s", (GROUND, "b"), Linear(omega**2)),),
-        contacts=(
-            Contact("wall", BARRIER, "a", wall, eps),
-            Contact("joint", "a", "b", 0.0, 1.0),
-        ),
+        contacts=(Contact("wall", BARRIER, "a", wall, eps), Contact("joint", "a", "b", 0.0, 1.0)),
     )
     at_wall = wall / ride
 

@@ -28,12 +28,7 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import solver as fast
-from eventpound.solvers.fast.constants import (
-    blank_located,
-    blank_series,
-    clear_scratch,
-    plan_of,
-)
+from eventpound.solvers.fast.constants import blank_located, blank_series, clear_scratch, plan_of
 from eventpound.solvers.fast.evaluate import blank_fast_observed
 
 END, STEP = 9.0, 0.02

@@ -621,10 +621,7 @@ def test_supports_close_in_only_where_they_approach(solver, reverse):
     scene = Scene(
         (Body("a", 1.0), Body("b", 1.0, 0.1)),
         (Spring("swing", (GROUND, "b"), Linear(400.0)),),
-        contacts=(
-            Contact("left", BARRIER, "a", 0.0, 0.5),
-            Contact("right", "a", "pier", 0.0, 0.5),
-        ),
+        contacts=(Contact("left", BARRIER, "a", 0.0, 0.5), Contact("right", "a", "pier", 0.0, 0.5)),
         motion=NoMotion(),
         supports=(Support("pier", motion=Sine(1.0, 1.0, reverse=reverse, start=0.5)),),
     )

@@ -8,17 +8,7 @@ import pytest
 
 from eventpound import simulate_many
 from eventpound.motion.record import Record
-from eventpound.scene import (
-    BARRIER,
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    Dashpot,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
 

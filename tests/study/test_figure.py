@@ -96,10 +96,7 @@ def test_a_map_has_the_values_of_the_table(drawn):
 @pytest.mark.parametrize(
     ("extra", "said"),
     [
-        (
-            'curves = "pi.delta"\ngrey = "free.pi_um"\n',
-            "found 'map'; accepted: a figure with",
-        ),
+        ('curves = "pi.delta"\ngrey = "free.pi_um"\n', "found 'map'; accepted: a figure with"),
         ("", "kind: found 'map'; accepted: a figure with curves"),
         (
             'curves = "excitation.reverse"\n',
@@ -191,10 +188,7 @@ curves = "excitation.amplitude"
     figures, _ = drawn(text)
     (legend,) = figures["study.png"].legends
     labels = [entry.get_text() for entry in legend.get_texts()]
-    assert labels == [
-        "$a_g$ = 0.102 g, $T_g$ = 0.5 s",
-        "$a_g$ = 0.2039 g, $T_g$ = 0.8 s",
-    ]
+    assert labels == ["$a_g$ = 0.102 g, $T_g$ = 0.5 s", "$a_g$ = 0.2039 g, $T_g$ = 0.8 s"]
 
 
 def test_what_all_runs_have_in_common_is_stated(drawn):

@@ -145,11 +145,7 @@ SCENES: dict[str, tuple[Scene, float | None, dict[str, Floats]]] = {
         {"spring.stop.compression": np.where(np.arange(40) % 4 == 1, 2.0, RNG.uniform(0.0, 5, 40))},
     ),
     "center": (pounding_pair(), 5.0, spread(excitation__center=(0.5, 2.0))),
-    "record": (
-        replace(P1.scene, motion=SHAKEN),
-        8.0,
-        spread(excitation__scale=(0.3, 3.0)),
-    ),
+    "record": (replace(P1.scene, motion=SHAKEN), 8.0, spread(excitation__scale=(0.3, 3.0))),
     "record, default duration": (
         replace(P1.scene, motion=SHAKEN),
         None,

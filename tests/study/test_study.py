@@ -10,17 +10,7 @@ from eventpound import Study, load_case, prepare, simulate
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Cosine, Record
-from eventpound.scene import (
-    BARRIER,
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    Linear,
-    Scene,
-    Spring,
-    Support,
-)
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Scene, Spring, Support
 from eventpound.scene.parameters import number_places, with_values
 from eventpound.study.table import read_table
 from tests.motion.readers.writers import at2, motion
@@ -172,11 +162,7 @@ def test_a_failed_run_is_a_row(scene):
         ({"contact.joint.gap": [-1.0]}, {}, ["-1.0", "not penetrated"]),
         ({"contact.joint.gap": [0.1]}, {"quantities": ["peakz"]}, ["peakz"]),
         ({"contact.joint.gap": [0.1]}, {"solver": "slow"}, ["slow", "cvode"]),
-        (
-            {"contact.joint.gap": [0.1]},
-            {"rtol": 1.0},
-            ["rtol: found 1.0; accepted: a number"],
-        ),
+        ({"contact.joint.gap": [0.1]}, {"rtol": 1.0}, ["rtol: found 1.0; accepted: a number"]),
         ({"contact.joint.gap": [0.1]}, {"duration": "-1 s"}, ["duration", "-1 s"]),
         ({"contact.joint.gap": [0.1]}, {"records": "nowhere/*"}, ["nowhere", "no file"]),
         ({"contact.joint.gap": [0.1]}, {"together": [["x"]]}, ["'x' is no axis"]),

@@ -7,12 +7,7 @@ import pandas as pd
 import pytest
 from scipy.stats import spearmanr
 
-from eventpound.study.suite_statistics import (
-    groups_of,
-    intensity_table,
-    order_of,
-    rank_correlation,
-)
+from eventpound.study.suite_statistics import groups_of, intensity_table, order_of, rank_correlation
 
 
 def test_rank_correlation_is_spearmans():

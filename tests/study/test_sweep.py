@@ -9,15 +9,7 @@ from eventpound import load_case, simulate, simulate_many
 from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import InputError
 from eventpound.motion import Sine
-from eventpound.scene import (
-    GROUND,
-    Body,
-    Contact,
-    Linear,
-    Scene,
-    Spring,
-    Support,
-)
+from eventpound.scene import GROUND, Body, Contact, Linear, Scene, Spring, Support
 from eventpound.study import sweep
 from eventpound.study.axes import given_axes
 from eventpound.study.plan import base_of

@@ -87,13 +87,7 @@ def named_groups(match: re.Match[str], line: int) -> dict[str, tuple[str, int]]:
     return {name.replace("_", " "): (text.strip(), line) for name, text in found if text}
 
 
-_UNITS = {
-    "g": STANDARD_GRAVITY,
-    "m/s2": 1.0,
-    "cm/s2": 0.01,
-    "gal": 0.01,
-    "mm/s2": 0.001,
-}
+_UNITS = {"g": STANDARD_GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "gal": 0.01, "mm/s2": 0.001}
 _ACCEPTED = ", ".join(_UNITS)
 _FACTOR_AND_UNIT = re.compile(rf"\s*({NUMBER}(?=\s))?\s*([a-zA-Z].*)")
 

@@ -11,12 +11,7 @@ from eventpound.motion.readers.base import Given, Source
 from eventpound.motion.readers.block import StatedCount, numbers_of_block
 from eventpound.motion.readers.header import Extent, Header, named_groups, word_pattern
 from eventpound.motion.readers.labelled import Dialect, Labelled, Trace, refuse_other_times
-from eventpound.motion.readers.numbers import (
-    NUMBER,
-    numbers_of_line,
-    split_token,
-    to_float,
-)
+from eventpound.motion.readers.numbers import NUMBER, numbers_of_line, split_token, to_float
 from eventpound.motion.readers.rows import SEPARATOR
 from eventpound.motion.readers.titles import LARGEST_STEP, count_in, stated_before, step_in
 

@@ -352,11 +352,7 @@ class Dialect:
 
 
 def refuse_other_times(
-    source: Source,
-    times: list[str],
-    lines: list[int],
-    time_step: float | None,
-    line: int | None,
+    source: Source, times: list[str], lines: list[int], time_step: float | None, line: int | None
 ) -> None:
     """Stop where times beside the samples are not those of the step that a line states (s)."""
     step = even_step(source, times, lines, time_step)

@@ -13,11 +13,7 @@ import numpy as np
 
 from eventpound.contact.cascade import LONGEST_CASCADE, is_fleeting
 from eventpound.contact.event_rows import end_cascade, events_wanted
-from eventpound.contact.friction import (
-    begin_beside_friction,
-    decide_friction,
-    settle_with_friction,
-)
+from eventpound.contact.friction import begin_beside_friction, decide_friction, settle_with_friction
 from eventpound.contact.impacts import DONE, FULL
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import lacks_branch, pass_kinks
@@ -125,12 +121,7 @@ def short_step(arrays: Run, mode: Dynamics, piece: CurrentPiece) -> int:
 
 @kernel
 def proceed(
-    wanted: int,
-    most: int,
-    arrays: Run,
-    mode: Dynamics,
-    piece: CurrentPiece,
-    dense: Dense,
+    wanted: int, most: int, arrays: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense
 ) -> int:
     """Do what is wanted, of SETTLE to LAST, at the present instant.
 

@@ -19,12 +19,7 @@ import numpy as np
 
 from eventpound.contact.kinks import passes_kink
 from eventpound.contact.modes import force_vanishes
-from eventpound.mechanics.monitored import (
-    Running,
-    motion_of,
-    update_extreme,
-    update_turning_point,
-)
+from eventpound.mechanics.monitored import Running, motion_of, update_extreme, update_turning_point
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools
 from eventpound.numerics.compiled import kernel, scalar_kernel

@@ -155,8 +155,7 @@ class Segment:
                 )
             if done.verdict == NOT_FINITE:
                 raise ComputationError(
-                    "the state is not a number any more; try a smaller rtol",
-                    self.origin + self.end,
+                    "the state is not a number any more; try a smaller rtol", self.origin + self.end
                 )
             if done.verdict != BEYOND_BOUND:
                 self._excess = done.excess
@@ -169,8 +168,7 @@ class Segment:
             y = self._examined.y[first]
             integrator.start(self._start._replace(y=y, tau=tau))
         raise ComputationError(
-            f"z exceeds its bound by {done.excess:.3g}; try a smaller rtol",
-            self.origin + self.end,
+            f"z exceeds its bound by {done.excess:.3g}; try a smaller rtol", self.origin + self.end
         )
 
 
@@ -190,12 +188,7 @@ class EventLoop:
     """
 
     def __init__(
-        self,
-        task: Task,
-        integrator: Integrator,
-        *,
-        moving: bool = True,
-        finds_events: bool = False,
+        self, task: Task, integrator: Integrator, *, moving: bool = True, finds_events: bool = False
     ) -> None:
         self.integrator = integrator
         run = self.event_run = EventRun(task)

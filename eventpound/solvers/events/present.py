@@ -5,12 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.kinks import pass_kinks
-from eventpound.mechanics.monitored import (
-    copy_extremes,
-    update_extremes,
-    update_settled,
-    value_of,
-)
+from eventpound.mechanics.monitored import copy_extremes, update_extremes, update_settled, value_of
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,

@@ -81,10 +81,7 @@ def attached(model: Model) -> Attached:
     if model.plain < model.links:
         law = LinkLaw(*(column[: model.plain] for column in law))
     return Attached(
-        model.link_ends[: model.plain],
-        law,
-        *model.elastic.first(model.plain),
-        model.weights,
+        model.link_ends[: model.plain], law, *model.elastic.first(model.plain), model.weights
     )
 
 

@@ -207,8 +207,7 @@ def contact_error(
     pull = -float(in_python(margin_at_rest)(j, watched, observed.contact_force)[0])
     if watched.presses[j] >= 0:
         return ComputationError(
-            f"{name!r} sticks with {pull:.3g} N more than friction can; try a smaller rtol",
-            t,
+            f"{name!r} sticks with {pull:.3g} N more than friction can; try a smaller rtol", t
         )
     if watched.force_low[j] < 0.0 or watched.force_high[j] < np.inf:
         return ComputationError(

@@ -16,10 +16,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration, ground_onset, next_corner
 from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.by_address import by_address
-from eventpound.solvers.fast.compiled import (
-    compiled_deferred,
-    compiled_noinline,
-)
+from eventpound.solvers.fast.compiled import compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.extremes import distance_now, take_instant
 from eventpound.solvers.fast.followed import follows, put_on_branches

@@ -201,11 +201,7 @@ def _scale_numbers(length: float, time: float) -> tuple[float, ...]:
 
 
 def _body_tolerances(
-    task: Task,
-    model: Model,
-    numbers: dict[str, Floats],
-    scales: _ScaleColumns,
-    shaken: Bools,
+    task: Task, model: Model, numbers: dict[str, Floats], scales: _ScaleColumns, shaken: Bools
 ) -> tuple[Floats, Floats]:
     """Absolute tolerances of displacement (m) and velocity (m/s), shape (n, N) each."""
     links = Attached(

@@ -153,10 +153,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_ane
         mass=model.mass,
         links=links,
         hysteresis=hysteresis,
-        contacts=keep(
-            ("contacts",),
-            lambda: contacts_of(model, model.gap, model.restitution),
-        ),
+        contacts=keep(("contacts",), lambda: contacts_of(model, model.gap, model.restitution)),
         # These two are equal where all their numbers are the same, which cannot change.
         ground=keep(("ground", motion), ground)
         if isinstance(motion, Parametric | Record)

@@ -22,12 +22,7 @@ from eventpound.motion.forcing import GAUSSIAN_STEP, CurrentPiece, ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
-from eventpound.solvers.fast.followed import (
-    begin_followed,
-    follow,
-    follows,
-    last_of_followed,
-)
+from eventpound.solvers.fast.followed import begin_followed, follow, follows, last_of_followed
 from eventpound.solvers.fast.links import (
     CORE,
     DOWN,

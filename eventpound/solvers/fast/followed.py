@@ -24,11 +24,7 @@ from eventpound.mechanics.elements import (
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
-from eventpound.solvers.fast.compiled import (
-    compiled,
-    compiled_deferred,
-    compiled_noinline,
-)
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.links import add_pull, elongation
 from eventpound.solvers.fast.run import LOCAL_SHARE, FastRun
 from eventpound.solvers.fast.search import distance_coefficient, motion

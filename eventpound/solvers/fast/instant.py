@@ -9,19 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import last_speed
-from eventpound.contact.friction import (
-    begin_beside_friction,
-    decide_friction,
-    settle_with_friction,
-)
+from eventpound.contact.friction import begin_beside_friction, decide_friction, settle_with_friction
 from eventpound.contact.impacts import DONE, put_as_one
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.rubbing import Rubs
-from eventpound.contact.sliders import (
-    begin_beside_sliders,
-    decide_sticks,
-)
+from eventpound.contact.sliders import begin_beside_sliders, decide_sticks
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import Clusters, ContactEnds, form_clusters
 from eventpound.mechanics.oblique import are_tied, slips_of, with_slips
@@ -29,11 +22,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel
-from eventpound.solvers.fast.compiled import (
-    compiled,
-    compiled_deferred,
-    compiled_noinline,
-)
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.followed import find_branches, follows, put_on_branches
 from eventpound.solvers.fast.links import (
     all_variables,

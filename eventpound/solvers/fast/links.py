@@ -22,11 +22,7 @@ from eventpound.mechanics.backbone import Hysteresis, backbone, backbone_inverse
 from eventpound.mechanics.elements import memory_stiffness, pull_per_z
 from eventpound.mechanics.observables import difference, gap_rounding
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.fast.compiled import (
-    compiled,
-    compiled_deferred,
-    compiled_noinline,
-)
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.run import Contacts, FastObserved, FastPlan, FastRun, FastState, Links
 
 

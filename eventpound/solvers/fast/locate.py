@@ -46,13 +46,7 @@ from eventpound.solvers.fast.sliding import (
     holds_stick,
     set_margin,
 )
-from eventpound.tolerances import (
-    GAP_COEFFICIENT,
-    LENGTH,
-    NO_Z,
-    OF_BACKBONE,
-    SAME_INSTANT,
-)
+from eventpound.tolerances import GAP_COEFFICIENT, LENGTH, NO_Z, OF_BACKBONE, SAME_INSTANT
 
 
 @compiled

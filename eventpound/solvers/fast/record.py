@@ -18,24 +18,13 @@ from eventpound.mechanics.followers import is_support, own_mass
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.monitored import copy_extremes
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
-from eventpound.motion.loads import (
-    LOADED,
-    body_of,
-    is_driven,
-    load_value,
-    rows_of,
-)
+from eventpound.motion.loads import LOADED, body_of, is_driven, load_value, rows_of
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.recorder import put_line
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.evaluate import observe_at_noinline
 from eventpound.solvers.fast.run import FastProgress, FastRun
-from eventpound.solvers.fast.sliding import (
-    add_friction,
-    any_rubbing,
-    any_slider,
-    observe_slider_z,
-)
+from eventpound.solvers.fast.sliding import add_friction, any_rubbing, any_slider, observe_slider_z
 
 
 @compiled

@@ -50,12 +50,7 @@ class AnalysisRows:
 
 
 def analyse(
-    ops: Any,
-    task: Task,
-    model: Model,
-    elements: list[ZeroLength],
-    steps: int,
-    length: float,
+    ops: Any, task: Task, model: Model, elements: list[ZeroLength], steps: int, length: float
 ) -> AnalysisRows:
     """Build the model and carry it from start to end.
 

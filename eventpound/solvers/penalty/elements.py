@@ -82,11 +82,7 @@ def elements_of(scene: Scene, stiffness: float) -> PenaltyElements:
 
 @step_kernel
 def element_force(
-    j: int,
-    elements: PenaltyElements,
-    penetration: float,
-    rate: float,
-    open_before: float,
+    j: int, elements: PenaltyElements, penetration: float, rate: float, open_before: float
 ) -> tuple[float, float, float]:
     """Force of an element and its slopes.
 

@@ -6,10 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.descriptor_motion import (
-    DescriptorProblem,
-    jacobian,
-)
+from eventpound.mechanics.descriptor_motion import DescriptorProblem, jacobian
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at

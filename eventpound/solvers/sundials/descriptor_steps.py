@@ -23,13 +23,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.run import Dynamics
-from eventpound.solvers.events.step_check import (
-    CLEAR,
-    MARKED,
-    Examination,
-    examine,
-    rate_at,
-)
+from eventpound.solvers.events.step_check import CLEAR, MARKED, Examination, examine, rate_at
 from eventpound.solvers.sundials.memory import Tolerances
 from eventpound.tolerances import FIRST_STEP, FIRST_TRIAL
 

@@ -157,13 +157,7 @@ class _Memory:
 
 
 def _free(
-    common: Any,
-    free: Any,
-    memory: int,
-    vectors: list[int],
-    matrix: int,
-    solver: int,
-    context: Any,
+    common: Any, free: Any, memory: int, vectors: list[int], matrix: int, solver: int, context: Any
 ) -> None:
     free(ctypes.byref(ctypes.c_void_p(memory)))
     for vector in vectors:

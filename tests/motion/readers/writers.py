@@ -129,10 +129,7 @@ def csmip_v2(a: Floats, dt: float) -> Written:
             " 1 2 3",
         ]
         text = "\n".join(head) + "\n"
-        for what, series, unit in (
-            ("ACCEL", values, "CM/SEC/SEC"),
-            ("VELOC", integral, "CM/SEC"),
-        ):
+        for what, series, unit in (("ACCEL", values, "CM/SEC/SEC"), ("VELOC", integral, "CM/SEC")):
             text += f"{series.size:5d} POINTS OF {what} DATA EQUALLY SPACED AT {dt:5.3f} SEC.  "
             text += f"(UNITS: {unit})\n" + rows((100.0 * series).tolist(), 8, "10.3f")
         return text + f"/&  ----------  END OF DATA FOR CHANNEL {channel:2d}  ----------\n"

@@ -53,10 +53,7 @@ def expected(word: str, restitution: float, mass: float) -> Impact:
 @pytest.mark.parametrize("word", list(BY_WORD))
 def test_against_quadrature(word, restitution, barrier):
     mass = 2.0 if barrier else 1.2
-    found, true = (
-        run_of(word, restitution, barrier=barrier),
-        expected(word, restitution, mass),
-    )
+    found, true = (run_of(word, restitution, barrier=barrier), expected(word, restitution, mass))
     (event,) = found.events
     e = -event.gap_velocity_after / event.gap_velocity_before
     assert event.t == pytest.approx(GAP / SPEED, rel=1e-12)

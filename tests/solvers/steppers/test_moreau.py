@@ -11,17 +11,7 @@ from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.model import assemble
 from eventpound.motion.pulses import Sine
 from eventpound.motion.record import Record
-from eventpound.scene import (
-    BARRIER,
-    GROUND,
-    Body,
-    BoucWen,
-    Contact,
-    Dashpot,
-    Linear,
-    Scene,
-    Spring,
-)
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales

@@ -50,10 +50,7 @@ def test_refused(solver, settings, message):
 
 @pytest.mark.parametrize(
     ("motion", "shortest"),
-    [
-        (Sine(1.0, 0.5), 0.5),
-        (Sine(1.0, 9.0), 2.0 * math.pi / 3.0),
-    ],
+    [(Sine(1.0, 0.5), 0.5), (Sine(1.0, 9.0), 2.0 * math.pi / 3.0)],
     ids=["pulse", "structure"],
 )
 def test_default_step_is_a_hundredth_of_the_shortest_period(motion, shortest):

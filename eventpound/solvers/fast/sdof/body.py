@@ -45,14 +45,7 @@ from eventpound.solvers.fast.run import (
     Oscillator,
     Sdof,
 )
-from eventpound.tolerances import (
-    ACCELERATION,
-    FLAT_WITHIN,
-    FORCE,
-    LEAST_PLAY,
-    OWN_GAP,
-    PENETRATED,
-)
+from eventpound.tolerances import ACCELERATION, FLAT_WITHIN, FORCE, LEAST_PLAY, OWN_GAP, PENETRATED
 
 ROOM = 48
 """Coefficients there is room for in a series."""

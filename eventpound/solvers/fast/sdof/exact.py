@@ -68,11 +68,7 @@ from eventpound.solvers.fast.sdof.body import (
     steepest,
     tangent,
 )
-from eventpound.solvers.fast.sdof.record import (
-    force_exceeds,
-    sample_sdof,
-    take_contact_forces,
-)
+from eventpound.solvers.fast.sdof.record import force_exceeds, sample_sdof, take_contact_forces
 from eventpound.solvers.fast.sdof.series import linear_series, swing
 from eventpound.solvers.fast.sdof.step import FREE, TURNED, arrive, closed_at, equations_hold
 from eventpound.solvers.fast.search import release_time

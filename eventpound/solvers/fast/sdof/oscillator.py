@@ -34,11 +34,7 @@ from eventpound.motion.forcing import (
 )
 from eventpound.numerics.by_address import by_address, whole
 from eventpound.numerics.compiled.recipe import SMALL
-from eventpound.solvers.fast.compiled import (
-    compiled,
-    compiled_deferred,
-    compiled_noinline,
-)
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.links import turns_back
 from eventpound.solvers.fast.record import has_room_for
 from eventpound.solvers.fast.run import (

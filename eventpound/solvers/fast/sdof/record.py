@@ -9,11 +9,7 @@ looked at within each step.
 from __future__ import annotations
 
 from eventpound.mechanics.elements import pull_per_z
-from eventpound.mechanics.monitored import (
-    update_extreme,
-    update_settled,
-    update_turning_point,
-)
+from eventpound.mechanics.monitored import update_extreme, update_settled, update_turning_point
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
 from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
