@@ -151,7 +151,7 @@ def test_commands_stand_by_their_tasks(capsys):
     assert [out.index(task) for task in tasks] == sorted(out.index(task) for task in tasks)
     assert out.index("many runs:") < out.index("\n  study ") < out.index("records and motions:")
     # Every command stands there once, with its line of help; those of two words below their first.
-    names = cli._parser()._subparsers._group_actions[0].choices  # type: ignore[union-attr]
+    names = cli._parser()._subparsers._group_actions[0].choices
     commands = [name for name in names if " " not in name]
     assert len(commands) == 12
     for command in commands:

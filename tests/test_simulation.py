@@ -58,7 +58,7 @@ def test_a_solver_of_ones_own_is_an_object():
 @pytest.mark.parametrize("solver", [5, object(), type("Short", (), {"name": "short"})()])
 def test_what_is_no_solver(solver):
     with pytest.raises(InputError, match=r"has no .*solve"):
-        simulate(load_case(CASE), solver)  # type: ignore[arg-type]
+        simulate(load_case(CASE), solver)
 
 
 def test_a_name_that_is_taken():

@@ -51,7 +51,6 @@ def true_error(values: Mapping[str, float], truth: Response) -> tuple[float, str
     """The largest error of peaks and final values, in parts of its scale, and of what."""
     known = truth_of(truth.task, truth.recording)
     worst = difference(known, values, (), ()).worst("")
-    assert worst is not None
     return worst.error, worst.quantity.name
 
 
@@ -103,7 +102,6 @@ class Fresh:
     def run(self, folder: Path, out: Path) -> tuple[int, float, str]:
         """Exit code, seconds and last line of ``eventpound run``."""
         assert self._process.stdin is not None
-        assert self._process.stdout is not None
         print(json.dumps([str(folder), str(out)]), file=self._process.stdin, flush=True)
         code, seconds, last = json.loads(self._process.stdout.readline())
         return code, seconds, last

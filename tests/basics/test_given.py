@@ -315,12 +315,12 @@ def record(*samples: Any, **numbers: Any) -> Record:
 IMPOSSIBLE: dict[str, Callable[[], Any]] = {
     "a mass beyond doubles": lambda: Body("a", 10**400),
     "a mass in metres": lambda: Body("a", "1301 m"),
-    "a body among springs": lambda: Scene([Body("a", 1.0)], [Body("b", 1.0)]),  # type: ignore[list-item]
+    "a body among springs": lambda: Scene([Body("a", 1.0)], [Body("b", 1.0)]),
     "a spring of one end": lambda: Spring("s", ["ground"], Linear(1.0)),
     "a spring of three ends": lambda: Spring("s", ["ground", "a", "b"], Linear(1.0)),
     "a dashpot of negative mass": lambda: Dashpot.from_ratio(("ground", "a"), 0.05, 1.0, -1.0),
     "a yield force of zero": lambda: BoucWen.from_yield(1.0, 0.0),
-    "a point of three": lambda: Point([("a", 0.5, 0.5)]),  # type: ignore[list-item]
+    "a point of three": lambda: Point([("a", 0.5, 0.5)]),
     "a record of texts": lambda: record("a", "b"),
     "a record of one sample": lambda: record(1.0),
     "a record of rows": lambda: record([1.0, 2.0], [3.0, 4.0]),
@@ -334,13 +334,13 @@ IMPOSSIBLE: dict[str, Callable[[], Any]] = {
     "a tolerance that is not finite": lambda: simulate(SCENE, rtol=float("nan")),
     "a time in newtons": lambda: simulate(SCENE, duration="3 kN"),
     "no steps": lambda: simulate(SCENE, max_steps=0),
-    "a setting of a number": lambda: simulate(SCENE, settings={5: 1}),  # type: ignore[dict-item]
+    "a setting of a number": lambda: simulate(SCENE, settings={5: 1}),
     "a setting that is a list": lambda: simulate(SCENE, settings={"method": []}),
     "a solver that there is not": lambda: simulate(SCENE, "nope"),
     "no variants": lambda: simulate_many(SCENE, {}),
     "variants of a text": lambda: simulate_many(SCENE, {"contact.joint.gap": "abc"}),
-    "variants of a number": lambda: simulate_many(SCENE, {5: [1.0]}),  # type: ignore[dict-item]
-    "variants in a table": lambda: simulate_many(SCENE, {"contact.joint.gap": [[1.0]]}),  # type: ignore[dict-item]
+    "variants of a number": lambda: simulate_many(SCENE, {5: [1.0]}),
+    "variants in a table": lambda: simulate_many(SCENE, {"contact.joint.gap": [[1.0]]}),
     "a negative number of threads": lambda: simulate_many(
         SCENE, {"contact.joint.gap": [0.01]}, workers=-1
     ),
@@ -375,7 +375,7 @@ IMPOSSIBLE: dict[str, Callable[[], Any]] = {
     "a restitution of two": lambda: eventpound.compare(PAIR, ["fast"], restitution=2.0),
     "a history that there is not": lambda: eventpound.compare(PAIR, ["fast"], against=["nope"]),
     "damping of no mode": lambda: rayleigh(SCENE.bodies, SCENE.springs, 0.05, modes=(0, 1)),
-    "damping of three modes": lambda: rayleigh(SCENE.bodies, SCENE.springs, 0.05, modes=(1, 1, 1)),  # type: ignore[arg-type]
+    "damping of three modes": lambda: rayleigh(SCENE.bodies, SCENE.springs, 0.05, modes=(1, 1, 1)),
     "damping of nothing": lambda: rayleigh([], [], 0.05, modes=(1, 1)),
     "a period of zero": lambda: rayleigh(SCENE.bodies, SCENE.springs, 0.05, periods=(0.0, 1.0)),
     "a time step of nothing": lambda: eventpound.read_record(EXAMPLE, time_step=-1.0),
@@ -412,23 +412,23 @@ def test_an_impossible_value_is_an_input_error(what):
 def test_what_a_response_is_asked_wrongly(response, tmp_path):
     for call in (
         lambda: response.quantity("nope"),
-        lambda: response.quantity(5),  # type: ignore[arg-type]
-        lambda: response.rows("all"),  # type: ignore[arg-type]
-        lambda: response.at([[1.0]]),  # type: ignore[list-item]
+        lambda: response.quantity(5),
+        lambda: response.rows("all"),
+        lambda: response.at([[1.0]]),
         lambda: response.at(np.array(["soon"])),
-        lambda: response.plot(5),  # type: ignore[arg-type]
+        lambda: response.plot(5),
         lambda: eventpound.write(response, tmp_path / "file" / "below"),
         lambda: eventpound.plot(response, tmp_path, xlim=(2.0, 1.0)),
-        lambda: eventpound.plot(response, tmp_path, xlim=(1.0,)),  # type: ignore[arg-type]
+        lambda: eventpound.plot(response, tmp_path, xlim=(1.0,)),
     ):
         (tmp_path / "file").write_text("")
         with pytest.raises(InputError):
-            call()  # type: ignore[no-untyped-call]
+            call()
 
 
 def test_a_message_says_how_a_case_is_read():
     with pytest.raises(InputError, match=r"found 'mybridge'; accepted: a Case \(load_case"):
-        simulate("mybridge")  # type: ignore[arg-type]
+        simulate("mybridge")
 
 
 def test_a_scene_put_into_a_case_is_checked_as_one_by_itself():

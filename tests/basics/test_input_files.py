@@ -30,7 +30,7 @@ def test_a_file_that_grows_while_it_is_read(tmp_path, monkeypatch):
     real = os.stat
 
     def none_yet(path: object) -> os.stat_result:
-        found = real(path)  # type: ignore[arg-type]
+        found = real(path)
         return os.stat_result((*found[:6], 0, *found[7:10]))
 
     path = tmp_path / "file"

@@ -79,7 +79,7 @@ def calls_of(problem: Problem, rtol: float, solver: str) -> list[tuple[Callable[
 
     options = {"duration": end, "output_step": end, "error_estimate": False}
     ways = (
-        lambda: simulate(scene, solver, rtol, **options),  # type: ignore[arg-type]
+        lambda: simulate(scene, solver, rtol, **options),
         prepared.run,
         with_other(gap, scene.contacts[0].gap),
         with_other(f"{strength}.{name}", getattr(law, name)),

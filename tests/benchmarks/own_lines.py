@@ -68,7 +68,6 @@ def with_own_lines(comparison: Comparison, steps: Sequence[float]) -> Comparison
 
 def _seconds_among_many(case: Case, run: Judged) -> float:
     """Processor time of one of many equal runs in one call, on one worker (s)."""
-    assert run.entry is not None
     contact = case.scene.contacts[0]
     gaps = {f"contact.{contact.name}.gap": np.full(RUNS, contact.gap)}
     best = np.inf

@@ -87,7 +87,7 @@ class _Gap:
             check()
             return float(self.value(y))
 
-        closing.terminal, closing.direction = True, -1.0  # type: ignore[attr-defined]
+        closing.terminal, closing.direction = True, -1.0
         return closing
 
     def strike(self, y: Floats) -> float:

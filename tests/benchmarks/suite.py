@@ -82,7 +82,6 @@ def main(arguments: list[str] | None = None) -> None:
 
 def report(case: Case) -> None:
     """Print the table of a suite."""
-    assert case.suite is not None
     rows = []
     for member in case.suite.members(case.directory):
         try:

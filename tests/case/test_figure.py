@@ -12,7 +12,6 @@ def test_contours_need_no_bodies(tmp_path):
         'isolator = [{ name = "sliding", yield_displacement = "0.02 cm" }]\n'
     )
     figure = load_case(tmp_path).figures[0]
-    assert figure is not None
     assert figure.kind is FigureKind.SIMILARITY_CONTOURS
     (joint,), (isolator,) = figure.joints, figure.isolators
     assert (joint.name, joint.low, joint.high) == ("in-deck", 0.006, 0.013)

@@ -63,7 +63,7 @@ def test_units_and_names_are_those_of_the_case(tmp_path):
     assert [(body.name, body.mass) for body in case.scene.bodies] == [
         (name, pytest.approx(mass)) for name, mass in zip("abc", M, strict=True)
     ]
-    assert sum(s.law.stiffness for s in case.scene.springs if s.between[0] == "ground") == (  # type: ignore[union-attr]
+    assert sum(s.law.stiffness for s in case.scene.springs if s.between[0] == "ground") == (
         pytest.approx(K.sum(), rel=1e-12)
     )
     inline = case_of(
@@ -120,7 +120,7 @@ def test_a_building_stands_on_a_slab(tmp_path):
         ("storey-A1", ("slab", "A1")),
         ("storey-A2", ("A1", "A2")),
     ]
-    assert scene.springs[0].law.normal_force == pytest.approx(190e3 * 9.80665)  # type: ignore[union-attr]
+    assert scene.springs[0].law.normal_force == pytest.approx(190e3 * 9.80665)
     # Its ratio is modal, of the modes that it has on a slab that stands still; no dashpot of it
     # is between a floor and the ground.
     assert all("ground" not in dashpot.between for dashpot in scene.dashpots)

@@ -41,7 +41,6 @@ def write(folder: Path, excitation: str) -> Path:
 def test_pattern(folder):
     text = 'suite = "records/**/*.txt"\nunits = "g"\ntime_step = 0.1\nscale = 2\nreverse = true'
     case = load_case(write(folder, text))
-    assert case.suite is not None
     assert case.solver.name == "fast"
     assert math.isnan(case.run.duration)
     members = case.suite.members(case.directory)
@@ -49,7 +48,6 @@ def test_pattern(folder):
     data = members[0].read()
     one = member_case(case, members[0], data)
     scales = one.scene.motion.scales()
-    assert scales is not None
     assert scales.a_g == pytest.approx(0.6 * 9.80665)
     # Five periods 2 pi / 6 s after the last of nine samples.
     assert one.run.duration == pytest.approx(0.8 + 5.0 * 2.0 * math.pi / 6.0)
@@ -64,14 +62,11 @@ def test_what_was_understood_is_a_case_again(folder):
     assert again.understood == first.understood
     synthetic = load_case(write(folder, "synthetic = { count = 3, first = 2 }"))
     again = read_case(synthetic.understood, folder / "case.toml")
-    assert again.suite is not None
-    assert synthetic.suite is not None
     assert again.suite.synthetic == synthetic.suite.synthetic
 
 
 def test_a_member_is_a_case_again(folder):
     case = load_case(write(folder, 'suite = "records/*"\nunits = "g"\ntime_step = "0.1 s"'))
-    assert case.suite is not None
     member = case.suite.members(case.directory)[0]
     one = member_case(case, member, member.read())
     again = read_case(one.understood, folder / "case.toml")
@@ -84,7 +79,6 @@ def test_list_with_units_and_time_steps(folder):
     lines += ["records/b.txt,g,fast,z", "records/b.txt,g,0.1,", "gone.txt,g,0.1,"]
     (folder / "list.csv").write_text("\n".join(lines))
     case = load_case(write(folder, 'suite = "list.csv"'))
-    assert case.suite is not None
     members = case.suite.members(case.directory)
     names = ["records/b.txt", "records/a.txt", "records/b.txt (2)", "records/b.txt (3)", "gone.txt"]
     assert [m.name for m in members] == names
@@ -100,13 +94,11 @@ def test_other_records_for_a_case(folder, monkeypatch):
     write(folder, "synthetic = { count = 2 }\nunits = 'g'\ntime_step = 0.1")
     monkeypatch.chdir(folder / "records")
     case = load_case(folder, "a*")
-    assert case.suite is not None
     assert [m.name for m in case.suite.members(case.directory)] == ["a.txt"]
 
 
 def test_synthetic_motions_are_those_of_the_files(folder):
     case = load_case(write(folder, "synthetic = { seed = 2, first = 4, count = 1 }"))
-    assert case.suite is not None
     (member,) = case.suite.members(case.directory)
     assert member.name == synthetic_motion(2, 4).name
     assert (member.read().acceleration == synthetic_motion(2, 4).record.acceleration).all()
@@ -137,7 +129,6 @@ def test_component_of_a_list_is_for_files_that_hold_several(folder):
     lines += ["records/two.txt,m/s2,,"]
     (folder / "list.csv").write_text("\n".join(lines))
     case = load_case(write(folder, 'suite = "list.csv"'))
-    assert case.suite is not None
     second, single, unsaid = case.suite.members(case.directory)
     assert second.read().acceleration.max() == 3.0
     assert single.read().time_step == 0.1

@@ -92,7 +92,6 @@ def test_forces(tmp_path):
     assert (weight.per_mass, constant.per_mass) == (True, False)
     assert constant.history == Constant(2000.0)
     assert pulse.history == PhasedSine(3.0, 0.4, phase=math.pi / 2.0, cycles=0.5)
-    assert isinstance(record.history, Record)
     assert np.array_equal(record.history.values, [-1.0, -3.0, 2.0])
     assert record.history.start == 0.5
     again = read_case(case.understood, tmp_path / "case.toml")

@@ -191,7 +191,6 @@ def test_a_process_of_its_own(number, tmp_path):
     )
     words = [sys.executable, "-c", BEGUN, "run", str(tmp_path)]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        assert process.stdout is not None
         assert process.stdout.readline() == b"computing\n"
         process.send_signal(number)
         _, err = process.communicate(timeout=120)

@@ -191,7 +191,7 @@ def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, c
         begun.append(words)
         if len(begun) == 3:
             os.kill(os.getpid(), number)
-        return run(*words, **options)  # type: ignore[arg-type]
+        return run(*words, **options)
 
     monkeypatch.setattr(ReadyScene, "run", third_stops)
     assert main(["run", str(tmp_path), "--solver", "cvode"]) == 130
@@ -210,7 +210,7 @@ def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, c
 
     def counted(*words: object, **options: object) -> object:
         again.append(words)
-        return run(*words, **options)  # type: ignore[arg-type]
+        return run(*words, **options)
 
     monkeypatch.setattr(ReadyScene, "run", counted)
     assert main(["run", str(tmp_path), "--solver", "cvode"]) == 0
@@ -292,7 +292,7 @@ def test_a_record_of_a_suite_that_vanishes(tmp_path, monkeypatch):
     begin = eventpound.study.suite.suite_plan
 
     def then_gone(*words: object, **options: object) -> object:
-        found = begin(*words, **options)  # type: ignore[arg-type]
+        found = begin(*words, **options)
         (tmp_path / "records" / "1.AT2").unlink()
         return found
 

@@ -46,7 +46,7 @@ def test_blocks_run(page, folder):
         exec(block, names)
     plt.close("all")
     if page.stem == "api":
-        assert names["response"].impacts > 0  # type: ignore[attr-defined]
+        assert names["response"].impacts > 0
 
 
 def test_pages_with_python_are_found():

@@ -121,7 +121,7 @@ def _call(solver: str, **options: object) -> Callable[[Path], int]:
     def do(folder: Path) -> int:
         from eventpound import load_case, simulate
 
-        simulate(load_case(folder / "case"), solver, 1e-11, **options)  # type: ignore[arg-type]
+        simulate(load_case(folder / "case"), solver, 1e-11, **options)
         return 0
 
     return do

@@ -16,8 +16,6 @@ def test_the_lines_stand_beside_the_others(monkeypatch):
     ]  # fmt: skip
     assert runs[own_lines.AMONG_MANY].errors == runs["fast"].errors
     law, own = runs["penalty"].errors, runs[own_lines.OWN_MODEL].errors
-    assert law is not None
-    assert own is not None
     assert own.distance.graph < 0.1 * law.distance.graph
     figure = work_precision.panels([found, found])
     assert [axes.get_title() for axes in figure.axes] == ["P4", "P4"]

@@ -138,7 +138,7 @@ def _print_conventions() -> None:
             except InputError:
                 continue
             for name, values in ratios.items():
-                values.append(abs(periods[name] / periods["padded"] - 1.0))  # type: ignore[index]
+                values.append(abs(periods[name] / periods["padded"] - 1.0))
     for name, values in ratios.items():
         median, most, worst = np.quantile(values, [0.5, 0.95, 1.0])
         print(

@@ -97,9 +97,7 @@ def motion(folder: Path, text: str) -> Record:
     (folder / "case.toml").write_text(CASE.format(f'file = "a.txt"\n{text}'))
     case = load_case(folder)
     again = read_case(case.understood, folder / "case.toml").scene.motion
-    assert isinstance(again, Record)
     record = case.scene.motion
-    assert isinstance(record, Record)
     # What was understood gives the same motion, without the file of the target.
     assert again.factor == record.factor
     return record
@@ -125,7 +123,6 @@ def test_suite_by_psa(folder):
     text = 'suite = "*.txt"\npsa = 3\npsa_period = 1'
     (folder / "case.toml").write_text(CASE.format(text))
     case = load_case(folder)
-    assert case.suite is not None
     assert case.size.words().startswith("every record to a PSA of 0.3059 g at 1 s")
     (member,) = case.suite.members(folder)
     record = member.options.motion(member.read())

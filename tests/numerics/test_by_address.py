@@ -60,7 +60,7 @@ def test_records_go_by_address() -> None:
 def test_layouts_are_told_apart_by_their_class() -> None:
     other = np.dtype((type("Other", (Mass,), {}), np.dtype([("x", float)])))
     groups = [with_address(Several(np.zeros(2, each), 0.5)) for each in (Mass.layout, other)]
-    kinds = {each._numba_type_ for each in groups}  # type: ignore[attr-defined]
+    kinds = {each._numba_type_ for each in groups}
     assert len(kinds) == 2
 
 

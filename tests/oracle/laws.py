@@ -113,7 +113,6 @@ class Touch:
         if not self.closed:
             return 0.0
         law, gap, constant = self.contact.law, x + self.contact.gap, self.contact.damping or 0.0
-        assert law is not None
         k, d = law.stiffness, max(-gap, 0.0)
         match law.kind:
             case "linear" | "kelvin-voigt":

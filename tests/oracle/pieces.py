@@ -62,7 +62,7 @@ def _watched(events: list[Event]) -> tuple[list[Any], list[Any]]:
         def event(t: float, y: Floats) -> float:
             return float(value(t, y))
 
-        event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
+        event.terminal, event.direction = True, -1.0
         return event
 
     return [owner for owner, _ in events], [watched(value) for _, value in events]

@@ -266,7 +266,7 @@ def plan_of(scene: Scene, joints: list[Joint]) -> Plan:
         for k, (word, unit) in enumerate((("x", 1.0), ("y", 1.0), ("turn", r_squared))):
             for spring in scene.springs:
                 if spring.between[1] == f"{name}.{word}":
-                    K[3 * i + k] += unit * spring.law.stiffness  # type: ignore[union-attr]
+                    K[3 * i + k] += unit * spring.law.stiffness
             for dashpot in scene.dashpots:
                 if dashpot.between[1] == f"{name}.{word}":
                     C[3 * i + k] += unit * dashpot.coefficient

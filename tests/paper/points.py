@@ -77,7 +77,6 @@ def of_study(name: str, study: Plan, run: int) -> Point:
     rows = rows_of_base(base, run, run + 1)
     values = UNIT | {key: float(column[0]) for key, column in rows.values.items()}
     pi = base.case.pi
-    assert pi is not None
     terms = {**pi.terms, **{k.removeprefix("pi."): v for k, v in values.items()}}
     a, omega = values["excitation.amplitude"], 2.0 * np.pi / values["excitation.period"]
     kind, reverse = _words(base.case.scene)
@@ -119,7 +118,6 @@ def bridge_row(direct: bool) -> Row:
 def of_bridge(name: str, count: int, rng: np.random.Generator) -> Iterator[Point]:
     """Displacements of figure 11 at random times, or peaks of figure 12 under random motions."""
     suite = load_case(CASES / name)
-    assert suite.suite is not None
     members = suite.suite.members(suite.directory)
     response_wanted = name != "figure-12"
     for number in [0] if response_wanted else rng.choice(len(members), count, replace=False):

@@ -148,7 +148,7 @@ def variants(
         # What is far away makes the scene larger, not its accuracy less.
         like = scales if name.startswith("far") else None
 
-        def answer(rtol: float, other: Scene = other, view=view, like=like) -> Recording:  # type: ignore[no-untyped-def]
+        def answer(rtol: float, other: Scene = other, view=view, like=like) -> Recording:
             seen = run(other, end * view.time, solver, rtol, view.time, like)
             return restored(seen, view)
 

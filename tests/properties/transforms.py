@@ -88,7 +88,7 @@ def turned(law: Law) -> Law:
     if isinstance(law, BilinearElastic):
         return BilinearElastic(law.extension, law.compression, -law.offset)
     if isinstance(law, Series):
-        return Series(tuple(turned(part) for part in law.parts))  # type: ignore[misc]
+        return Series(tuple(turned(part) for part in law.parts))
     if isinstance(law, BoucWen):
         return replace(law, initial_z=-law.initial_z)
     return law
@@ -120,7 +120,7 @@ def scaled(scene: Scene, length: float, time: float, mass: float) -> Seen:
         if isinstance(of, BilinearElastic):
             return BilinearElastic(of.compression * k, of.extension * k, of.offset * length)
         if isinstance(of, Series):
-            return Series(tuple(law(part) for part in of.parts))  # type: ignore[misc]
+            return Series(tuple(law(part) for part in of.parts))
         return replace(
             of,
             stiffness=of.stiffness * k,

@@ -52,7 +52,7 @@ class Built:
 
     def link(self, ends: tuple[str, str], law: object, drag: float) -> None:
         name = f"{ends[0]}-{ends[1]}-{len(self.springs)}"
-        self.springs.append(Spring(name, ends, law))  # type: ignore[arg-type]
+        self.springs.append(Spring(name, ends, law))
         self.dashpots.append(Dashpot(ends, drag))
 
     def contact(self, left: str | Point, right: str | Point, gap: float) -> None:

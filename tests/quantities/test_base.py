@@ -10,7 +10,6 @@ from eventpound.units import Dimension
 
 def test_units_of_pi_terms_are_products_of_mass_length_and_time():
     scales = Cosine(3.0, 2.0).scales()
-    assert scales is not None
     mass, length, time = 5.0, scales.length, 1.0 / scales.omega_g
     expected = {
         Dimension.LENGTH: length,

@@ -31,7 +31,6 @@ def pounding(request):
 
 def test_work_is_that_of_the_ledger(pounding):
     ledger = pounding.energy
-    assert ledger is not None
     stored = 0.5 * np.array([4.0 * 0.03, 6.0 * 0.02]) @ (pounding.recording.z**2 - [0.0, 0.1**2])
     frames = [pounding.quantity(f"springs.frame {x}.dissipated_energy") or 0.0 for x in "ab"]
     assert sum(frames) + stored == pytest.approx(ledger.hysteretic, rel=AGREEMENT)
@@ -64,7 +63,7 @@ def struck_pair() -> tuple[Scene, dict[str, float]]:
     def rate(_: float, y: np.ndarray) -> np.ndarray:
         return np.concatenate([y[2:], (-np.array(k) * y[:2] - np.array(c) * y[2:]) / m])
 
-    def watch(value, direction=0.0):  # type: ignore[no-untyped-def]
+    def watch(value, direction=0.0):
         value.terminal, value.direction = direction < 0.0, direction
         return value
 

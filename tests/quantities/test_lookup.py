@@ -18,7 +18,6 @@ from tests.solvers.scenes import pounding_pair
 
 def test_terms_and_scales_stand_in_the_summary(response):
     scales = response.scene.motion.scales()
-    assert scales is not None
     first, *_ = response.scene.bodies
     largest = response.summary[f"peaks.{first.name}.abs_max"]
     assert response.summary["pi_um"] == pytest.approx(largest / scales.length, rel=1e-14)
@@ -35,13 +34,11 @@ def test_summary_json_holds_every_number_of_the_list(response):
             assert stored["pi"][key] == value
             continue
         found = find(response.scene, str(name))
-        assert found is not None
         before, _, after = found.quantity.path.partition(f"<{found.quantity.owner}>")
         owner = str(name)[len(before) : len(str(name)) - len(after)]
         keys = [*before.split("."), owner, *after.split(".")]
         table: object = stored
         for key in filter(None, keys):
-            assert isinstance(table, dict)
             table = table[key]
         assert table == value
 
@@ -150,5 +147,4 @@ def test_a_named_energy_brings_the_ledger(tmp_path):
     (tmp_path / "case.toml").write_text(text + '\n[run]\nquantities = ["energy.impact"]\n')
     case = load_case(tmp_path)
     found = simulate(case).energy
-    assert found is not None
     assert found.impact == simulate(case, energy=True).energy.impact

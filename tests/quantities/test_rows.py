@@ -108,7 +108,7 @@ def test_a_jump_of_the_ground_has_two_sides():
 def test_what_there_is_no_state_of_is_refused(t, side, said):
     response = simulate(FREE, "moreau:time_step=0.01", duration=0.5)
     with pytest.raises(InputError, match=said):
-        response.at(response.events["t"][0] if side == "before" else t, side)  # type: ignore[arg-type]
+        response.at(response.events["t"][0] if side == "before" else t, side)
 
 
 def test_what_a_logger_sees_has_the_floor_spectrum():

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import Case, load_case, prepare, simulate, simulate_suite, verify, write
+from eventpound import load_case, prepare, simulate, simulate_suite, verify, write
 from eventpound.basics.told import OptionWarning
 from eventpound.cli import main
 from eventpound.errors import InputError
@@ -254,7 +254,6 @@ def test_what_is_asked_for_from_python_is_written(tmp_path):
     write(response, tmp_path / "results")
     pd.testing.assert_frame_equal(written(tmp_path), response.spring_events, check_exact=True)
     case = load_case(case_with(tmp_path, 'events = ["slip"]'))
-    assert isinstance(case, Case)
     write(simulate(case, events=(), error_estimate=False), tmp_path / "results")
     assert not (tmp_path / "results" / "spring_events.csv").exists()
 

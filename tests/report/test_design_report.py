@@ -179,7 +179,6 @@ def test_the_sources_of_numbers_stand_in_the_model(tmp_path):
     text = bridge().replace('gap = "80 mm"', 'gap = "80 mm"\nsource = "drawing B-12"', 1)
     (tmp_path / "case.toml").write_text(text)
     case = load_case(tmp_path)
-    assert case.suite is not None
     (member,) = case.suite.members(tmp_path)
     one = member_case(case, member, member.read())
     for each in (case, one, read_case(one.understood, tmp_path / "case.toml")):

@@ -17,7 +17,6 @@ def test_digits_and_amplification_share_an_axis_of_time():
     certificate = verify(scene, duration=4.0)
     parted = replace(certificate, parting=PartedRoute("a", 2.0, "wall", "impact", "nothing"))
     figure = digits_figure(parted)
-    assert figure is not None
     upper, lower = figure.axes
     assert (upper.get_ylabel(), lower.get_ylabel()) == ("digits agreed (-)", "amplification (-)")
     assert lower.get_xlabel() == "time (s)"

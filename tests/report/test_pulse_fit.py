@@ -27,9 +27,7 @@ def test_the_added_pulse_is_found_again():
     case = load_case(CASES / "figure-01")
     assert case.figures
     pulse = case.figures[0].added_pulse
-    assert pulse is not None
     scales = pulse.scales()
-    assert scales is not None
     record = synthetic_motion(1, 2).record
     t = record.time_step * np.arange(record.acceleration.size, dtype=np.float64)
     with_pulse = Record(record.acceleration + pulse.acceleration(t), record.time_step)

@@ -55,7 +55,6 @@ def test_another_scene_is_refused(buildings):
 
 def test_pi_terms(buildings):
     scales = buildings.scene.motion.scales()
-    assert scales is not None
     drawn = figures(buildings, (buildings.without_contact, "x"), pi=True)
     axes = panel(drawn["displacements.png"], "displacement")
     assert axes.get_ylabel() == "displacement ($L_e$)"

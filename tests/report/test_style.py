@@ -43,7 +43,6 @@ def test_kinds_width_and_resolution(tmp_path, buildings):
     assert {path.suffix for path in written} == {".pdf", ".svg", ".png"}
     assert (tmp_path / "loops.pdf").read_bytes().startswith(b"%PDF")
     width = re.search(r'<svg [^>]*width="([0-9.]+)pt"', (tmp_path / "loops.svg").read_text())
-    assert width is not None
     assert float(width[1]) == pytest.approx(90.0 / 25.4 * 72.0, abs=0.1)
     assert imread(tmp_path / "displacements.png").shape[1] == int(90.0 / 25.4 * 200.0)
 

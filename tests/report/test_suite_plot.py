@@ -126,13 +126,11 @@ def test_motions_are_named_by_their_file_or_length(few: Case, tmp_path: Path) ->
 
 
 def test_response_is_dimensionless_and_bodies_meet_at_impacts(few: Case) -> None:
-    assert few.suite is not None
     member = few.suite.members(few.directory)[0]
     one = member_case(few, member, member.read())
     response = simulate(one)
     figure = bridge_response_figure(View(gather(response, one)), "title")
     scales = one.scene.motion.scales()
-    assert scales is not None
     above, distance = figure.axes[0], figure.axes[1]
     left, right = (line.get_ydata() for line in above.get_lines()[1:3])
     largest = np.abs(response.recording.history.u[:, 0]).max() / scales.length

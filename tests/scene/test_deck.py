@@ -35,5 +35,5 @@ def test_normals_are_at_right_angles_to_the_edges() -> None:
 def test_the_tangent_of_an_end_is_a_quarter_turn_to_the_left() -> None:
     deck = Deck("D", 7.0, 5.0, 3.0)
     (end, _) = (c.left for c in Joint("J", ("D", BARRIER), 0.01, 0.5).contacts({"D": deck}))
-    assert end.normal == (1.0, 0.0)  # type: ignore[union-attr]
-    assert dict(end.tangent.parts) == {"D.y": 1.0, "D.turn": 2.5 / deck.radius}  # type: ignore[union-attr]
+    assert end.normal == (1.0, 0.0)
+    assert dict(end.tangent.parts) == {"D.y": 1.0, "D.turn": 2.5 / deck.radius}

@@ -56,7 +56,7 @@ C = 0.3 * MASS * np.eye(N) + 0.004 * K
 
 def test_the_frame_has_couplings_of_either_sign():
     parts = frame("T", K, [MASS] * N)
-    signs = {np.sign(spring.law.stiffness) for spring in parts.springs}  # type: ignore[union-attr]
+    signs = {np.sign(spring.law.stiffness) for spring in parts.springs}
     assert signs == {-1.0, 1.0}
     assert [body.name for body in parts.bodies] == ["T1", "T2", "T3", "T4", "T5"]
 
@@ -64,7 +64,7 @@ def test_the_frame_has_couplings_of_either_sign():
 def test_its_springs_and_dashpots_are_the_matrices():
     parts = frame("T", K, np.diag([MASS] * N), C)
     names = [body.name for body in parts.bodies]
-    of_springs = joined(names, [(s.direction, s.law.stiffness) for s in parts.springs])  # type: ignore[union-attr]
+    of_springs = joined(names, [(s.direction, s.law.stiffness) for s in parts.springs])
     assert of_springs == pytest.approx(K, rel=1e-12, abs=1e-14 * K.max())
     of_dashpots = joined(names, [(d.direction, d.coefficient) for d in parts.dashpots])
     assert of_dashpots == pytest.approx(C, rel=1e-12, abs=1e-14 * C.max())
@@ -97,7 +97,7 @@ def by_scipy(
     def closes(t: float, y: np.ndarray, shaken: bool) -> float:
         return float(GAP + W @ y[:n])
 
-    closes.terminal, closes.direction = True, -1.0  # type: ignore[attr-defined]
+    closes.terminal, closes.direction = True, -1.0
     y, t, impacts = np.zeros(2 * n), 0.0, 0
     while t < end:
         shaken = t < PERIOD
@@ -228,7 +228,7 @@ def test_a_frame_stands_on_bearings_under_a_slab():
     )
     # The slab is between: what the frame puts on it is what its links to the ground were.
     names = [body.name for body in scene.bodies]
-    links = [(s.direction, s.law.stiffness) for s in parts.springs]  # type: ignore[union-attr]
+    links = [(s.direction, s.law.stiffness) for s in parts.springs]
     whole = joined(names, links)
     assert whole[1:, 1:] == pytest.approx(K, rel=1e-12, abs=1e-14 * K.max())
     assert np.abs(whole.sum(axis=0)).max() < 1e-12 * K.max()

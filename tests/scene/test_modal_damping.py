@@ -186,7 +186,7 @@ def test_impacts_of_a_frame_with_negative_dashpots_are_those_of_scipy(solver):
     def closed(t: float, y: np.ndarray) -> float:
         return float(gap - y[3])
 
-    closed.terminal, closed.direction = True, -1  # type: ignore[attr-defined]
+    closed.terminal, closed.direction = True, -1
     t, y, impacts, shaken = 0.0, np.zeros(8), [], True
     while t < end:
         shaken = t < period

@@ -181,7 +181,7 @@ def test_what_no_spring_can_be_damped_by(damped, keys, said):
         *([Spring("apart", (GROUND, "other"), Linear(1e7))] if "apart" in damped else []),
     )
     with pytest.raises(InputError, match=said):
-        stiffness_proportional(bodies, springs, damped, 0.02, **keys)  # type: ignore[arg-type]
+        stiffness_proportional(bodies, springs, damped, 0.02, **keys)
 
 
 def test_a_mode_in_which_masses_balance_has_none_of_them():

@@ -72,7 +72,7 @@ def test_a_usual_scene_is_silent():
     ],
 )
 def test_what_is_unlikely(changes, said):
-    scene = replace(USUAL, **changes)  # type: ignore[arg-type]
+    scene = replace(USUAL, **changes)
     assert any(said in text for text in doubts(scene)), doubts(scene)
 
 

@@ -120,7 +120,7 @@ def test_what_was_understood_shows_the_point():
     assert row["effective_mass"] == pytest.approx(1.0 / (0.5 + 0.16 / 3.0 + 0.09))
     cells = [cell for table in input_tables(inputs_of(case)) for r in table.rows for cell in r]
     assert "A - (0.4 B1 + 0.6 B2)" in cells
-    assert describe_scene(case.scene)["contacts"][0]["right"] == UPPER  # type: ignore[index]
+    assert describe_scene(case.scene)["contacts"][0]["right"] == UPPER
     np.testing.assert_array_equal(arrays_of(case.scene)["W"], [[-1.0], [0.4], [0.6]])
 
 
@@ -243,8 +243,6 @@ def test_what_is_on_a_support_is_its_shear_and_work() -> None:
     assert alone.direction[:2] == ((GROUND, -0.3), (GROUND, -0.2))
     run = response_of(held, rtol=1e-10, duration=2.0, energy=True)
     h, supports = run.recording.history, run.recording.supports
-    assert supports is not None
-    assert run.recording.energy is not None
     assert abs(run.recording.energy.closure) < 1e-9
     x_rate = h.v[:, 2] - 0.5 * h.v[:, 0] - 0.2 * supports.sv[:, 0]
     np.testing.assert_allclose(supports.force[:, 0], 0.2 * (h.force[:, 3] + 0.2 * x_rate))

@@ -47,7 +47,7 @@ def approach(wall: float) -> float:
     def closes(_: float, y: np.ndarray) -> float:
         return wall - float(y[1])
 
-    closes.terminal, closes.direction = True, -1.0  # type: ignore[attr-defined]
+    closes.terminal, closes.direction = True, -1.0
     y, largest = np.zeros(4), 0.0
     for begin, end in pairwise((0.0, PULSE.period, END)):
         t = begin

@@ -225,7 +225,7 @@ def test_a_case_says_weights(tmp_path, capsys):
     case = load_case(tmp_path)
     weights = [spring.weight for spring in case.scene.springs]
     assert weights == pytest.approx([1.5 * 8e5 * 9.80665, 9e5], rel=1e-15)
-    assert [s["weight"] for s in case.understood["spring"]] == weights  # type: ignore[attr-defined]
+    assert [s["weight"] for s in case.understood["spring"]] == weights
     # The ratio holds at the periods that the structure has with P-Delta.
     found = inputs_of(case)
     assert [m["damping"] for m in found["structures"][0]["initial"]] == pytest.approx([0.05] * 2)

@@ -64,7 +64,6 @@ def test_on_a_support_that_has_moved():
         (Spring("1", ("pier", "a"), Linear(100.0)), Spring("2", (GROUND, "a"), Linear(300.0))),
         supports=(support,),
     )
-    assert support.motion is not None
     s = float(support.motion.displacement(np.array(0.0)))
     assert displacements(scene) == pytest.approx([0.25 * s], rel=1e-13)
 
@@ -88,7 +87,6 @@ def test_a_yielding_spring():
     x = found.bodies[0].displacement
     assert 10.0 * x + 5.0 * (1.0 - np.exp(-x / 0.1)) == pytest.approx(7.0, rel=1e-11)
     (spring,) = found.springs
-    assert isinstance(spring.law, BoucWen)
     assert spring.law.initial_z == pytest.approx(1.0 - np.exp(-x / 0.1), rel=1e-11)
 
 
@@ -234,7 +232,6 @@ def test_backfill_is_pushed_in_and_let_go():
     assert less.bodies[0].displacement == pytest.approx(body.displacement + 5e-3, rel=1e-12)
     gone = in_equilibrium(replace(less, forces=()))
     assert gone.bodies[0].displacement == pytest.approx(body.displacement + 8e-3, rel=1e-12)
-    assert isinstance(spring.law, Backfill)
     assert spring.law.initial_gap == pytest.approx(0.01 + depth - 8e-3, rel=1e-12)
     again = in_equilibrium(replace(gone, forces=(Force("a", -8.0),)))
     assert again.bodies[0].displacement == pytest.approx(body.displacement, rel=1e-12)
@@ -256,7 +253,6 @@ def test_a_degrading_spring_is_loaded_straight_as_far_as_it_grows_stronger():
     x = 0.1 * quad(lambda z: np.exp(2.0 * z**2), 0.0, 0.5)[0]
     assert standing.bodies[0].displacement == pytest.approx(x, rel=1e-10)
     (spring,) = standing.springs
-    assert isinstance(spring.law, DegradingBoucWen)
     assert spring.law.second_at == pytest.approx(np.expm1(0.5) / 4.0, rel=1e-10)
     assert spring.law.initial_loss == pytest.approx(0.0, abs=1e-10)
     weak = DegradingBoucWen(0.0, 5.0, 0.1, 2.0, strength_degradation=1.0)

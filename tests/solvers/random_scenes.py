@@ -310,7 +310,7 @@ def nudged(scene: Scene, rng: np.random.Generator, part: float) -> Scene:
         if isinstance(of, BilinearElastic):
             return BilinearElastic(changed(of.compression), changed(of.extension), of.offset)
         if isinstance(of, Series):
-            return Series(tuple(law(part) for part in of.parts))  # type: ignore[arg-type]
+            return Series(tuple(law(part) for part in of.parts))
         names = {f.name for f in fields(of)} & FORCES
         return replace(of, **{name: changed(getattr(of, name)) for name in sorted(names)})
 

@@ -75,7 +75,6 @@ def test_a_block_on_a_slope(
     np.testing.assert_allclose(recording.u, [exact, 0.0, 0.0], atol=1e-12)
     drives, holds = GRAVITY * math.sin(slope), GRAVITY * friction * math.cos(slope)
     way = abs(exact) if drives < holds else exact + speed**2 / (drives + holds) * (speed < 0.0)
-    assert recording.friction is not None
     np.testing.assert_allclose(recording.friction.path, way, rtol=1e-12, atol=1e-15)
     # All of the weight presses, and friction works with μ times that.
     assert recording.energy.friction == pytest.approx(MASS * holds * way, rel=1e-11, abs=1e-9)
@@ -160,7 +159,6 @@ def test_one_corner_strikes(seed: int, solver: str) -> None:
     expected, (normal, tangential) = struck_corner(deck, v, friction, restitution)
     event = recording.events[0]
     assert event.impulse == pytest.approx(normal, rel=1e-12)
-    assert recording.friction is not None
     assert recording.friction.tangential[0] == pytest.approx(abs(tangential), rel=1e-12)
     inertia = np.array([deck.mass, deck.mass, deck.inertia_about_centre])
     assert event.energy_lost == pytest.approx(0.5 * inertia @ (v**2 - expected**2), rel=1e-10)
@@ -260,8 +258,6 @@ def test_a_mirrored_scene_has_the_mirrored_motion(solver: str) -> None:
         found.append(_run(scene, 0.5, solver))
     np.testing.assert_allclose(found[1].v * [1.0, -1.0, -1.0], found[0].v, rtol=1e-11)
     one, two = (recording.friction for recording in found)
-    assert one is not None
-    assert two is not None
     np.testing.assert_allclose(two.tangential[::-1], one.tangential, rtol=1e-11)
 
 

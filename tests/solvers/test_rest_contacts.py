@@ -58,7 +58,7 @@ def _touching(
         time=1.0,
     )
     law = link_law([], nothing)
-    return Touching(at, between, undecided, pressed, np.empty(0), law, branches, forcing)  # type: ignore[arg-type]
+    return Touching(at, between, undecided, pressed, np.empty(0), law, branches, forcing)
 
 
 def _openings(contacts: Contacts, push: np.ndarray, members: np.ndarray) -> np.ndarray:

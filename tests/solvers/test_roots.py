@@ -61,7 +61,7 @@ def nothing_else_looks(monkeypatch):
     begin = Segment.__init__
 
     def watched(self: Segment, *arguments: object) -> None:
-        begin(self, *arguments)  # type: ignore[arg-type]
+        begin(self, *arguments)
         assert self.event_run.state.progress[0].finder == INTEGRATOR
         watched = self._examined.dynamics.watched
         assert not watched.open_contacts.any()
@@ -366,7 +366,6 @@ def test_a_limit_of_steps_is_kept():
     with pytest.raises(ComputationError, match="the limit of 300 steps") as caught:
         response_of(pounding_pair(), "cvode", duration=6.0, settings=SUNDIALS_ROOTS, max_steps=300)
     recording = caught.value.recording
-    assert recording is not None
     assert recording.work.steps == 300
 
 

@@ -87,7 +87,7 @@ def final_sensitivity(
     def closes(_: float, y: Array) -> float:
         return system.gap(y[:size], p)
 
-    closes.terminal, closes.direction = True, -1.0  # type: ignore[attr-defined]
+    closes.terminal, closes.direction = True, -1.0
     t, y, impacts = 0.0, np.concatenate((x, np.zeros(size * width))), 0
     while True:
         found = solve_ivp(both, (t, end), y, events=closes, **TIGHT)

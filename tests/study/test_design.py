@@ -47,7 +47,6 @@ def by_name(table: pd.DataFrame) -> pd.DataFrame:
 def test_fractiles_are_of_the_runs_of_each_record(suite):
     case = load_case(suite)
     table = by_name(design_numbers(case))
-    assert case.suite is not None
     members = [m for m in case.suite.members(case.directory) if m.name != "e.txt"]
     for name in ("avoiding_gap", "max_impulse", "seat_used"):
         values = []
@@ -146,7 +145,7 @@ def test_a_study_has_them_at_each_of_its_points(suite):
 
 def test_what_is_no_case_is_refused():
     with pytest.raises(InputError, match="design_numbers: case"):
-        design_numbers("bridge")  # type: ignore[arg-type]
+        design_numbers("bridge")
 
 
 def test_every_demand_is_a_quantity():
@@ -286,7 +285,6 @@ def test_ten_records_need_what_a_bisection_finds(tmp_path):
     for seed in range(10):
         (tmp_path / f"{seed}.txt").write_text(time_series(0.1 + 0.08 * seed))
     case = load_case(tmp_path)
-    assert case.suite is not None
     table = by_name(design_numbers(case))
     edges = []
     for member in case.suite.members(tmp_path):

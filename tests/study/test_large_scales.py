@@ -53,7 +53,7 @@ def test_a_run_says_it_of_its_record(folder, capsys):
     said = told(folder, psa, "", capsys)
     assert "the record is scaled by more than 4 (largest_scale in [excitation])" in said
     motion = load_case(folder).scene.motion
-    assert f"a.txt times {motion.factor:.3g}" in said  # type: ignore[attr-defined]
+    assert f"a.txt times {motion.factor:.3g}" in said
     assert told(folder, f"{psa}\nlargest_scale = 1e6", "", capsys) == ""
 
 
@@ -63,7 +63,7 @@ def test_a_study_says_it_in_one_line(folder, capsys):
     pga = axis.format("pga", [0.1, 0.5, 2.0, 10.0]).removeprefix("[study]\n")
     said = told(folder, 'file = "a.txt"\npga = 1', files + pga, capsys)
     factors = [
-        load_case(_written(folder, f'file = "{name}.txt"\npga = {value}')).scene.motion.factor  # type: ignore[attr-defined]
+        load_case(_written(folder, f'file = "{name}.txt"\npga = {value}')).scene.motion.factor
         for name in PEAKS
         for value in (0.1, 0.5, 2.0, 10.0)
     ]

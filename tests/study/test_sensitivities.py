@@ -214,7 +214,7 @@ def test_without_contact_the_peak_of_a_swing_follows_its_speed_and_mass():
 )
 def test_what_is_refused(options, said):
     with pytest.raises(InputError, match=re.escape(said)):
-        sensitivities(grazing(0.05), duration=1.0, **options)  # type: ignore[arg-type]
+        sensitivities(grazing(0.05), duration=1.0, **options)
 
 
 def test_the_command_writes_the_table_and_a_tornado(tmp_path, capsys):
@@ -243,7 +243,6 @@ def test_a_tornado_has_a_bar_for_each_number_and_a_cross_where_there_is_no_deriv
         ]
     )  # fmt: skip
     figure = tornado_figure(table)
-    assert figure is not None
     (axes,) = figure.axes
     assert [bar.get_width() for bar in axes.patches] == [2.0, -0.5, 0.0]
     (cross,) = [line for line in axes.get_lines() if line.get_marker() == "x"]

@@ -65,8 +65,6 @@ def written(folder: Path) -> Path:
 def imported(file: Path, name: str = "kernels") -> ModuleType:
     """The module, made anew, as a new process would have it."""
     spec = importlib.util.spec_from_file_location(name, file)
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     spec.loader.exec_module(module)

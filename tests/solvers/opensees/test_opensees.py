@@ -123,7 +123,6 @@ def test_no_convergence_is_said():
     message = "did not converge; try a smaller time_step"
     with pytest.raises(ComputationError, match=message) as caught:
         simulate(case, "opensees", settings=settings)
-    assert caught.value.recording is not None
     assert not caught.value.recording.success
     # The reference closes its gap at 0.3636 s.
     assert 0.3 <= caught.value.recording.t < 0.37

@@ -58,7 +58,6 @@ def test_a_block_on_a_slope(friction: float, slope: float, speed: float) -> None
         # In the step in which it turns, friction is off by at most itself twice, and so the speed.
         assert abs(recording.u[0] - exact) <= 2.0 * holds * step + 1e-12
         assert abs(recording.energy.closure) < 1e-11
-        assert recording.friction is not None
         assert recording.energy.friction == pytest.approx(recording.friction.work.sum())
         np.testing.assert_allclose(recording.friction.path, way, atol=3.0 * holds * step + 1e-12)
 
@@ -85,7 +84,6 @@ def test_one_corner_strikes(corner: int) -> None:
     v = np.array([*start.velocity, start.spin])
     expected, (normal, tangential) = struck_corner(deck, v, friction, restitution)
     np.testing.assert_allclose(recording.v / [1.0, 1.0, deck.radius], expected, rtol=1e-10)
-    assert recording.friction is not None
     np.testing.assert_allclose(recording.friction.impulse, normal, rtol=1e-10)
     np.testing.assert_allclose(recording.friction.tangential, abs(tangential), rtol=1e-10)
     inertia = np.array([deck.mass, deck.mass, deck.inertia_about_centre])
