@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
+from typing import Any, get_args
 
 from eventpound.case.elements import OF_LINK, ends_of, read_names
 from eventpound.case.spring_stiffness import Stiffnesses
@@ -37,6 +38,8 @@ _DIMENSIONS = {
     Parameter.HARDENING: Dimension.NUMBER,
 }
 _LAWS = tuple(name.value for name in LawName)
+_BY_FIELDS: dict[str, Any] = {law.word.value: law for law in get_args(Law)}
+"""Laws by their words. The keys of those that nothing more is said of are their fields."""
 _WALL = "height", "width"
 _SOIL = "initial_stiffness", "ultimate_force", "failure_ratio"
 _UNREAD = Linear(math.nan)
@@ -139,8 +142,6 @@ def _read_law(table: Table, stiffnesses: Stiffnesses) -> Law:
     match table.choice("law", _LAWS, _CALLED):
         case "linear":
             law = _read_linear(table, stiffnesses)
-        case "bilinear-elastic":
-            law = BilinearElastic(**read_numbers(table, BilinearElastic))
         case "bouc-wen":
             law = _read_bouc_wen(table, stiffnesses)
         case "degrading-bouc-wen":
@@ -152,8 +153,10 @@ def _read_law(table: Table, stiffnesses: Stiffnesses) -> Law:
             law = _read_slider(table, stiffnesses)
         case "series":
             law = _read_series(table)
-        case _:
+        case "":
             return _UNREAD
+        case word:
+            law = _BY_FIELDS[word](**read_numbers(table, _BY_FIELDS[word]))
     table.close()
     return law
 
