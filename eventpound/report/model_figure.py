@@ -51,19 +51,15 @@ _UP = 0.24
 _TEETH, _SWAY = 5, 0.13
 _INK = "#333333"
 _KINKED = "bilinear-elastic or series"
-_SLIDER, _BACKFILL = LawName.SLIDER.value, LawName.BACKFILL.value
-_LAWS = {
-    "linear": _INK,
-    "bouc-wen": PALETTE[0],
-    _KINKED: PALETTE[1],
-    _SLIDER: PALETTE[3],
-    _BACKFILL: PALETTE[4],
-}
 _CALLED = {
     **dict.fromkeys((LawName.BILINEAR_ELASTIC, LawName.SERIES), _KINKED),
     LawName.DEGRADING_BOUC_WEN: "bouc-wen",
 }
 """Laws that are drawn as others."""
+_COLORS = _INK, PALETTE[1], PALETTE[0], PALETTE[4], PALETTE[3], *PALETTE[5:]
+_LAWS = dict(
+    zip(dict.fromkeys(_CALLED.get(law, law.value) for law in LawName), _COLORS, strict=False)
+)
 _MOST_NAMES = 40
 """Springs and contacts of a scene in which each is named."""
 
@@ -301,7 +297,7 @@ def _bearing(axes: Axes, a: Floats, b: Floats, upright: bool) -> None:
     for end, half, side in ((a, _SWAY, -1.0), (b, 0.5 * _SWAY, 1.0)):
         plate = 0.5 * (a + b) + side * apart + np.outer([-half, 0.0, half], [1.0, 0.0])
         near = 1 if upright else 2 * int(end[0] > plate[1, 0])
-        look: Any = {"color": _LAWS[_SLIDER], "zorder": 2}
+        look: Any = {"color": _LAWS[LawName.SLIDER], "zorder": 2}
         axes.plot(*np.array([end, plate[near]]).T, linewidth=1.2, **look)
         axes.plot(*plate.T, linewidth=2.2, **look)
 
