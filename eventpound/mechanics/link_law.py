@@ -114,10 +114,10 @@ def memory_force(memory: Floats, z: Floats) -> Floats:
     return np.asarray(memory[..., STRENGTH] * acting)
 
 
-def spring_forces(
-    elastic: ElasticLaws, law: LinkLaw, hysteretic: Ints, x: Floats, z: Floats
-) -> Floats:
-    """Forces of links without their dashpots (N), shape (..., L).
+def link_forces(
+    elastic: ElasticLaws, law: LinkLaw, hysteretic: Ints, x: Floats, x_rate: Floats, z: Floats
+) -> tuple[Floats, Floats]:
+    """Forces of links without and with the dashpots beside them (N), shape (..., L) each.
 
     Parameters
     ----------
@@ -125,9 +125,11 @@ def spring_forces(
         The links.
     hysteretic : ndarray of int, shape (H,)
         Which of them have a memory.
-    x, z : ndarray, shape (..., L) and (..., H)
-        Elongations (m) and internal variables, perhaps of many instants.
+    x, x_rate : ndarray, shape (..., L)
+        Elongations (m) and their rates (m/s), perhaps of many instants.
+    z : ndarray, shape (..., H)
+        Internal variables.
     """
     force = elastic_force(elastic, x)[0]
     force[..., hysteretic] += memory_force(law.memory[hysteretic], z)
-    return force
+    return force, force + law.damping * x_rate

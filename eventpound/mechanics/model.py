@@ -21,14 +21,7 @@ import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements, elements_of
 from eventpound.mechanics.coordinates import numbered, parts_on_ground
-from eventpound.mechanics.link_law import (
-    KIND,
-    SLIDER,
-    LinkLaw,
-    contact_law,
-    link_law,
-    spring_forces,
-)
+from eventpound.mechanics.link_law import KIND, SLIDER, LinkLaw, contact_law, link_forces, link_law
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays
@@ -193,8 +186,8 @@ class Model:
 
         `z` of shape (..., H).
         """
-        springs = spring_forces(self.elastic, self.law, self.hysteretic, self.elongations(u), z)
-        return springs, springs + self.law.damping * self.elongations(v)
+        x, x_rate = self.elongations(u), self.elongations(v)
+        return link_forces(self.elastic, self.law, self.hysteretic, x, x_rate, z)
 
     def pulled(self, force: Floats) -> Floats:
         """Sum of the forces (..., L) of the links on each body (N), shape (..., bodies)."""
