@@ -27,6 +27,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.quantities.lookup import asked, needs_energy
 from eventpound.response import Response
 from eventpound.scene.check import check_scene
+from eventpound.scene.contact_law import NEWTON
 from eventpound.scene.parameters import Place, with_values
 from eventpound.scene.scene import Scene
 from eventpound.solvers import (
@@ -283,6 +284,7 @@ def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
     springs = ", ".join(f"{spring!r} ({law})" for spring, law in unknown)
     points = ", ".join(scene.at_points)
     rubbing = ", ".join(map(repr, scene.rubbing))
+    law = "" if scene.impact_law == NEWTON else f" by {scene.impact_law}'s law"
     kinds = (
         ("supports", scene.supports),
         ("forces", scene.forces),
@@ -294,7 +296,7 @@ def _scene_problems(solver: Solver, scene: Scene, events: bool) -> list[str]:
         knows_laws: f"{name} does not know the laws of contacts {laws}",
         knows_springs: f"{name} does not know the laws of springs {springs}",
         takes_points: f"{name} does not take ends at a point between bodies ({points})",
-        takes_friction: f"{name} does not take contacts with friction ({rubbing})",
+        takes_friction: f"{name} does not take contacts with friction{law} ({rubbing})",
         takes_loads: f"name: the solver {name!r} cannot take {loads}",
         lists_springs: f"{name} does not list events of springs",
     }

@@ -162,6 +162,7 @@ SHARED_WITH_SLIDERS = {
 """What those of a scene with sliders share besides."""
 SHARED_WITH_FRICTION = {
     "eventpound.contact.friction": "impacts with friction, and which contacts slip or stick",
+    "eventpound.contact.poisson": "impacts by Poisson's law, where it is asked for",
     "eventpound.contact.rubbing": "what is known and kept of contacts with friction",
     "eventpound.numerics.coulomb": "forces and states of contacts with friction",
     f"{_MECHANICS}.oblique": "how what slips moves",

@@ -26,6 +26,7 @@ from eventpound.errors import InputError
 from eventpound.motion.free import NoMotion
 from eventpound.scene.at_rest import at_rest
 from eventpound.scene.check import Problem, scene_problems, scene_warnings
+from eventpound.scene.contact_law import IMPACT_LAWS, NEWTON
 from eventpound.scene.continuation import continued
 from eventpound.scene.joint import ENDS
 from eventpound.scene.plan_point import DIRECTIONS
@@ -33,6 +34,7 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Linear
 from eventpound.units import Dimension, quantity
 
+_LAW = "impact_law"
 SUMMARY = "summary.json"
 """Of a run, as `eventpound.results` writes it; another case may go on from its final state."""
 
@@ -109,6 +111,7 @@ def read_scene(
         decks=in_plan.decks,
         across=NoMotion() if excitation is None else excitation.across,
         attack=0.0 if excitation is None else excitation.attack,
+        impact_law=(top.has(_LAW) and top.choice(_LAW, IMPACT_LAWS)) or NEWTON,
     )
     # Where the problems of what they stand for are noted.
     own = tables["spring"].copy()
@@ -164,9 +167,10 @@ def _add_scene_problems(
         placeholder = isinstance(problem.found, float) and math.isnan(problem.found)
         if placeholder or (problem.key == "between" and nameless):
             continue
-        if problem.kind == "excitation":
+        if problem.kind in ("excitation", "scene"):
             text = f"found {problem.found}; accepted: {problem.accepted}"
-            problems.append(CaseProblem("[excitation]", "", text))
+            where = ("[excitation]", "") if problem.kind == "excitation" else ("", problem.key)
+            problems.append(CaseProblem(*where, text))
             continue
         if problem.position > len(tables[problem.kind]):
             # A dashpot of a group; wrong masses and coefficients were noted as such.

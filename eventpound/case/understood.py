@@ -12,6 +12,7 @@ from eventpound.case.run_options import DEFAULTS, RunOptions
 from eventpound.case.solver_options import SolverOptions
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
+from eventpound.scene.contact_law import NEWTON
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.plan_point import ALONG
 from eventpound.scene.scene import Scene
@@ -53,6 +54,7 @@ def understood_case(
     """
     found: dict[str, Any] = {
         "title": title,
+        **({} if scene.impact_law == NEWTON else {"impact_law": scene.impact_law}),
         "excitation": dict(excitation),
         **parts_written(
             [body for body in scene.bodies if not is_of_deck(body.name, scene.decks)],

@@ -4,7 +4,8 @@ A contact that is closed slips one way or the other, or sticks; its friction is 
 
     0 <= γ_N⁺ + ε γ_N⁻ ⊥ Λ_N >= 0,   Λ_T ∈ -μ Λ_N Sgn(γ_T⁺)
 
-over all closed contacts that do not separate, and between them
+over all closed contacts that do not separate, or as Poisson's law has it
+(`eventpound.contact.poisson`), and between them
 
     0 <= γ_N' ⊥ λ_N >= 0,   λ_T = -μ λ_N sgn γ_T;   |λ_T| <= μ λ_N and γ_T' = 0 where γ_T = 0
 
@@ -35,6 +36,7 @@ from eventpound.contact.impacts import (
 )
 from eventpound.contact.instant import begin_instant, end_instant, take_rests
 from eventpound.contact.kinks import still_rate
+from eventpound.contact.poisson import compress_and_expand
 from eventpound.contact.rest import ORDER, Touching, free_accelerations, touching_of
 from eventpound.contact.rubbing import (
     GAINS,
@@ -44,6 +46,7 @@ from eventpound.contact.rubbing import (
     Rubs,
     Sliding,
     all_joints,
+    by_poisson,
     is_at_bound,
     keep_friction,
     kinds_before,
@@ -150,7 +153,9 @@ def _impact(plastic: bool, shut: Bools, rubs: Rubs, at: Instant) -> int:
     involved = shut & (before <= 0.0)
     sliding = sliding_of(np.flatnonzero(involved), rubs)
     members, rows, k = sliding.members, sliding.rows, sliding.members.size
-    eps = np.zeros(before.size) if plastic else at.restitution
+    expands = by_poisson(rubs, at)
+    # What Newton's law asks of γ_N⁺; a last impact ends with its compression.
+    eps = np.zeros(before.size) if plastic or expands else at.restitution
     q = np.zeros(2 * k)
     for a in range(2 * k):
         if rows[a] >= 0:
@@ -159,7 +164,10 @@ def _impact(plastic: bool, shut: Bools, rubs: Rubs, at: Instant) -> int:
     G, friction = matrix_of_rows(rows, at), rubs.friction[members]
     problem = Rubbing(G, q, friction, np.zeros(k, np.int64), np.full(2 * k, noise))
     x, w, state = np.zeros(2 * k), np.zeros(2 * k), np.zeros(k, np.int64)
-    found = solve_rubbing(problem, x, w, state)
+    if expands and not plastic:
+        found = compress_and_expand(problem, at.restitution[members], x, w, state)
+    else:
+        found = solve_rubbing(problem, x, w, state)
     if found in (NO_ANSWER, SEVERAL):
         return NO_IMPACT if found == NO_ANSWER else NOT_UNIQUE
     for i in range(k):
@@ -174,6 +182,8 @@ def _impact(plastic: bool, shut: Bools, rubs: Rubs, at: Instant) -> int:
     lost = rates_after(members, before[members], eps, noise, impulse, opening, at.gap_rate)
     for i in range(k):
         passed -= x[i] * before[members[i]]
+        # None by Newton's law: what opens faster than that asks has no impulse.
+        lost -= 0.5 * x[i] * opening[i]
         t = rows[k + i]
         if t >= 0:
             at.gap_rate[t] = w[k + i]

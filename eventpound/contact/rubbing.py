@@ -30,7 +30,10 @@ from eventpound.numerics.small_systems import independent_columns
 from eventpound.tolerances import DEPENDENT
 
 AMBIGUOUS = "what follows is not unique"
-GAINING = "an impact gains kinetic energy, as Newton's law with friction may"
+GAINING = (
+    "an impact gains kinetic energy, as Newton's law with friction may; Poisson's does not where "
+    "ε is the same everywhere (impact_law)"
+)
 """How friction ends a run, of whatever solver."""
 NOT_UNIQUE, GAINS = 13, 14
 """How settling an instant ends besides: several answers; an impact that gains energy."""
@@ -66,6 +69,12 @@ class Sliding(NamedTuple):
 
     members: Ints
     rows: Ints
+
+
+@scalar_kernel
+def by_poisson(rubs: Rubs, at: Instant) -> bool:
+    """Whether impacts follow Poisson's law, not Newton's."""
+    return at.restitution[at.restitution.size - rubs.contact.size] > 0.0
 
 
 @kernel

@@ -24,6 +24,7 @@ from eventpound.mechanics.coordinates import numbered, parts_on_ground
 from eventpound.mechanics.link_law import KIND, SLIDER, LinkLaw, contact_law, link_forces, link_law
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.scene.contact_law import POISSON
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, Hysteretic
@@ -60,9 +61,12 @@ class Model:
     left, right : ndarray of int, shape (K,)
         Coordinates of each contact; -1 is a barrier.
     gap, restitution : ndarray, shape (K,)
-        Openings at zero displacement (m) and coefficients of restitution, NaN where none is.
+        Openings at zero displacement (m) and coefficients of restitution, NaN where none is. Of
+        contacts along others 1 where impacts follow Poisson's law, else 0 (`with_friction`).
     friction : ndarray, shape (K,)
         μ of each contact.
+    by_poisson : bool
+        Whether impacts follow Poisson's law, not Newton's.
     tangent : ndarray of int, shape (K, 2)
         Coordinates along which contacts with friction slide, as `left` and `right`; else -1.
     elements : Elements
@@ -98,6 +102,7 @@ class Model:
     friction: Floats
     tangent: Ints
     elements: Elements
+    by_poisson: bool = False
     supports: int = 0
     loads: int = 0
     laws: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
@@ -264,6 +269,7 @@ def with_friction(model: Model) -> Model:
     slack = as_arrays([_SLACK] * rubbing.size)
     return replace(
         _with_contacts(model, ends),
+        restitution=np.append(model.restitution, nothing + model.by_poisson),
         link_ends=np.vstack((model.link_ends, ends)),
         on_ground=np.append(model.on_ground, nothing),
         law=LinkLaw(*map(np.concatenate, zip(model.law, link_law([], nothing), strict=True))),
@@ -360,6 +366,7 @@ def assemble(scene: Scene) -> Model:
         friction=column([c.friction for c in scene.contacts]),
         tangent=np.array(at.tangents, np.int64).reshape(-1, 2),
         elements=elements_of(scene, mass, left, right),
+        by_poisson=scene.impact_law == POISSON,
         supports=motion.supports if isinstance(motion, LoadedMotion) else 0,
         loads=len(motion.loads) if isinstance(motion, LoadedMotion) else 0,
         weights=at.weights,

@@ -15,7 +15,7 @@ from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.contact import BARRIER, Contact
-from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
+from eventpound.scene.contact_law import BY_WORD, IMPACT_LAWS, NEWTON, ContactLaw, Element
 from eventpound.scene.ends import End, opening, weights_of
 from eventpound.scene.grounded import grounded
 from eventpound.scene.linkage import starts_of_supports
@@ -78,7 +78,7 @@ class Problem(_Element):
     ----------
     kind : str
         ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"``, ``"excitation"``,
-        ``"support"``, ``"force"``, ``"seat"`` or ``"deck"``.
+        ``"support"``, ``"force"``, ``"seat"`` or ``"deck"``; ``"scene"`` of what is one for all.
     position : int
         Which of its kind, from 1.
     name : str
@@ -135,6 +135,7 @@ def scene_problems(scene: Scene, start: float | None = 0.0) -> list[Problem]:
         *(springs or _stability_problems(scene, start or 0.0)),
         *_dashpot_problems(scene),
         *_contact_problems(scene, start),
+        *_impact_law_problems(scene),
         *motion_problems(scene.motion),
         *motion_problems(scene.across),
         *_support_problems(scene),
@@ -434,6 +435,14 @@ def _friction_problems(element: _Element, contact: Contact, scene: Scene) -> Ite
     if sliders:
         accepted = f"0 beside sliders ({', '.join(sliders)})"
         yield element.problem("friction", contact.friction, accepted)
+
+
+def _impact_law_problems(scene: Scene) -> Iterator[Problem]:
+    element, law = _Element("scene", 1, ""), scene.impact_law
+    if law not in IMPACT_LAWS:
+        yield element.problem("impact_law", law, f"one of {', '.join(IMPACT_LAWS)}")
+    elif law != NEWTON and scene.contacts and not scene.rubbing:
+        yield element.problem("impact_law", law, f"{NEWTON} where no contact has friction")
 
 
 def _restitution(element: _Element, contact: Contact) -> Iterator[Problem]:

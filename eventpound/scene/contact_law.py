@@ -30,6 +30,9 @@ from eventpound.units import Dimension
 
 NEWTON = "newton"
 """What a case calls the law of impact that no element stands for."""
+POISSON = "poisson"
+"""What it calls the other one, of impacts with friction."""
+IMPACT_LAWS = NEWTON, POISSON
 
 
 class Element(IntEnum):

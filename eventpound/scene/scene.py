@@ -11,6 +11,7 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.free import NoMotion
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
+from eventpound.scene.contact_law import NEWTON
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.deck import Deck
 from eventpound.scene.force import Force
@@ -45,6 +46,8 @@ class Scene:
         The second component of the ground motion, a quarter turn to the left of `motion`.
     attack : float
         Angle (rad) from x to the direction of `motion`, to the left; or a string, ``"30 deg"``.
+    impact_law : str
+        ``"newton"``, or ``"poisson"`` where contacts have friction.
 
     Examples
     --------
@@ -69,6 +72,7 @@ class Scene:
     decks: Given[tuple[Deck, ...], Iterable[Deck]] = default(())
     across: GroundMotion = field(default_factory=NoMotion)
     attack: Annotated[Number, Dimension.ANGLE] = default(0.0)
+    impact_law: str = NEWTON
 
     @property
     def in_plan(self) -> bool:

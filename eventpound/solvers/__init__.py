@@ -9,6 +9,7 @@ from pkgutil import resolve_name
 from eventpound.basics.plugins import Plugins
 from eventpound.case.run_options import LISTED
 from eventpound.errors import InputError
+from eventpound.scene.contact_law import NEWTON
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import LawName
 from eventpound.solvers.base import Solver
@@ -45,8 +46,10 @@ def takes_loads(solver: Solver, scene: Scene) -> bool:
 
 
 def takes_friction(solver: Solver, scene: Scene) -> bool:
-    """Whether a solver takes the friction of contacts, if there is any."""
-    return not scene.rubbing or getattr(solver, "takes_friction", False)
+    """Whether a solver takes the friction of contacts, if there is any, and its law of impact."""
+    known: Collection[str] = getattr(solver, "impact_laws", (NEWTON,))
+    takes = getattr(solver, "takes_friction", False) and scene.impact_law in known
+    return not scene.rubbing or takes
 
 
 def knows_laws(solver: Solver, scene: Scene) -> bool:

@@ -401,7 +401,8 @@ class Solver(Protocol):
     A solver that heeds `Task.max_steps` says so by an attribute ``counts_steps = True``;
     any other is never given one. One that takes scenes with supports and forces says so by
     ``takes_supports = True``, with forces alone by ``takes_forces = True``; one that takes
-    friction at contacts by ``takes_friction = True``.
+    friction at contacts by ``takes_friction = True``, by other laws of impact than Newton's by
+    ``impact_laws``, a collection of `eventpound.scene.contact_law.IMPACT_LAWS`.
     One that knows laws of contacts besides Newton's names them in
     an attribute ``contact_laws``, a collection of `eventpound.scene.contact_law.ContactLaw` kinds;
     scenes with others are refused. One that takes ends at points between bodies, with more

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from eventpound.scene.contact_law import BY_WORD
+from eventpound.scene.contact_law import BY_WORD, IMPACT_LAWS
 from eventpound.scene.spring import LawName
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.integrator import Integrator
@@ -60,6 +60,7 @@ class Cvode:
     takes_supports = True
     takes_points = True
     takes_friction = True
+    impact_laws = IMPACT_LAWS
     memories = frozenset(LawName)
     lists_springs = True
     contact_laws = tuple(BY_WORD)

@@ -37,6 +37,7 @@ from eventpound.numerics.joined_arrays import JoinedArrays
 from eventpound.numerics.latest import Latest
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
+from eventpound.scene.contact_law import IMPACT_LAWS
 from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import LawName, Spring
@@ -104,6 +105,7 @@ class Fast:
     takes_supports = True
     takes_points = True
     takes_friction = True
+    impact_laws = IMPACT_LAWS
     memories = frozenset(LawName)
     lists_springs = True
 

@@ -13,6 +13,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.scene.contact_law import IMPACT_LAWS
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import FrictionRecording, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
@@ -38,6 +39,7 @@ class Moreau:
     takes_points = True
     takes_forces = True
     takes_friction = True
+    impact_laws = IMPACT_LAWS
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""

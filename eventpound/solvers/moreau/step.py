@@ -1,7 +1,7 @@
 """One step of the Moreau–Jean rule: velocities and impulses, no event located.
 
     M (v₁ - v₀) = h f_θ + W p,   u₁ = u₀ + h v_θ
-    0 <= γ₁ + ε γ₀ ⊥ p >= 0      over the contacts with g₀ + h γ₀ / 2 <= 0
+    0 <= γ₁ + ε γ₀ ⊥ p >= 0      over the contacts with g₀ + h γ₀ / 2 <= 0, or Poisson's law
     p_T ∈ -μ p Sgn(γ_T₁)         of those with friction, in the tangential rows of W
     p = 0                        over the others;  γ = Wᵀ v
 
@@ -36,6 +36,7 @@ from eventpound.contact.event_rows import (
     write_event,
     write_slide,
 )
+from eventpound.contact.poisson import compress_and_expand
 from eventpound.contact.rubbing import PATH, keep_friction
 from eventpound.mechanics.contact_problem import Joints, solve_contacts
 from eventpound.mechanics.followers import place_points
@@ -187,6 +188,7 @@ def _rub_together(active: Ints, stepping: Stepping) -> int:
     """The same for contacts some of which have friction; an outcome.
 
     What friction does is first order whatever θ is: the way of slip is that of the end of the step.
+    By Poisson's law a step expands in which one strikes.
     """
     structure, equations, k = stepping.structure, stepping.equations, active.size
     ends = np.concatenate((structure.tangent[active], structure.tangent[active]))
@@ -197,18 +199,25 @@ def _rub_together(active: Ints, stepping: Stepping) -> int:
         for b in range(2 * k):
             G[a, b] = difference(columns[a], ends[b, 0], ends[b, 1])
     x, w, q, free = np.zeros(2 * k), np.zeros(2 * k), np.empty(2 * k), np.zeros(k, np.int64)
-    state = np.zeros(k, np.int64)
+    state, before = np.zeros(k, np.int64), np.empty(k)
+    for a in range(k):
+        before[a] = gap_rate(structure, active[a], stepping.state.v)
+    newton, poisson = structure.restitution[active], np.zeros(k)
+    if structure.by_poisson:
+        newton, poisson = poisson, newton * np.any(before < -STILL_GAP_RATE * structure.speed)
     for share in (1.0, 0.0):
         for a in range(2 * k):
             q[a] = difference(equations.increment, ends[a, 0], ends[a, 1])
             if a < k:
-                before = gap_rate(structure, active[a], stepping.state.v)
-                q[a] += share * structure.restitution[active[a]] * before
+                q[a] += share * newton[a] * before[a]
             if abs(q[a]) < NO_SPEED * structure.speed:
                 q[a] = 0.0
         noise = np.full(2 * k, QUIET * np.max(np.abs(q)))
         problem = Rubbing(G, q, structure.friction[active], free, noise)
-        found = solve_rubbing(problem, x, w, state)
+        if share * np.max(poisson) > 0.0:
+            found = compress_and_expand(problem, poisson, x, w, state)
+        else:
+            found = solve_rubbing(problem, x, w, state)
         if found == SEVERAL:
             return NOT_UNIQUE
         if found == NO_ANSWER:
@@ -258,7 +267,7 @@ def _solve_step(step: FixedStep, active: Active, stepping: Stepping) -> int:
     rubs = False
     for j in range(trial.contact.size):
         trial.contact[j] = trial.rubbing[j] = 0.0
-        rubs |= active.marked[j] and structure.friction[j] > 0.0
+        rubs |= active.marked[j] and (structure.friction[j] > 0.0 or structure.by_poisson)
     for iteration in range(MOST_ITERATIONS):
         end_of_step(step.h, stepping)
         momentum_residual(step, stepping)

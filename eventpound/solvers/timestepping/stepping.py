@@ -37,7 +37,8 @@ class Structure(NamedTuple):
     """N bodies, D points, L links (S of them springs), H hysteretic ones, K contacts.
 
     The masses are those of the bodies; points, which are coordinates behind them, move by `weights`
-    (D, N + D). A contact with `friction` (K,) slides along the coordinates `tangent` (K, 2).
+    (D, N + D). A contact with `friction` (K,) slides along the coordinates `tangent` (K, 2),
+    and strikes by Poisson's law where that is so.
     The links pull as `elastic` and `law` have it, and a part `on_ground` at the ground; `z_of_link`
     is -1 without hysteresis, `bound` (L,) the largest |z| that loading can reach. `theta` is
     that of the time-stepping rule; `bandwidth` the number of sub-diagonals of the coupling;
@@ -58,6 +59,7 @@ class Structure(NamedTuple):
     restitution: Floats
     friction: Floats
     tangent: Ints
+    by_poisson: bool
     springs: int
     bandwidth: int
     theta: float
@@ -134,6 +136,7 @@ def structure_of(model: Model, scales: SceneScales, theta: float) -> Structure:
         restitution=model.restitution,
         friction=model.friction,
         tangent=model.tangent,
+        by_poisson=model.by_poisson,
         springs=model.springs,
         bandwidth=int(reach),
         theta=theta,
