@@ -97,6 +97,19 @@ def test_a_deck_that_is_moved_alike_keeps_or_loses_its_gap(tmp_path: Path) -> No
     )
 
 
+def test_the_law_of_impact_stands_at_the_top(tmp_path: Path) -> None:
+    rubs = PULSE + DECKS.replace("restitution = 0.5", "restitution = 0.5\nfriction = 0.3")
+    assert load(tmp_path, rubs).impact_law == "newton"
+    (tmp_path / "case.toml").write_text('impact_law = "poisson"' + rubs)
+    case = load_case(tmp_path)
+    assert case.scene.impact_law == "poisson"
+    assert read_case(case.understood, tmp_path / "case.toml").scene.impact_law == "poisson"
+    said = problems(tmp_path, 'impact_law = "poison"' + rubs)
+    assert "impact_law: found 'poison', did you mean 'poisson'?; accepted: one" in said
+    said = problems(tmp_path, 'impact_law = "poisson"' + PULSE + DECKS)
+    assert "impact_law: found poisson; accepted: newton where no contact has friction" in said
+
+
 def test_the_case_that_was_understood_is_the_same(tmp_path: Path) -> None:
     pulse = PULSE.replace("ricker", "cosine")
     text = pulse + 'attack = "20 deg"\nacross = { amplitude = "0.2 g", period = "0.7 s" }\n' + DECKS

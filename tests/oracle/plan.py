@@ -2,7 +2,8 @@
 
 Coordinates u, v and the angle θ itself, masses m, m and J; contacts as rows of a matrix that are
 written here anew from the shape of the decks. A state is a letter a contact: o open, + and -
-slipping, s sticking; without friction a contact is o or +.
+slipping, s sticking; without friction a contact is o or +. By Poisson's law an impact has a second
+phase, of which every contact is gone through once more, as it gives back its part or more.
 """
 
 from __future__ import annotations
@@ -51,6 +52,7 @@ class Plan:
     restitution: Floats
     friction: Floats
     motions: tuple[Any, Any]
+    by_poisson: bool = False
     state: str = ""
     last_impact: float = -math.inf
     known: dict[str, Held] = field(default_factory=dict)
@@ -217,8 +219,50 @@ class Plan:
                 ("o+-s" if mu > 0.0 else "o+") if shut else "o"
                 for shut, mu in zip(closed, self.friction, strict=True)
             ]
-            v = self.find(v, -self.restitution * rates, choices)[1]
+            if self.by_poisson:
+                state, after = self.find(v, np.zeros(len(choices)), choices)
+                normal = self.answer(state, v, np.zeros(len(choices)))[1]
+                v = self.expanded(after, self.restitution * normal, np.flatnonzero(closed))
+            else:
+                v = self.find(v, -self.restitution * rates, choices)[1]
         raise LeftAloneError
+
+    def expanded(self, v: Floats, given: Floats, shut: Floats) -> Floats:
+        """Velocities after an expansion with at least such normal impulses (k,) of shut contacts.
+
+        Unknown are N and T of each, in parts of a mass; one gives back its part (=) or more (>).
+        """
+        k, mass, mu = shut.size, self.mass.min(), self.friction[shut]
+        rows, given = np.vstack((self.W[shut], self.T[shut])), given[shut] / mass
+        G, q, one = rows * (mass / self.mass) @ rows.T, rows @ v, np.eye(2 * k)
+        size = _OFF * max(np.abs(v).max(), given.max())
+        ways = ["+-s" if m > 0.0 else "+" for m in mu]
+        pushes = ["=>" if part > 0.0 else ">" for part in given]
+        both = [
+            [*product(p, w), *([] if p == "=>" else ["=+"])]
+            for p, w in zip(pushes, ways, strict=True)
+        ]
+        for letters in product(*both):
+            A, right = one.copy(), np.zeros(2 * k)
+            for i, (push, way) in enumerate(letters):
+                if push == "=":
+                    right[i] = given[i]
+                else:
+                    A[i], right[i] = G[i], -q[i]
+                if way == "s":
+                    A[k + i], right[k + i] = G[k + i], -q[k + i]
+                else:
+                    A[k + i, i] = _WAY[way] * mu[i]
+            x = np.linalg.lstsq(A, right, rcond=1e-12)[0]
+            w, (N, T) = G @ x + q, np.split(x, 2)
+            good = np.abs(A @ x - right).max() <= size and (given <= N + size).all()
+            good &= bool((w[:k] >= -size).all() and (np.abs(T) <= mu * N + size).all())
+            for i, (_, way) in enumerate(letters):
+                free = way != "s" and mu[i] * N[i] > size
+                good &= not free or _WAY[way] * w[k + i] >= -size
+            if good:
+                return v + mass * (x @ rows) / self.mass
+        raise AssertionError("no expansion found")
 
 
 def _least(G: Floats, right: Floats) -> Floats:
@@ -290,7 +334,7 @@ def plan_of(scene: Scene, joints: list[Joint]) -> Plan:
         mass, np.diag(K), np.diag(C), pushed, np.reshape(W, (-1, n)), np.reshape(T, (-1, n)),
         np.array(gaps), np.array(restitution, float),
         np.array([contact.friction for contact in scene.contacts], float),
-        (scene.motion, scene.across),
+        (scene.motion, scene.across), scene.impact_law == "poisson",
     )  # fmt: skip
 
 

@@ -82,6 +82,22 @@ def struck_corner(
     return v + (impulses * [1.0, -1.0]) @ rows / np.array([m, m, J]), impulses
 
 
+def expanded_corner(
+    deck: Deck, v: Floats, friction: float, restitution: float
+) -> tuple[Floats, Floats]:
+    """The same by Poisson's law: it strikes without restitution, and gives back a part of Λ_N.
+
+    What is given back opens it, since ``a - μ |c| > 0``; it stops the slip, or all of μ resists.
+    """
+    after, compressed = struck_corner(deck, v, friction, 0.0)
+    m, J, (x, y) = deck.mass, deck.inertia_about_centre, deck.corners[0]
+    rows = np.array([[0.0, 1.0, x], [-1.0, 0.0, y]])
+    b, c, N = 1.0 / m + y * y / J, x * y / J, restitution * compressed[0]
+    T = -(rows[1] @ after + c * N) / b
+    given = np.array([N, np.clip(T, -friction * N, friction * N)])
+    return after + given @ rows / np.array([m, m, J]), compressed + given
+
+
 def slid_under(amplitude: float, period: float, most: float, end: float) -> float:
     """Displacement of a mass whose friction accelerates it by at most so much, to some 1e-7 m."""
     h, x, v = 1e-6, 0.0, 0.0

@@ -23,6 +23,7 @@ from eventpound.scene import (
     Slider,
     Spring,
 )
+from eventpound.scene.contact_law import IMPACT_LAWS
 from eventpound.scene.deck import DeckStart
 from eventpound.scene.joint import Joint
 from eventpound.solvers import solver_named
@@ -166,7 +167,7 @@ def test_one_corner_strikes(seed: int, solver: str) -> None:
         np.testing.assert_allclose(recording.v / [1.0, 1.0, deck.radius], expected, rtol=1e-12)
 
 
-def _rubbing(seed: int) -> tuple[Scene, list[Joint], float]:
+def rubbing_plan(seed: int) -> tuple[Scene, list[Joint], float]:
     scene, joints, end = random_plan(seed)
     friction = float(np.random.default_rng(seed + 10000).choice([0.1, 0.3, 0.5, 0.8]))
     return (
@@ -178,18 +179,18 @@ def _rubbing(seed: int) -> tuple[Scene, list[Joint], float]:
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_decks_against_scipy(seed: int) -> None:
-    scene, joints, end = _rubbing(seed)
+    scene, joints, end = rubbing_plan(seed)
     expected = states(scene, joints, np.linspace(0.0, end, 26))
     assert expected is not None
     size = np.maximum(np.abs(expected).max(axis=0), 1e-3)
     for solver in SOLVERS:
         recording = _run(scene, end, solver)
         # The largest of 97 scenes is 1.1e-10, one of 62 impacts apart.
-        assert (np.abs(_states(recording, end) - expected) <= 1e-9 * size).all()
+        assert (np.abs(states_of(recording, end) - expected) <= 1e-9 * size).all()
         assert abs(recording.energy.closure) < 1e-10
 
 
-def _states(recording: Recording, end: float) -> Floats:
+def states_of(recording: Recording, end: float) -> Floats:
     h = recording.history
     i = np.searchsorted(h.t, np.linspace(0.0, end, 26), "right") - 1
     return np.hstack((h.u[i], h.v[i]))
@@ -198,11 +199,11 @@ def _states(recording: Recording, end: float) -> Floats:
 @pytest.mark.parametrize("seed", [0, 4, 9, 13, 17, 28])
 def test_both_solvers_tell_the_same(seed: int) -> None:
     """Of friction, too; both corners of an edge that slides along another share what is one."""
-    scene, _, end = _rubbing(seed)
+    scene, _, end = rubbing_plan(seed)
     one, other = _run(scene, end), _run(scene, end, "fast")
-    size = np.maximum(np.abs(_states(one, end)).max(axis=0), 1e-3)
+    size = np.maximum(np.abs(states_of(one, end)).max(axis=0), 1e-3)
     # Of 250 scenes that have a course 1.0e-10 at most.
-    assert (np.abs(_states(other, end) - _states(one, end)) <= 1e-9 * size).all()
+    assert (np.abs(states_of(other, end) - states_of(one, end)) <= 1e-9 * size).all()
     events = [[(e.kind, e.contact) for e in recording.events] for recording in (one, other)]
     assert events[0] == events[1]
     assert one.friction is not None
@@ -222,8 +223,9 @@ def test_friction_none_is_as_if_none_were_given(solver: str) -> None:
     assert _run(given, end, solver).u.tobytes() == _run(scene, end, solver).u.tobytes()
 
 
+@pytest.mark.parametrize("law", IMPACT_LAWS)
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_a_deck_without_skew_that_is_shaken_along_its_axis_does_not_turn(solver: str) -> None:
+def test_a_deck_without_skew_shaken_along_its_axis_does_not_turn(solver: str, law: str) -> None:
     """To the last bit."""
     deck = Deck("B", "10 t", "20 m", "8 m")
     joint = Joint("wall", ("B", "barrier"), 0.01, 0.5, 0.4)
@@ -234,6 +236,7 @@ def test_a_deck_without_skew_that_is_shaken_along_its_axis_does_not_turn(solver:
         contacts=joint.contacts({"B": deck}),
         motion=Harmonic(4.0, 0.6),
         decks=[deck],
+        impact_law=law,
     )
     recording = _run(scene, 2.0, solver)
     assert len(recording.events) > 4
@@ -242,8 +245,9 @@ def test_a_deck_without_skew_that_is_shaken_along_its_axis_does_not_turn(solver:
     assert across == turn == 0.0
 
 
+@pytest.mark.parametrize("law", IMPACT_LAWS)
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_a_mirrored_scene_has_the_mirrored_motion(solver: str) -> None:
+def test_a_mirrored_scene_has_the_mirrored_motion(solver: str, law: str) -> None:
     """Turned about x: what slides upwards slides downwards, by as much."""
     deck = Deck("B", "10 t", "20 m", "8 m", "30 deg")
     other = replace(deck, skew=-deck.skew)
@@ -254,7 +258,7 @@ def test_a_mirrored_scene_has_the_mirrored_motion(solver: str) -> None:
     found = []
     for each, way, begins in ((deck, joint, start), (other, turned, back)):
         contacts = [replace(c, friction=0.4) for c in way.contacts({"B": each})]
-        scene = Scene(each.bodies(begins), contacts=contacts, decks=[each])
+        scene = Scene(each.bodies(begins), contacts=contacts, decks=[each], impact_law=law)
         found.append(_run(scene, 0.5, solver))
     np.testing.assert_allclose(found[1].v * [1.0, -1.0, -1.0], found[0].v, rtol=1e-11)
     one, two = (recording.friction for recording in found)
