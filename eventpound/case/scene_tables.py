@@ -169,8 +169,8 @@ def _add_scene_problems(
             continue
         if problem.kind in ("excitation", "scene"):
             text = f"found {problem.found}; accepted: {problem.accepted}"
-            where = ("[excitation]", "") if problem.kind == "excitation" else ("", problem.key)
-            problems.append(CaseProblem(*where, text))
+            place = ("[excitation]", "") if problem.kind == "excitation" else ("", problem.key)
+            problems.append(CaseProblem(*place, text))
             continue
         if problem.position > len(tables[problem.kind]):
             # A dashpot of a group; wrong masses and coefficients were noted as such.
