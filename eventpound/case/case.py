@@ -11,7 +11,7 @@ from eventpound.case.figure import Figure
 from eventpound.case.record_scaling import LARGEST_SCALE, RecordScaling
 from eventpound.case.run_options import DEFAULTS, RunOptions
 from eventpound.case.solver_options import SolverOptions
-from eventpound.case.suite import Member, Suite
+from eventpound.case.suite import ATTACK, SECOND, Member, Suite
 from eventpound.case.understood import sources_of, understood_case
 from eventpound.motion.readers.base import RecordData
 from eventpound.scene.pi_structure import PiStructure
@@ -150,10 +150,12 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
     """
     scene = replace(member.on(case.scene), motion=member.options.motion(data))
     run = case.run.completed(scene)
-    read = member.of_file(data)
+    given: Any = case.understood["excitation"]
+    read = {key: given[key] for key in (SECOND, ATTACK) if key in given} | member.of_file(data)
+    records = {name: own.of_file(own.read()) for name, own in member.beside}
+    read |= {SECOND: records.pop(SECOND)} if SECOND in records else {}
     sources = sources_of(case.understood)
     understood = understood_case(case.title, read, scene, run, case.solver, sources)
-    records = {name: own.of_file(own.read()) for name, own in member.supports}
     driven: dict[str, Any] = {
         key: case.understood[key] for key in ("support", "force") if key in case.understood
     }

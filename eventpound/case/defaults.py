@@ -54,8 +54,7 @@ def default_duration(scene: Scene, start_time: float) -> float:
     InputError
         For free motion, a motion without end, or one over before the start.
     """
-    motions = [scene.motion, *(support.moved_by(scene.motion) for support in scene.supports)]
-    shaking = [motion for motion in motions if moves(motion)]
+    shaking = [motion for motion in scene.motions if moves(motion)]
     end = max((motion.end for motion in shaking), default=math.inf)
     end = max(end, *(force.history.end for force in scene.forces), end)
     if not math.isfinite(end):

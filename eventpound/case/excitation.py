@@ -11,9 +11,17 @@ from typing import Any
 from eventpound.case.frequency import required_frequency
 from eventpound.case.record_file import find_record
 from eventpound.case.record_options import RecordOptions, read_record_options
-from eventpound.case.record_scaling import LARGEST_SCALE
-from eventpound.case.suite import Suite, read_suite_keys, understood_suite
+from eventpound.case.record_scaling import LARGEST_SCALE, WAYS, own_period, scaled_as
+from eventpound.case.suite import (
+    ATTACK,
+    SECOND,
+    Suite,
+    read_suite_keys,
+    understood_suite,
+    where_beside,
+)
 from eventpound.case.table import Table, read_numbers
+from eventpound.errors import told_of
 from eventpound.motion import (
     AntisymmetricRicker,
     GroundMotion,
@@ -32,13 +40,12 @@ from eventpound.units import Dimension
 _FORMULAS: Mapping[str, Any] = {**PULSES, "harmonic": Harmonic}
 _KINDS = (*_FORMULAS, "record", "none")
 
-ACROSS, ATTACK = "across", "attack"
-"""Keys of the second component, a table, and of the direction of the first."""
 _OF_BOTH = (
-    "format", "units", "time_step", "response", "processing", "start", "reverse", "largest_scale"
-)  # fmt: skip
-_SIZES = ("scale", "pga", "psa")
-"""Keys by which records are read, which hold for both components, and by which they are scaled."""
+    *("format", "units", "time_step", "response", "processing"),
+    *("start", "reverse", "rest", "largest_scale"),
+)
+"""Keys by which records are read, which hold for both components."""
+_SUITE = "a suite"
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,10 +73,15 @@ class Excitation:
     largest_scale: float = LARGEST_SCALE
     options: RecordOptions | None = None
     """How the records of a sequence are scaled, each for itself."""
-    across: GroundMotion = field(default_factory=NoMotion)
+    second: Excitation | None = None
     """The second component."""
+    follows: bool = False
+    """Whether it is a second component that is scaled as the first."""
     attack: float = 0.0
     """Angle from x to the first component (rad)."""
+
+    across: GroundMotion = field(default_factory=NoMotion)
+    """Motion of the second component; none where that is of a suite."""
 
 
 def read_excitation(table: Table, directory: Path) -> Excitation | None:
@@ -87,22 +99,36 @@ def read_excitation(table: Table, directory: Path) -> Excitation | None:
     Excitation or None
         None where there are problems; they are noted.
     """
-    kind = table.choice("kind", _KINDS)
-    if not kind:
-        return None
-    excitation: Excitation | None = None
-    with table.noting(""):
-        match kind:
-            case "none":
-                excitation = Excitation(NoMotion(), {"kind": kind})
-            case "record":
-                excitation = _read_record(table, directory)
-            case _:
-                excitation = _read_formula(table, kind)
+    excitation = _read(table, directory)
     if excitation is not None:
         excitation = _in_plan(table, excitation, directory)
     table.close()
     return excitation
+
+
+def read_component(table: Table, directory: Path, follows: bool = False) -> Excitation | None:
+    """Read a motion by itself, as of a support or of the second component.
+
+    `follows` says that its records are scaled as those of the first component. Otherwise as
+    `read_excitation`.
+    """
+    found = _read(table, directory, follows)
+    table.close()
+    return found
+
+
+def _read(table: Table, directory: Path, follows: bool = False) -> Excitation | None:
+    kind = table.choice("kind", _KINDS)
+    with table.noting(""):
+        match kind:
+            case "none":
+                return Excitation(NoMotion(), {"kind": kind})
+            case "record":
+                found = _read_record(table, directory, follows)
+                return None if found is None else replace(found, follows=follows)
+            case _ if kind:
+                return _read_formula(table, kind)
+    return None
 
 
 def _in_plan(table: Table, excitation: Excitation, directory: Path) -> Excitation:
@@ -111,26 +137,61 @@ def _in_plan(table: Table, excitation: Excitation, directory: Path) -> Excitatio
     attack = table.quantity(ATTACK, Dimension.ANGLE, 0.0)
     if table.has(ATTACK):
         said[ATTACK] = attack
-    if not table.has(ACROSS):
+    if not table.has(SECOND):
         return replace(excitation, attack=attack, table=said)
-    own, first = table.table(ACROSS), excitation.motion
-    if excitation.suite is not None or isinstance(said.get("file"), list):
-        own.reject("", "none beside a suite or a list of records")
-        return excitation
-    if isinstance(first, Record) and first.psa_at:
-        own.reject("", "none beside a period of the scene in psa_period; give it in s")
-        return excitation
-    given = {"kind": table.data["kind"]} | dict(own.data)
-    if isinstance(first, Record) and given["kind"] == "record":
-        # One factor for both components, unless the second has its own.
-        shared = {key: value for key, value in table.data.items() if key in _OF_BOTH}
-        sized = any(key in own.data for key in _SIZES)
-        given = shared | ({} if sized else {"scale": abs(first.factor)}) | given
-    second = read_excitation(own.with_data(given), directory)
+    own = table.table(SECOND)
+    given = {"kind": said["kind"]} | dict(own.data)
+    of_records = given["kind"] == said["kind"] == "record"
+    if of_records:
+        given = {key: value for key, value in table.data.items() if key in _OF_BOTH} | given
+    # One factor for both components, unless the second has its own.
+    follows = of_records and not any(way in given for way in WAYS)
+    own = own.with_data(given)
+    second = None if _unlike(table, own, excitation) else read_component(own, directory, follows)
     if second is None:
         return excitation
-    said[ACROSS] = dict(second.table)
-    return replace(excitation, across=second.motion, attack=attack, table=said)
+    said[SECOND] = dict(second.table)
+    suite = excitation.suite
+    with table.noting(""):
+        if suite is not None and second.suite is not None:
+            suite = replace(suite, beside=((SECOND, second.suite),))
+            suite.members(directory)
+        excitation = replace(excitation, suite=suite, second=second, attack=attack, table=said)
+        return _with_across(excitation)
+    return excitation
+
+
+def _unlike(table: Table, own: Table, first: Excitation) -> bool:
+    """Whether the records of a second component are others than the first has, which is noted."""
+    if own.data["kind"] != "record":
+        return False
+    if own_period(own):
+        own.reject("psa_period", "a period (s); that of the scene scales the first component alone")
+        return True
+    found, beside = _records(own.data), _records(first.table)
+    if found != beside and (first.table["kind"] == "record" or found == _SUITE):
+        table.report(SECOND, f"found {found} beside {beside}; accepted: {beside}")
+        return True
+    return False
+
+
+def _records(given: Mapping[str, object]) -> str:
+    """What ``[excitation]`` has of records."""
+    if "suite" in given or "synthetic" in given:
+        return _SUITE
+    return "a list of files" if isinstance(given.get("file"), list) else "one motion"
+
+
+def _with_across(excitation: Excitation) -> Excitation:
+    """The same with the motion of the second component beside the first as it is."""
+    second, first = excitation.second, excitation.motion
+    if second is None:
+        return excitation
+    own = second.motion
+    if second.follows and isinstance(own, Record) and isinstance(first, Record):
+        with told_of(where_beside(SECOND)):
+            own = scaled_as(first, own)
+    return replace(excitation, across=own)
 
 
 def for_scene(excitation: Excitation, scene: Scene) -> Excitation:
@@ -144,14 +205,15 @@ def for_scene(excitation: Excitation, scene: Scene) -> Excitation:
     suite, motion, each = excitation.suite, excitation.motion, excitation.options
     if each is not None and each.size.psa_at and excitation.record is not None:
         own = replace(each, size=each.size.for_scene(scene))
-        return replace(excitation, motion=own.motion(excitation.record), options=own)
+        own_motion = own.motion(excitation.record)
+        return _with_across(replace(excitation, motion=own_motion, options=own))
     if suite is not None and suite.options.size.psa_at:
         size = suite.options.size.for_scene(scene)
         scaled = replace(suite, options=replace(suite.options, size=size))
         return replace(excitation, suite=scaled)
     if isinstance(motion, Record) and motion.psa_at:
         period = period_called(scene, motion.psa_at)
-        return replace(excitation, motion=motion.like(psa_period=period))
+        return _with_across(replace(excitation, motion=motion.like(psa_period=period)))
     return excitation
 
 
@@ -191,9 +253,10 @@ def _read_formula(table: Table, kind: str) -> Excitation | None:
     return Excitation(motion, {"kind": kind, **numbers, "reverse": reverse})
 
 
-def _read_record(table: Table, directory: Path) -> Excitation | None:
+def _read_record(table: Table, directory: Path, follows: bool) -> Excitation | None:
     """A record from a file beside the case or in an installed package, or a suite of them."""
     options = read_record_options(table, directory)
+    options = None if options is None else replace(options, follows=follows)
     if table.has("suite") or table.has("synthetic"):
         suite = read_suite_keys(table, options)
         if suite is None:

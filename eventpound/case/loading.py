@@ -85,8 +85,8 @@ def load_case(path: str | Path, suite: str | None = None) -> Case:
 
 def _factors(scene: Scene) -> list[tuple[str, float]]:
     """Factors on the records of the ground and of supports, by the names of their files."""
-    motions = [scene.motion, *(support.motion for support in scene.supports)]
-    return [(motion.called, motion.factor) for motion in motions if isinstance(motion, Record)]
+    records = [motion for motion in scene.motions if isinstance(motion, Record)]
+    return [(record.called, record.factor) for record in records]
 
 
 def read_document(path: str | Path) -> tuple[dict[str, object], Path, str]:
@@ -266,7 +266,7 @@ def _at_own_period(top: Table, excitation: Excitation, scene: Scene) -> tuple[Ex
         own = for_scene(excitation, at_rest(scene, start))
         if own is excitation:
             return own, scene
-        moved = replace(scene, motion=own.motion)
+        moved = replace(scene, motion=own.motion, across=own.across)
         if top.has("pi"):
             raise InputError(
                 "found a period of the scene, which [pi] makes; accepted: a period (s)"
@@ -287,7 +287,7 @@ def _suite(
     """The records of the case with those of supports; where their numbers differ, that is noted."""
     if excitation is None or excitation.suite is None:
         return None
-    suite = replace(excitation.suite, supports=driven.suites)
+    suite = replace(excitation.suite, beside=(*excitation.suite.beside, *driven.suites))
     with top.noting("[[support]]"):
         suite.members(directory)
     return suite

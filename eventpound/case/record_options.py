@@ -40,6 +40,8 @@ class RecordOptions:
         What is done to the samples before they are scaled.
     size : RecordScaling
         How large they are made.
+    follows : bool
+        Whether that is by the factor on the first component instead.
     """
 
     format: str | None = None
@@ -52,6 +54,7 @@ class RecordOptions:
     response_path: Path | None = None
     processing: Processing = field(default_factory=Processing)
     size: RecordScaling = field(default_factory=RecordScaling)
+    follows: bool = False
 
     def read(self, path: Path, as_needed: bool = False) -> RecordData:
         """Read a file and process its samples.
@@ -94,7 +97,8 @@ class RecordOptions:
         named: dict[str, object] = {key: text for key, text in chosen.items() if text is not None}
         if self.processing.does_something:
             named["processing"] = self.processing.described()
-        return {**named, **self.size.understood(), "start": self.start, "reverse": self.reverse}
+        size = {} if self.follows else self.size.understood()
+        return {**named, **size, "start": self.start, "reverse": self.reverse}
 
 
 def read_record_options(table: Table, directory: Path) -> RecordOptions | None:

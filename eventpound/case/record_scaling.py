@@ -28,7 +28,7 @@ from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.motion import Record, RecordData
 from eventpound.motion.scaling import DAMPING, Target, factor_to, psa_of
-from eventpound.motion.sequence import records_of, times_each
+from eventpound.motion.sequence import begun_with, records_of, times_each
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.periods import T_1, period_called
 from eventpound.scene.scene import Scene
@@ -38,7 +38,8 @@ LARGEST_SCALE = 4.0
 """Factor on a record beyond which is warned, where the case does not say another."""
 _MOST_NAMED = 4
 """Records that a warning names, where each has several factors."""
-_WAYS = ("scale", "pga", "psa", "target")
+WAYS = ("scale", "pga", "psa", "target")
+"""Keys that say how large a record is."""
 _TARGET = (
     'a CSV file with columns period (s) and PSA_g (g), or a list of pairs, [[0.1, "0.5 g"], ...]'
 )
@@ -192,6 +193,26 @@ class RecordScaling:
         return found if by_size else {"scale": self.scale or 1.0, **found}
 
 
+def scaled_as(first: Record, second: Record) -> Record:
+    """A second component by the factor on the first; each shock begins there, and has its own.
+
+    Raises
+    ------
+    InputError
+        Where it has other shocks.
+    """
+    scale = abs(first.factor)
+    if first.source is None or second.source is None:
+        return second.like(scale=scale)
+    data = begun_with(first.source, second.source)
+    if data is second.source:
+        return second.like(scale=scale)
+    if first.source.factors:
+        data = times_each(data, first.source.factors)
+    numbers = data.acceleration, data.time_step, scale, None, second.reverse, second.start
+    return Record(*numbers, data)
+
+
 def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
     """Read the keys of the size of a record.
 
@@ -219,15 +240,15 @@ def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
         None if way == each_of else table.optional_quantity(way, of, positive)
         for way, of in dimensions.items()
     )
-    at = _own_period(table)
+    at = own_period(table)
     # The scene is not known yet; `for_scene` puts its period in this place.
     period = 1.0 if at else table.optional_quantity("psa_period", Dimension.TIME, positive)
     damping = table.optional_quantity("psa_damping", Dimension.NUMBER)
     if damping is not None:
         table.require("psa_damping", not (damping < 0.0 or damping >= 1.0), "0 to below 1")
-    given = [way for way in _WAYS if table.has(way)]
+    given = [way for way in WAYS if table.has(way)]
     if len(given) > 1:
-        table.reject(given[-1] if given[-1] != "pga" else "scale", f"one of {', '.join(_WAYS)}")
+        table.reject(given[-1] if given[-1] != "pga" else "scale", f"one of {', '.join(WAYS)}")
         return None
     if not table.has("psa"):
         for key in ("psa_period", "psa_damping"):
@@ -288,7 +309,7 @@ def large_scales(factors: Sequence[tuple[str, float]], limit: float) -> str:
     return f"{who} by more than {limit:g} (largest_scale in [excitation]): {named}"
 
 
-def _own_period(table: Table) -> str:
+def own_period(table: Table) -> str:
     """What ``psa_period`` calls a period of the scene; empty where it does not."""
     given = table.data.get("psa_period")
     named = isinstance(given, str) and (given == T_1 or given.startswith(f"{T_1} of "))

@@ -17,6 +17,7 @@ from pathlib import Path
 from eventpound.basics.input_files import MOST_MATCHES, matching_files
 from eventpound.case.record_file import record_root
 from eventpound.case.record_options import RecordOptions
+from eventpound.case.record_scaling import scaled_as
 from eventpound.case.table import Table
 from eventpound.errors import InputError, told_of
 from eventpound.motion import Record, RecordData
@@ -28,6 +29,8 @@ from eventpound.units import Dimension
 
 KEPT = 128
 """Records that are kept when they have been read."""
+SECOND, ATTACK = "across", "attack"
+"""Keys of the second component of a motion, a table, and of the direction of the first."""
 LARGEST_SEED = 2**63 - 1
 """Of a synthetic motion, and the largest number of one."""
 RECORDS = 'a pattern of files, "folder/*.AT2", or a file that lists them, "records.csv"'
@@ -50,8 +53,9 @@ class Member:
         Seed and number of a synthetic motion.
     problem : str
         Why it cannot be read, where its line in a list says nonsense.
-    supports : tuple of (str, Member)
-        The record of each support that has one in a suite of its own, by its name.
+    beside : tuple of (str, Member)
+        The record of each support that has one in a suite of its own, by its name, or the second
+        component, `SECOND`.
     files : tuple of str
         Of a sequence, all of them; else empty.
     rest : float
@@ -63,7 +67,7 @@ class Member:
     options: RecordOptions
     synthetic: tuple[int, int] | None = None
     problem: str = ""
-    supports: tuple[tuple[str, Member], ...] = ()
+    beside: tuple[tuple[str, Member], ...] = ()
     files: tuple[str, ...] = ()
     rest: float = math.nan
 
@@ -107,10 +111,20 @@ class Member:
             stamp = ()
         return _motion(self, stamp)
 
-    def at_support(self, name: str) -> Record:
-        """Its ground motion, of a support that messages name."""
-        with told_of(f"support '{name}': "):
-            return self.motion()
+    def motions_beside(self) -> dict[str, Record]:
+        """Motions of what goes with it, by their names.
+
+        Raises
+        ------
+        InputError
+            Where a record cannot be read or used.
+        """
+        found = {}
+        for name, member in self.beside:
+            with told_of(where_beside(name)):
+                motion = member.motion()
+                found[name] = scaled_as(self.motion(), motion) if member.options.follows else motion
+        return found
 
     def on(self, scene: Scene) -> Scene:
         """A scene moved by it, and by what goes with it at supports.
@@ -120,10 +134,11 @@ class Member:
         InputError
             Where a record cannot be read or used.
         """
-        own = {name: member.at_support(name) for name, member in self.supports}
+        own = self.motions_beside()
         return replace(
             scene,
             motion=self.motion(),
+            across=own.get(SECOND, scene.across),
             supports=tuple(
                 replace(each, motion=own[each.name]) if each.name in own else each
                 for each in scene.supports
@@ -142,7 +157,7 @@ class Member:
             "response_sha256": None if response is None else _hash(response),
             "synthetic": self.synthetic,
             "options": {**self.options.said(), **self.options.understood()},
-            **({"supports": {n: m.described() for n, m in self.supports}} if self.supports else {}),
+            **({"supports": {n: m.described() for n, m in self.beside}} if self.beside else {}),
         }
 
 
@@ -158,8 +173,9 @@ class Suite:
         Seed and number of each synthetic motion; empty with a pattern.
     options : RecordOptions
         What all of them have in common.
-    supports : tuple of (str, Suite)
-        Those of supports that have records of their own, by the name of the support.
+    beside : tuple of (str, Suite)
+        Those of supports that have records of their own, by the name of the support, or of the
+        second component, `SECOND`.
     rest : float or None
         Between the records of sequences (s).
     """
@@ -167,11 +183,11 @@ class Suite:
     pattern: str | None
     synthetic: tuple[tuple[int, int], ...]
     options: RecordOptions
-    supports: tuple[tuple[str, Suite], ...] = ()
+    beside: tuple[tuple[str, Suite], ...] = ()
     rest: float | None = None
 
     def members(self, directory: Path) -> list[Member]:
-        """The motions, in order of their files, each with that of the same place for a support.
+        """The motions, in order of their files, each with those of the same place beside it.
 
         Parameters
         ----------
@@ -181,25 +197,23 @@ class Suite:
         Raises
         ------
         InputError
-            Where no file matches, a list cannot be read, or a support has another number of
-            records.
+            Where no file matches, a list cannot be read, or a support or the second component has
+            another number of records.
         """
         members = self._own_members(directory)
         problems, columns = [], []
-        for name, suite in self.supports:
+        for name, suite in self.beside:
             own = suite.members(directory)
             columns.append([(name, member) for member in own])
             if len(own) != len(members):
                 problems.append(
-                    f"support '{name}': found {len(own)} records for the {len(members)} of "
+                    f"{where_beside(name)}found {len(own)} records for the {len(members)} of "
                     "[excitation]; accepted: as many, which go together in their order"
                 )
         if problems:
             raise InputError(problems)
         pairs = zip(*columns, strict=True) if columns else ((),) * len(members)
-        return [
-            replace(m, supports=own) if own else m for m, own in zip(members, pairs, strict=True)
-        ]
+        return [replace(m, beside=own) if own else m for m, own in zip(members, pairs, strict=True)]
 
     def _own_members(self, directory: Path) -> list[Member]:
         """The motions of the ground."""
@@ -222,6 +236,11 @@ class Suite:
         return [
             Member(path.relative_to(common).as_posix(), str(path), self.options) for path in paths
         ]
+
+
+def where_beside(name: str) -> str:
+    """How messages about what goes with a record begin."""
+    return f"{SECOND}: " if name == SECOND else f"support '{name}': "
 
 
 @lru_cache(KEPT)

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from eventpound.case.excitation import Excitation, read_excitation
+from eventpound.case.excitation import Excitation, read_component
 from eventpound.case.frequency import required_frequency
 from eventpound.case.record_file import find_record
 from eventpound.case.suite import Suite
@@ -129,7 +129,7 @@ def _own_motion(table: Table, directory: Path, in_suite: bool) -> Excitation | N
     if own.has("largest_scale"):
         own.reject("largest_scale", "in [excitation] of the case, for all records")
         return None
-    excitation = read_excitation(own, directory)
+    excitation = read_component(own, directory)
     if excitation is not None and isinstance(excitation.table.get("psa_period"), str):
         own.reject("psa_period", "a period (s)")
         return None

@@ -71,7 +71,8 @@ class Table:
 
     def report(self, key: str, text: str) -> CaseProblem:
         """Note a problem with a key."""
-        problem = CaseProblem(self.where, self._prefix + key if key else "", text)
+        place = f"{self._prefix}{key}".removesuffix(".")
+        problem = CaseProblem(self.where, place, text)
         self._problems.append(problem)
         return problem
 

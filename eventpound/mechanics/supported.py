@@ -128,8 +128,7 @@ def _strongest(scene: Scene) -> Scales | None:
     known = scene.motion.scales()
     if known is not None:
         return known
-    moved = [support.moved_by(scene.motion) for support in scene.supports]
-    others = [motion.scales() for motion in (scene.across, *moved)]
+    others = [motion.scales() for motion in scene.motions]
     return max((s for s in others if s is not None), key=lambda s: s.a_g, default=None)
 
 
@@ -137,9 +136,7 @@ def _push(scene: Scene) -> float:
     """Largest acceleration that the ground, a support or a force alone gives a body (m/s²)."""
     mass = {body.name: body.mass for body in scene.bodies}
     pushes = [peak_of(f.history) / (1.0 if f.per_mass else mass[f.body]) for f in scene.forces]
-    moved = [scene.motion, scene.across]
-    moved += [support.moved_by(scene.motion) for support in scene.supports]
-    return max([*pushes, *map(peak_of, moved)])
+    return max([*pushes, *map(peak_of, scene.motions)])
 
 
 def peak_of(history: GroundMotion) -> float:

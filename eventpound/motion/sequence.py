@@ -74,6 +74,35 @@ def times_each(sequence: RecordData, factors: Sequence[float]) -> RecordData:
     return replace(sequence, acceleration=samples, factors=tuple(factors))
 
 
+def begun_with(first: RecordData, second: RecordData) -> RecordData:
+    """A sequence whose records begin where those of another do, of which it is a component.
+
+    Components of one shock may differ by some samples, and the rest between shocks takes that up.
+
+    Raises
+    ------
+    InputError
+        Where it has another number of records, or one reaches into the next.
+    """
+    if len(first.begins) != len(second.begins):
+        raise InputError(
+            f"found {len(second.begins) or 1} records for the {len(first.begins) or 1} of the "
+            "first component; accepted: as many"
+        )
+    begins = [round(begin * first.time_step / second.time_step) for begin in first.begins]
+    parts = [np.trim_zeros(part, "b") for part in records_of(second)]
+    samples = np.zeros(begins[-1] + parts[-1].size if begins else 0)
+    for i, (begin, part) in enumerate(zip(begins, parts, strict=False)):
+        end = begin + part.size
+        if end >= (*begins, samples.size + 1)[i + 1]:
+            raise InputError(
+                f"found {second.shocks[i]}, which goes on when the next shock of the first "
+                "component begins; accepted: a longer rest"
+            )
+        samples[begin:end] = part
+    return replace(second, acceleration=samples, begins=tuple(begins)) if begins else second
+
+
 def records_of(sequence: RecordData) -> list[Floats]:
     """Samples of each record of a sequence, with the rest before the next (m/s^2)."""
     return np.split(sequence.acceleration, sequence.begins[1:])

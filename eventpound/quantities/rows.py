@@ -150,12 +150,7 @@ def first_step(task: Task) -> tuple[float, bool]:
 def close_times(task: Task, step: float) -> Floats:
     """Times of the rows: corners of the ground motion, either side of its jumps, steps between."""
     scene = task.scene
-    moving: list[GroundMotion] = [
-        scene.motion,
-        scene.across,
-        *(support.moved_by(scene.motion) for support in scene.supports),
-        *(force.history for force in scene.forces),
-    ]
+    moving: list[GroundMotion] = [*scene.motions, *(force.history for force in scene.forces)]
     corners, jumps = (np.concatenate(x) for x in zip(*map(_corners, moving), strict=True))
     jumps = jumps[(jumps > task.start) & (jumps < task.end)]
     inside = corners[(corners > task.start) & (corners < task.end)]

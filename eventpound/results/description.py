@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.case.understood import parts_written
-from eventpound.motion.base import GroundMotion
+from eventpound.motion.base import GroundMotion, moves
 from eventpound.scene.contact import Contact
 from eventpound.scene.ends import written
 from eventpound.scene.scene import Scene
@@ -28,8 +28,8 @@ def describe_scene(scene: Scene) -> dict[str, Any]:
     dict
         Lists ``bodies`` (mass in kg, initial state in m and m/s), ``springs``
         (ends, law and its parameters in N/m, N, m), ``dashpots`` (N s/m),
-        ``contacts`` (gap in m, restitution), the ``motion``'s kind, and ``supports`` and
-        ``forces`` where there are some.
+        ``contacts`` (gap in m, restitution), the ``motion``'s kind, and ``across``, ``supports``
+        and ``forces`` where there are some.
     """
     tables = parts_written(scene.bodies, scene.springs, scene.dashpots)
     return {
@@ -54,11 +54,13 @@ def _flat(body: dict[str, Any]) -> dict[str, object]:
 
 
 def driven(scene: Scene) -> dict[str, object]:
-    """Supports and forces, of a scene that has some: kinds of motion, and hashes of their numbers.
+    """What moves a scene beside the ground motion: kinds of motion, and hashes of their numbers.
 
     A hash is of the smooth pieces: of their ends, formulas and samples.
     """
     found: dict[str, object] = {}
+    if moves(scene.across):
+        found["across"] = {"motion": scene.across.kind, "pieces_sha256": pieces_hash(scene.across)}
     if scene.supports:
         found["supports"] = [
             {

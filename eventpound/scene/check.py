@@ -393,8 +393,7 @@ def _overlaps(scene: Scene, start: float) -> dict[int, float]:
 
 def _scale_of_motions(scene: Scene) -> float:
     """Length of which what a motion left, or the way of a support in a tail, is rounding (m)."""
-    moved = [support.moved_by(scene.motion) for support in scene.supports]
-    scales = [motion.scales() for motion in (scene.motion, *moved)]
+    scales = [motion.scales() for motion in scene.motions]
     return max((each.length for each in scales if each is not None), default=0.0)
 
 

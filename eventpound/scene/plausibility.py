@@ -79,6 +79,7 @@ def doubts(
     found: Iterable[Doubt] = (
         *_unit_doubts(bare),
         *_motion_doubts("excitation", scene.motion),
+        *_motion_doubts("across", scene.across),
         *_support_doubts(supports),
         *_spring_doubts(scene),
         *_storey_doubts(scene),

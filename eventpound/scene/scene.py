@@ -81,6 +81,12 @@ class Scene:
         return turned or any(body.direction != ALONG for body in self.bodies)
 
     @property
+    def motions(self) -> tuple[GroundMotion, ...]:
+        """The ground motion, its second component, and those of supports."""
+        moved = (support.moved_by(self.motion) for support in self.supports)
+        return (self.motion, self.across, *moved)
+
+    @property
     def is_driven(self) -> bool:
         """Whether the engine has it otherwise than it is: with supports, forces, or in plan."""
         return bool(self.supports or self.forces or self.in_plan)

@@ -129,7 +129,8 @@ def _numbers(scene: Scene) -> Iterator[tuple[str, str, float]]:
     for contact in scene.contacts:
         parts += [("contact", contact.name, each) for each in (contact, contact.law) if each]
     parts += [("support", support.name, support) for support in scene.supports]
-    motions = (scene.motion, *(s.motion for s in scene.supports if s.motion is not None))
+    motions = [scene.motion, scene.across]
+    motions += [s.motion for s in scene.supports if s.motion is not None]
     parts += [("excitation", "", motion) for motion in motions]
     parts += [("force", force.body, force.history) for force in scene.forces]
     for kind, name, part in parts:

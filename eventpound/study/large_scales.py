@@ -35,8 +35,9 @@ def _factors(base: Base) -> Iterator[tuple[str, float]]:
             continue
         try:
             yield from ((member.name, f) for f in _over_axes(base.under(member)))
-            for name, own in member.supports:
-                yield f"{own.name} at {name}", own.motion().largest_factor
+            for name, own in member.beside:
+                if not own.options.follows:
+                    yield f"{own.name} at {name}", own.motion().largest_factor
         except InputError:
             # Its run says so.
             continue

@@ -88,8 +88,8 @@ class Base:
 
     @property
     def one_by_one(self) -> bool:
-        """Whether each record makes a scene of its own: supports move by others than the ground."""
-        return any(record.supports for record in self.records)
+        """Whether each record makes a scene of its own: others go with it."""
+        return any(record.beside for record in self.records)
 
     def under(self, record: Member) -> Base:
         """The same scene and axes under one record.

@@ -12,7 +12,7 @@ import numpy as np
 
 from eventpound.accuracy.judge import rtol_of_judge
 from eventpound.case.case import Case
-from eventpound.case.suite import KEPT, Member
+from eventpound.case.suite import KEPT, Member, where_beside
 from eventpound.errors import EventpoundError
 from eventpound.motion.intensity import peak_velocity
 from eventpound.motion.readers.base import RecordData
@@ -41,8 +41,8 @@ _READ = "seconds.read"
 
 def record_columns(members: Sequence[Member], suite: OfSuite) -> tuple[str, ...]:
     """Columns of a suite that tell of its records."""
-    supports = [name for name, _ in members[0].supports]
-    own = [f"{key}.{name}" for name in supports for key in (FILE, "sha256", "PGA")]
+    beside = [name for name, _ in members[0].beside]
+    own = [f"{key}.{name}" for name in beside for key in (FILE, "sha256", "PGA")]
     measures = () if suite.sa is None else _MEASURES
     return ("record", FILE, FAILED, *_IDENTITY, *own, *_SCALES, *measures, _READ)
 
@@ -72,13 +72,12 @@ def about(member: Member, sa: tuple[float, float] | None) -> dict[str, object]:
         row |= _identity(motion.source)
         doubts = [f"{UNLIKELY}{text}" for _, text in motion_doubts(motion)]
         scales = motion.scales()
-        for name, own in member.supports:
-            row[f"{FILE}.{name}"] = own.file
-            moved = own.at_support(name)
+        row |= {f"{FILE}.{name}": own.file for name, own in member.beside}
+        for name, moved in member.motions_beside().items():
             row[f"sha256.{name}"] = None if moved.source is None else moved.source.sha256
             row[f"PGA.{name}"] = moved.peak
             own_doubts = motion_doubts(moved)
-            doubts += [f"{UNLIKELY}support '{name}': {text}" for _, text in own_doubts]
+            doubts += [f"{UNLIKELY}{where_beside(name)}{text}" for _, text in own_doubts]
         row["notes"] = "; ".join((*motion.source.notes, *doubts))
     except EventpoundError as error:
         row[FAILED] = reason(str(error), member.file)

@@ -225,9 +225,8 @@ def _lengths(rows: Rows, scales: ScaleColumns | None) -> Floats:
 
 def kinds_that_set_lengths(scene: Scene) -> tuple[str, ...]:
     """Kinds of places whose numbers the default length of a run follows."""
-    motions = (scene.motion, *(support.motion for support in scene.supports))
-    own = ("body", "spring") if any(isinstance(motion, Record) for motion in motions) else ()
-    return ("excitation", "support", *own)
+    own = ("body", "spring") if any(isinstance(motion, Record) for motion in scene.motions) else ()
+    return ("excitation", "across", "support", *own)
 
 
 def kinds_that_set_periods(scene: Scene) -> tuple[str, ...]:

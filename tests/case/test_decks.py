@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from eventpound import Study, simulate, simulate_suite
 from eventpound.case import load_case, read_case
+from eventpound.case.case import member_case
 from eventpound.errors import InputError
 from eventpound.scene.parameters import number_places, with_values
 from eventpound.scene.scene import Scene
@@ -121,12 +123,28 @@ def test_the_case_that_was_understood_is_the_same(tmp_path: Path) -> None:
     assert case.scene.attack == math.radians(20.0)
 
 
+def write_record(file: Path, peak: float, count: int = 200) -> None:
+    t = 0.01 * np.arange(count)
+    rows = "\n".join(f"{s:.2f},{peak * math.sin(9.0 * s):.8f}" for s in t)
+    file.parent.mkdir(exist_ok=True)
+    file.write_text(f"time (s),acceleration (m/s^2)\n{rows}\n")
+
+
+SPRING = """
+[[spring]]
+between = ["ground", "A.x"]
+law = "linear"
+stiffness = "40 MN/m"
+[[joint]]
+"""
+PERIOD = 2.0 * math.pi * math.sqrt(1.2e6 / 40e6)
+RECORD = '[excitation]\nkind = "record"\n'
+
+
 def test_both_components_of_a_record_have_one_factor(tmp_path: Path) -> None:
-    for name, peak in (("x.csv", 2.0), ("y.csv", 1.0)):
-        t = 0.01 * np.arange(200)
-        rows = "\n".join(f"{s:.2f},{peak * math.sin(9.0 * s):.8f}" for s in t)
-        (tmp_path / name).write_text(f"time (s),acceleration (m/s^2)\n{rows}\n")
-    text = '[excitation]\nkind = "record"\nfile = "x.csv"\npga = "0.3 g"\n'
+    write_record(tmp_path / "x.csv", 2.0)
+    write_record(tmp_path / "y.csv", 1.0)
+    text = RECORD + 'file = "x.csv"\npga = "0.3 g"\n'
     scene = load(tmp_path, text + 'across = { file = "y.csv" }\n' + DECKS)
     assert scene.across.factor == scene.motion.factor
     places = number_places(scene)
@@ -136,6 +154,122 @@ def test_both_components_of_a_record_have_one_factor(tmp_path: Path) -> None:
     assert own.across.factor == 3.0
     turned = with_values(scene, {places["excitation.attack"]: 0.5})
     assert turned.attack == 0.5
+
+
+@pytest.fixture
+def pairs(tmp_path: Path) -> Path:
+    """Two records, each with a second component."""
+    for i in (1, 2):
+        write_record(tmp_path / "x" / f"{i}.csv", 2.0 * i)
+        write_record(tmp_path / "y" / f"{i}.csv", 1.0 * i)
+    write_record(tmp_path / "short.csv", 1.0, 150)
+    return tmp_path
+
+
+@pytest.mark.parametrize("own", ["", ', pga = "0.1 g"'])
+def test_records_of_a_suite_go_with_their_second_components(pairs: Path, own: str) -> None:
+    rest = f'pga = "0.3 g"\nattack = 0.2\n{DECKS}\n[run]\nduration = 1.0\n'
+    (pairs / "case.toml").write_text(
+        f'{RECORD}suite = "x/*.csv"\nacross = {{ suite = "y/*.csv"{own} }}\n{rest}'
+    )
+    case = load_case(pairs)
+    assert read_case(case.understood, pairs / "case.toml").understood == case.understood
+    table = simulate_suite(case, solver="fast")
+    for i, member in enumerate(case.members, 1):
+        single = f'{RECORD}file = "x/{i}.csv"\nacross = {{ file = "y/{i}.csv"{own} }}\n{rest}'
+        (pairs / "case.toml").write_text(single)
+        alone = load_case(pairs)
+        of_suite = member_case(case, member, member.read())
+        for one in (of_suite, read_case(of_suite.understood, pairs / "case.toml")):
+            assert np.array_equal(one.scene.motion.values, alone.scene.motion.values)  # type: ignore[attr-defined]
+            assert np.array_equal(one.scene.across.values, alone.scene.across.values)  # type: ignore[attr-defined]
+            assert one.scene.attack == 0.2
+        row, response = table.iloc[i - 1], simulate(alone, "fast", error_estimate=False)
+        assert row["PGA.across"] == pytest.approx(np.abs(alone.scene.across.values).max())  # type: ignore[attr-defined]
+        assert row["file.across"].endswith(f"y/{i}.csv")
+        assert row["peaks.A.y.abs_max"] == response.peaks.loc["A.y", "abs_max"]
+
+
+@pytest.mark.parametrize(
+    "size", ["scale = [1.0, 0.5]", 'pga = "0.3 g"', 'psa = ["0.4 g", "0.2 g"]\npsa_period = "T1"']
+)
+def test_each_shock_has_one_factor_for_both_components(pairs: Path, size: str) -> None:
+    size += DECKS.replace("[[joint]]", SPRING, 1)
+    files = (
+        'file = ["x/1.csv", "x/2.csv"]\nrest = 2.0\nacross = { file = ["y/1.csv", "y/2.csv"] }\n'
+    )
+    scene = load(pairs, RECORD + files + size)
+    assert isinstance(scene.motion, Record)
+    assert isinstance(scene.across, Record)
+    assert [f for _, f in scene.across.shocks] == [f for _, f in scene.motion.shocks]
+    # The second components are halves of the first.
+    np.testing.assert_allclose(scene.across.values, scene.motion.values / 2.0, rtol=1e-6, atol=1e-9)
+
+
+def test_components_of_a_shock_may_differ_by_some_samples(pairs: Path) -> None:
+    files = (
+        'file = ["x/1.csv", "x/2.csv"]\nrest = 2\nacross = { file = ["short.csv", "y/2.csv"] }\n'
+    )
+    scene = load(pairs, RECORD + files + DECKS)
+    assert isinstance(scene.motion, Record)
+    assert isinstance(scene.across, Record)
+    assert np.array_equal(scene.across.begins, scene.motion.begins)
+    t = np.linspace(scene.motion.begins[1], scene.motion.end, 500)
+    np.testing.assert_allclose(
+        scene.across.acceleration(t), scene.motion.acceleration(t) / 2.0, atol=1e-7
+    )
+
+
+def test_a_run_lasts_until_both_components_are_over(pairs: Path) -> None:
+    for first, second in (("x/1", "short"), ("short", "x/1")):
+        text = f'{RECORD}file = "{first}.csv"\nacross = {{ file = "{second}.csv" }}\n'
+        (pairs / "case.toml").write_text(text + DECKS.replace("[[joint]]", SPRING, 1))
+        assert load_case(pairs).run.duration == pytest.approx(1.99 + 5.0 * PERIOD)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('suite = "x/*.csv"\nacross = { file = "short.csv" }', "across: found one motion beside a"),
+        ('file = "x/1.csv"\nacross = { suite = "y/*.csv" }', "across: found a suite beside one"),
+        ('suite = "x/*.csv"\nacross = { suite = "?.csv" }', "across: suite: found '?.csv', but no"),
+        ('suite = "x/*.csv"\nacross = { suite = "sh*" }', "across: found 1 records for the 2 of"),
+        ('file = "x/1.csv"\nacross = { file = "y/1.csv", attack = 1 }', "across.attack: unknown"),
+        (
+            'file = "x/1.csv"\nacross = { file = "y/1.csv", psa = 1.0, psa_period = "T1" }',
+            "across.psa_period: found 'T1'; accepted: a period",
+        ),
+        (
+            'file = ["x/1.csv", "x/2.csv"]\nrest = 2\nacross = { file = ["short.csv"] }',
+            "across: found 1 records for the 2 of the first component",
+        ),
+        (
+            'file = ["short.csv", "x/2.csv"]\nrest = 0.1\n'
+            'across = { file = ["x/1.csv", "x/2.csv"] }',
+            "across: found 1.csv, which goes on when the next shock of the first",
+        ),
+    ],
+)
+def test_second_components_unlike_the_first(pairs: Path, text: str, said: str) -> None:
+    assert said in problems(pairs, f"{RECORD}{text}\n{DECKS}")
+
+
+def test_a_support_has_one_component(pairs: Path) -> None:
+    for key in ('across = { file = "y/1.csv" }', "attack = 0.1"):
+        own = f'excitation = {{ kind = "record", file = "x/1.csv", {key} }}'
+        text = f'{PULSE}[[body]]\nname = "b"\nmass = 1.0\n[[support]]\nname = "s"\n{own}\n'
+        assert f"excitation.{key.split()[0]}: unknown key" in problems(pairs, text)
+
+
+def test_a_study_knows_its_second_component(pairs: Path) -> None:
+    """It goes on where it stopped only if that is as it was."""
+    text = f'{RECORD}file = "x/1.csv"\nacross = {{ file = "y/1.csv" }}\n{DECKS}'
+    digests = set()
+    for peak in (1.0, 1.1):
+        write_record(pairs / "y" / "1.csv", peak)
+        (pairs / "case.toml").write_text(text + "[run]\nduration = 1.0\n")
+        digests.add(Study(load_case(pairs), {"excitation.attack": [0.0, 0.5]}).plan.digest)
+    assert len(digests) == 2
 
 
 @pytest.mark.parametrize(
