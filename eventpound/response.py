@@ -14,6 +14,7 @@ from eventpound.basics.given import checked, number, positive
 from eventpound.case.run_options import DEFAULTS, Stated
 from eventpound.contact.event import STRIKES
 from eventpound.errors import EventpoundError, InputError
+from eventpound.mechanics.supported import components
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.motion.record import Record
@@ -32,9 +33,11 @@ from eventpound.quantities.spring_events import SpringEvent, spring_events
 from eventpound.scene.continuation import FinalState, continued, state_of
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.pi_terms import pi_terms
+from eventpound.scene.plan_point import ACROSS
 from eventpound.scene.scene import Scene
 from eventpound.solvers import lists_springs, solver_named
 from eventpound.solvers.base import Energy, Event, EventKind, Recording, Task, Work
+from eventpound.solvers.supported import ground_accelerations
 from eventpound.units import Dimension
 
 if TYPE_CHECKING:
@@ -481,8 +484,10 @@ class Response:
         rows = replace(self, recording=recording).rows().iloc[places].reset_index(drop=True)
         table = rows[: times.size].assign(t=times)
         for body in self.scene.bodies if earlier.size else ():
-            ground = self.scene.motion.velocity(both)
-            gained = (rows[f"v.{body.name}"] + ground).to_numpy().reshape(2, -1)
+            speed = rows[f"v.{body.name}"].to_numpy(copy=True)
+            for signal, part in components(self.scene, body.direction):
+                speed += part * signal.velocity(both)
+            gained = speed.reshape(2, -1)
             taken, smooth = times - earlier, table[f"a.{body.name}"].to_numpy(copy=True)
             logged = np.divide(gained[0] - gained[1], taken, out=smooth, where=taken > 0.0)
             table[f"logged.{body.name}"] = logged
@@ -493,6 +498,8 @@ class Response:
         """Columns of `history`, by their names."""
         h = self.recording.history
         columns = {"t": h.t, "a_g": h.ground}
+        if self.scene.in_plan:
+            columns["a_across"] = ground_accelerations(self.scene, ACROSS, h)
         springs = [i for i, spring in enumerate(self.scene.springs) if spring.frame is None]
         for prefix, values, names in (
             ("u", h.u, [b.name for b in self.scene.bodies]),
@@ -602,6 +609,7 @@ for _field in ("task", "recording"):
 HISTORY_UNITS = {
     "t": "s",
     "a_g": "m/s^2",
+    "a_across": "m/s^2",
     "u": "m",
     "v": "m/s",
     "a": "m/s^2",

@@ -38,6 +38,7 @@ from eventpound.score.difference import Difference, Truth, difference
 from eventpound.score.levels import UNIT_OF_TIME
 from eventpound.score.pairing import Pair
 from eventpound.solvers.base import Extremes, History, Recording, Task
+from eventpound.solvers.supported import relative_accelerations
 from eventpound.tolerances import ATTAINED_ANEW
 
 
@@ -205,7 +206,7 @@ def ambiguities(
     ndarray, shape (2, N)
         Times (s); zero where no other turning point comes near.
     """
-    apart = np.zeros((2, len(scene.bodies)))
+    apart, acceleration = np.zeros((2, len(scene.bodies))), relative_accelerations(scene, history)
     for side, sign in enumerate((1.0, -1.0)):
         limits = limits_of(scene, sign)
         peaks = sign * (extremes.minimum if side else extremes.maximum)
@@ -215,11 +216,7 @@ def ambiguities(
             near = 2.0 * (bounds[side, i] + ATTAINED_ANEW * length)
             near += INTERPOLATION * float(np.ptp(x))
             turns = largest_turns(
-                history.t,
-                x,
-                sign * history.v[:, i],
-                sign * (history.a[:, i] - history.ground),
-                peaks[i] - near,
+                history.t, x, sign * history.v[:, i], sign * acceleration[:, i], peaks[i] - near
             )
             rivals = _until_held(_others(turns, history, times[i]), history, limits, i, x)
             apart[side, i] = max((abs(turn.t - times[i]) for turn in rivals), default=0.0)

@@ -22,6 +22,7 @@ from eventpound.mechanics.model import assemble
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Event, EventKind, Recording
+from eventpound.solvers.supported import relative_accelerations
 
 
 class Turn(NamedTuple):
@@ -151,7 +152,7 @@ class Graze:
 def near_misses(scene: Scene, recording: Recording) -> tuple[NearMiss, ...]:
     """Gaps smaller than `NEAR_GAP` of the largest displacement that did not close."""
     h, model = recording.history, assemble(scene)
-    acceleration = h.a - h.ground[:, np.newaxis]
+    acceleration = relative_accelerations(scene, h)
     moving = {support.name for support in scene.supports}
     largest = float(np.max(np.abs(h.u), initial=0.0))
     found = []

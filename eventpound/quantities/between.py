@@ -30,7 +30,7 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
 from eventpound.scene.structures import structure_names, structures_of
 from eventpound.solvers.base import Extremes, Recording, Task
-from eventpound.solvers.supported import link_force_on
+from eventpound.solvers.supported import link_force_on, relative_accelerations
 
 SETTLED = 1e-9
 """Part of the largest value that may be hidden between rows, where rtol is not larger."""
@@ -207,13 +207,13 @@ def _displacements(scene: Scene, recording: Recording) -> dict[str, Floats]:
 
 
 def _motions(scene: Scene, recording: Recording) -> dict[str, tuple[Floats, Floats]]:
-    """Velocity relative to the ground and acceleration in space of all ends of springs."""
-    h = recording.history
-    found = {GROUND: (np.zeros_like(h.t), h.ground)}
-    found |= {body.name: (h.v[:, i], h.a[:, i]) for i, body in enumerate(scene.bodies)}
+    """Velocity and acceleration relative to the ground of all ends of springs."""
+    h, a = recording.history, relative_accelerations(scene, recording.history)
+    found = {GROUND: (np.zeros_like(h.t), np.zeros_like(h.t))}
+    found |= {body.name: (h.v[:, i], a[:, i]) for i, body in enumerate(scene.bodies)}
     for i, support in enumerate(scene.supports):
         assert recording.supports is not None
-        acceleration = support.moved_by(scene.motion).acceleration(h.t)
+        acceleration = support.moved_by(scene.motion).acceleration(h.t) - h.ground
         found[support.name] = recording.supports.sv[:, i], acceleration
     return found
 

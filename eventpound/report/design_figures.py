@@ -14,7 +14,7 @@ from eventpound.quantities.lookup import Named
 from eventpound.quantities.owners import owners_of
 from eventpound.report import style
 from eventpound.report.design_tables import joint_names
-from eventpound.report.markers import draw_circles, draw_shocks
+from eventpound.report.markers import draw_circles, draw_ground, draw_shocks
 from eventpound.report.view import View
 from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact
@@ -139,7 +139,7 @@ def governing_figure(view: View, contact: Contact | None, body: str, trade: Trad
     for axes in (ground, motion, *gaps):
         style.zero_lines(axes)
     unit, size = trade.unit(Dimension.ACCELERATION.unit)
-    ground.plot(view.t, view.column("a_g") / size, color="#444444", linewidth=0.7)
+    draw_ground(ground, view, size)
     ground.set_ylabel(f"ground ({unit})")
     draw_shocks(ground, view)
     unit, size = trade.unit(Dimension.LENGTH.unit)

@@ -16,7 +16,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from eventpound.report import style
-from eventpound.report.markers import draw_circles, draw_rests, draw_shocks, event_legend
+from eventpound.report.markers import (
+    draw_circles,
+    draw_ground,
+    draw_rests,
+    draw_shocks,
+    event_legend,
+)
 from eventpound.report.towers import storeys_of
 from eventpound.report.view import Beside, Traces, View, traces_of, view_of
 from eventpound.results import StoredResults
@@ -136,7 +142,7 @@ def displacement_figure(results: StoredResults | View, beside: Beside | None = N
     many = contacts > _CONTACTS_IN_ONE_PANEL
     traces = {each.name: each for each in traces_of(view)}
     parts = {
-        "ground": (style.largest_size(view.column("a_g")) > 0.0, 1.3),
+        "ground": (style.largest_size(*view.ground.values()) > 0.0, 1.3),
         **dict.fromkeys(traces, (True, 3.0 if len(traces) == 1 else 2.0)),
         "drifts": (bool(storeys_of(view)), 1.8),
         "gaps": (contacts > 0, 2.2),
@@ -179,7 +185,7 @@ def _draw_ground(axes: Axes, view: View) -> None:
     """Draw a_g(t), in g or in a_g."""
     style.zero_lines(axes)
     unit = view.acceleration_unit
-    axes.plot(view.t, view.column("a_g") / unit.size, color=_INK, linewidth=0.8)
+    draw_ground(axes, view, unit.size)
     draw_shocks(axes, view)
     axes.set_ylabel(f"ground\nacceleration ({unit.name})")
 

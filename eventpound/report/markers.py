@@ -53,6 +53,15 @@ def draw_rests(axes: Axes, view: View, contact: str, height: float, color: Color
         axes.hlines(height, start, end, color=color, capstyle="butt", zorder=2, **_BAR)
 
 
+def draw_ground(axes: Axes, view: View, size: float) -> None:
+    """Draw the acceleration of the ground over one of `size` (m/s²), in plan both components."""
+    for (name, values), color in zip(view.ground.items(), ("#444444", "#aaaaaa"), strict=False):
+        label = "along" if name == "a_g" else "across"
+        axes.plot(view.t, values / size, color=color, linewidth=0.8, label=label)
+    if len(view.ground) > 1:
+        axes.legend(loc="upper right", ncols=2)
+
+
 def draw_shocks(axes: Axes, view: View) -> None:
     """Draw where the records of a sequence begin, with their names, as far as that is in sight."""
     low, high = float(view.t[0]), float(view.t[-1])

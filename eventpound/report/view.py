@@ -178,6 +178,12 @@ class View:
         """A column of the history, shape (n,)."""
         return self.results.history_columns[name]
 
+    @property
+    def ground(self) -> dict[str, Floats]:
+        """Accelerations of the ground, in plan along and across, shape (n,) each."""
+        columns = self.results.history_columns
+        return {name: columns[name] for name in ("a_g", "a_across") if name in columns}
+
     def displacement(self, end: End) -> Floats:
         """Displacement of a body, a point or a support, zero of ground and barriers (m), (n,)."""
         return self._of_end(end, "u", "s")

@@ -125,7 +125,7 @@ def _panels(view: View, kept: Ints, trade: Trade) -> Iterator[dict[str, Any]]:
         for t in traces_of(view)
     )
     for name, dimension, curves, hues in (
-        ("ground", Dimension.ACCELERATION, [("a_g", view.column("a_g"))], dict[str, int]()),
+        ("ground", Dimension.ACCELERATION, [*view.ground.items()], dict[str, int]()),
         *traces,
         ("gap", Dimension.LENGTH, [(name, view.column(f"gap.{name}")) for name in contacts], {}),
     ):

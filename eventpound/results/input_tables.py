@@ -217,14 +217,10 @@ def rest_words(told: Mapping[str, Sequence[str]]) -> str:
     return "; ".join(_AT_REST[key].format(names) for key, names in listed.items())
 
 
-def _motion_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """The ground motion, or how many there are, and the run."""
-    motion, run = inputs["motion"], inputs["run"]
+def _of_motion(motion: Mapping[str, Any]) -> str:
+    """A component of the ground motion."""
     if "suite" in motion:
-        yield "suite", f"{motion['suite']} records, a run each"
-        if "scaling" in motion:
-            yield "scaling", str(motion["scaling"])
-        return
+        return f"{motion['suite']} records, one beside each of the first component"
     sizes = ""
     if "a_g" in motion:
         sizes = f", a_g = {motion['a_g']:.6g} m/s^2 ({motion['a_g/g']:.4g} g)"
@@ -235,10 +231,31 @@ def _motion_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         sizes += f", {motion['samples']} samples every {motion['time_step']:g} s"
     if "begins" in motion:
         sizes += f", records from {', '.join(f'{begin:.6g}' for begin in motion['begins'])} s on"
-    yield "motion", f"{motion['kind']}{sizes}"
+    return f"{motion['kind']}{sizes}"
+
+
+def _second_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """The second component, where there may be one."""
+    if "across" in inputs:
+        second = inputs["across"]
+        file = f"; {second['file']}" if "file" in second else ""
+        yield "across", f"{_of_motion(second)}{file}; attack = {second['attack']:g} deg"
+
+
+def _motion_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """The ground motion, or how many there are, and the run."""
+    motion, run = inputs["motion"], inputs["run"]
+    if "suite" in motion:
+        yield "suite", f"{motion['suite']} records, a run each"
+        if "scaling" in motion:
+            yield "scaling", str(motion["scaling"])
+        yield from _second_lines(inputs)
+        return
+    yield "motion", _of_motion(motion)
     if "file" in motion:
         said = (motion.get(key) for key in ("event", "date", "station", "component"))
         yield "record", ", ".join([motion["file"], *filter(None, said)])
+    yield from _second_lines(inputs)
     length = f"from {run['start']:g} s, as long as each motion says"
     if "duration" in run:
         length = f"{run['start']:g} to {run['start'] + run['duration']:.6g} s"

@@ -17,11 +17,12 @@ import numpy as np
 from eventpound.case.case import Case
 from eventpound.case.decks import is_of_deck
 from eventpound.case.run_options import RunOptions
+from eventpound.case.suite import SECOND
 from eventpound.case.understood import contact_law_keys, sources_of
 from eventpound.errors import InputError
 from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
-from eventpound.motion.base import moves
+from eventpound.motion.base import GroundMotion, moves
 from eventpound.motion.record import Record
 from eventpound.scene.at_rest import at_rest, stiffness_of, theta_at_rest, told_at_rest
 from eventpound.scene.contact import Contact
@@ -89,6 +90,7 @@ def inputs_of(case: Case) -> dict[str, Any]:
         **_driven(case),
         "structures": [_structure(resting, group) for group in structures_of(scene)],
         "motion": _motion(case),
+        **_second(case),
         "run": _run(case.run),
         "solver": {"name": case.solver.name, "rtol": case.solver.rtol, **case.solver.settings},
         "pi": pi_terms(scene) if scene.bodies else {},
@@ -134,7 +136,7 @@ def _driven(case: Case) -> dict[str, list[Row]]:
     scene, found = case.scene, dict[str, list[Row]]()
     if scene.supports:
         end = case.run.start_time + case.run.duration
-        suites = {} if case.suite is None else dict(case.suite.supports)
+        suites = {} if case.suite is None else dict(case.suite.beside)
         rows = []
         for support in scene.supports:
             row: Row = {"name": support.name, "kind": support.moved_by(scene.motion).kind}
@@ -276,7 +278,28 @@ def _motion(case: Case) -> Row:
     if case.suite is not None:
         scaling = case.size.words()
         return {"suite": len(case.members), **({"scaling": scaling} if scaling else {})}
-    motion = case.scene.motion
+    row = _motion_itself(case.scene.motion)
+    if case.record is not None:
+        said = {key: getattr(case.record, key) for key in ("event", "date", "station", "component")}
+        row |= {"file": case.record.file, **{key: text for key, text in said.items() if text}}
+    return row
+
+
+def _second(case: Case) -> dict[str, Row]:
+    """The second component, and the direction of the first; nothing of a scene along a line."""
+    if not case.scene.in_plan:
+        return {}
+    second = case.scene.across
+    row = _motion_itself(second) | {"attack": math.degrees(case.scene.attack)}
+    if isinstance(second, Record) and second.source is not None:
+        row["file"] = second.source.file
+    suites = {} if case.suite is None else dict(case.suite.beside)
+    if SECOND in suites:
+        row["suite"] = len(suites[SECOND].members(case.directory))
+    return {"across": row}
+
+
+def _motion_itself(motion: GroundMotion) -> Row:
     row: Row = {"kind": motion.kind}
     scales = motion.scales()
     if moves(motion):
@@ -287,9 +310,6 @@ def _motion(case: Case) -> Row:
     if isinstance(motion, Record):
         row |= {"time_step": motion.time_step, "samples": motion.samples.size}
         row |= {"begins": motion.begins.tolist()} if motion.begins.size else {}
-    if case.record is not None:
-        said = {key: getattr(case.record, key) for key in ("event", "date", "station", "component")}
-        row |= {"file": case.record.file, **{key: text for key, text in said.items() if text}}
     return row
 
 

@@ -111,13 +111,25 @@ def own_part(recording: Recording, scene: Scene) -> Recording:
 
 def _on_moving_ground(history: History, scene: Scene) -> History:
     """The history in plan with the ground motion, which the engine has as loads."""
-    a, ground = history.a.copy(), np.zeros(history.t.size)
-    for signal, part in components(scene, ALONG):
-        ground += part * signal.acceleration(history.t)
-    for b, body in enumerate(scene.bodies):
-        for signal, part in components(scene, body.direction):
-            a[:, b] += part * signal.acceleration(history.t)
-    return replace(history, a=a, ground=ground)
+    along = ground_accelerations(scene, ALONG, history)
+    own = [ground_accelerations(scene, body.direction, history) for body in scene.bodies]
+    return replace(history, a=history.a + np.column_stack(own), ground=along)
+
+
+def ground_accelerations(scene: Scene, direction: str, history: History) -> Floats:
+    """The ground's in a direction of bodies (m/s²) at the rows, shape (n,)."""
+    if not scene.in_plan:
+        return history.ground
+    found = np.zeros(history.t.size)
+    for signal, part in components(scene, direction):
+        found += part * signal.acceleration(history.t)
+    return found
+
+
+def relative_accelerations(scene: Scene, history: History) -> Floats:
+    """Accelerations of the bodies relative to the ground (m/s²), shape (n, b)."""
+    own = [ground_accelerations(scene, body.direction, history) for body in scene.bodies]
+    return history.a - np.column_stack(own)
 
 
 def forces_on_supports(scene: Scene, history: History, rates: Floats) -> Floats:

@@ -7,10 +7,11 @@ import pytest
 
 from eventpound import simulate
 from eventpound.errors import InputError
-from eventpound.motion import Sine
+from eventpound.motion import Cosine, Ricker, Sine
 from eventpound.quantities.lookup import names_of
 from eventpound.scene import BARRIER, GROUND, Body, Dashpot, Deck, Joint, Linear, Scene, Spring
 from eventpound.scene.pi_terms import number_of_terms, pi_terms
+from eventpound.solvers.supported import relative_accelerations
 
 ENDS = {"x": 40e6, "y": 25e6, "turn": 30e6}
 
@@ -82,3 +83,43 @@ def test_a_floor_across_is_that_of_a_body_under_the_second_component():
     )
     for column in ("SD", "SA"):
         np.testing.assert_allclose(found[column], expected[column], rtol=1e-5)
+
+
+def test_a_free_deck_stands_still_in_space():
+    """The ground moves each coordinate by its own components."""
+    deck = Deck("west", "900 t", "36 m", "11 m", "40 deg")
+    motion, across = (
+        Cosine("0.3 g", "0.8 s", start="0.3 s"),
+        Cosine("0.2 g", "0.5 s", start="0.7 s"),
+    )
+    scene = Scene(deck.bodies(), decks=[deck], motion=motion, across=across, attack=0.4)
+    response = simulate(scene, "fast", duration=2.0, output_step=0.05, error_estimate=False)
+    history, scale = response.history, 0.3 * 9.81
+    for name in ("x", "y", "turn"):
+        np.testing.assert_allclose(history[f"a.west.{name}"], 0.0, atol=1e-12 * scale)
+        logged = response.at([0.5, 1.0], logger="0.1 s")[f"logged.west.{name}"]
+        np.testing.assert_allclose(logged, 0.0, atol=1e-8 * scale)
+    relative = relative_accelerations(scene, response.recording.history)
+    t = history["t"].to_numpy()
+    a, b = motion.acceleration(t), across.acceleration(t)
+    expected = -np.column_stack(
+        [np.cos(0.4) * a - np.sin(0.4) * b, np.sin(0.4) * a + np.cos(0.4) * b, 0.0 * a]
+    )
+    np.testing.assert_allclose(relative, expected, atol=1e-12 * scale)
+    np.testing.assert_allclose(history["a_g"], -expected[:, 0], atol=1e-12 * scale)
+    np.testing.assert_allclose(history["a_across"], -expected[:, 1], atol=1e-12 * scale)
+
+
+def test_work_of_a_dashpot_across_is_that_of_the_ledger():
+    deck = Deck("west", "900 t", "36 m", "11 m", "40 deg")
+    scene = Scene(
+        deck.bodies(),
+        [Spring("held", ("ground", "west.y"), Linear("40 MN/m"))],
+        [Dashpot(("ground", "west.y"), "2 MN s/m")],
+        decks=[deck],
+        motion=Ricker("0.5 g", "0.8 s"),
+        across=Ricker("0.3 g", "0.7 s"),
+    )
+    response = simulate(scene, "fast", duration=3.0, energy=True, error_estimate=False)
+    found = response.quantity("dashpots.ground-west.y.dissipated_energy")
+    assert found == pytest.approx(response.energy.viscous, rel=1e-6)
