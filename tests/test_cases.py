@@ -10,12 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from eventpound import Case, Response, load_case
-from eventpound.motion import NoMotion
+from eventpound import Case, NoMotion, Response, load_case
 from eventpound.motion.constant import Constant
-from eventpound.scene import BoucWen, Scene, Series
+from eventpound.scene import GROUND, BoucWen, Scene, Series
 from eventpound.scene.grounded import grounded
-from eventpound.scene.spring import GROUND
 from eventpound.simulation import response_of
 from eventpound.solvers.base import Event, EventKind
 from tests.models import CASES

@@ -23,12 +23,9 @@ from typing import Any
 
 import numpy as np
 
-from eventpound import load_case
+from eventpound import Case, InputError, Response, load_case
 from eventpound.accuracy.judge import INDEPENDENT
 from eventpound.accuracy.quantities import truth_of
-from eventpound.case import Case
-from eventpound.errors import InputError
-from eventpound.response import Response
 from eventpound.score.difference import difference
 from eventpound.simulation import response_of
 from eventpound.solvers import knows_scene, solver_named

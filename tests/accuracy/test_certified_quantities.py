@@ -29,15 +29,9 @@ def test_limits_add_up_along_a_row():
 
 def test_equal_peaks_of_a_free_vibration_make_the_time_uncertain():
     """u = cos t has its maximum at 0, 2π and 4π, its minimum at π and 3π."""
-    spring = Spring("s", (GROUND, "b"), Linear(1.0))
-    run = _recorded(Scene((Body("b", 1.0, 1.0),), (spring,)), 14.0)
-    apart = ambiguities(
-        Scene((Body("b", 1.0, 1.0),), (spring,)),
-        run.history,
-        run.displacement,
-        np.full((2, 1), 1e-12),
-        1.0,
-    )
+    scene = Scene((Body("b", 1.0, 1.0),), (Spring("s", (GROUND, "b"), Linear(1.0)),))
+    run = _recorded(scene, 14.0)
+    apart = ambiguities(scene, run.history, run.displacement, np.full((2, 1), 1e-12), 1.0)
     high, low = run.displacement.time_of_maximum[0], run.displacement.time_of_minimum[0]
     assert apart[0, 0] == pytest.approx(max(high, 4.0 * np.pi - high), abs=1e-9)
     assert apart[1, 0] == pytest.approx(max(low - np.pi, 3.0 * np.pi - low), abs=1e-9)

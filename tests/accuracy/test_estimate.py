@@ -6,13 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from eventpound import load_case
+from eventpound import Sine, load_case
 from eventpound.accuracy import estimate
 from eventpound.accuracy.estimate import allowed_part, estimate_errors, estimate_of
 from eventpound.accuracy.judge import judge_of
 from eventpound.cli import main
 from eventpound.errors import ComputationError, InterruptionError
-from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Scene, Spring
 from eventpound.simulation import response_of
 from eventpound.solvers.fast import solver as fast

@@ -2,10 +2,9 @@
 
 import pytest
 
-from eventpound import load_case
+from eventpound import Case, load_case
 from eventpound.accuracy.estimate import estimate_errors
 from eventpound.accuracy.quantities import values_by_name
-from eventpound.case import Case
 from eventpound.simulation import response_of
 from eventpound.solvers import knows_scene, solver_named
 from tests.accuracy.honesty import CASES, single_runs, true_error, true_run, word

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound import load_case
+from eventpound import InputError, load_case
 from eventpound.accuracy.quantities import (
     FINAL,
     PEAKS,
@@ -16,7 +16,6 @@ from eventpound.accuracy.quantities import (
     truth_of,
 )
 from eventpound.accuracy.reference import StatedBounds, reference_of
-from eventpound.errors import InputError
 from eventpound.score.difference import ScaledValue
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named

@@ -14,8 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from eventpound import load_case
-from eventpound.scene import Contact, ContactLaw
+from eventpound import Contact, ContactLaw, load_case
 from eventpound.scene.contact_law import BY_WORD, Element
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named

@@ -16,9 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from eventpound import load_case
+from eventpound import Response, load_case
 from eventpound.accuracy.estimate import estimate_errors
-from eventpound.response import Response
 from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task

@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from eventpound import load_case
-from eventpound.case.case import Case
+from eventpound import Case, load_case
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.opensees import PACKAGE
 from tests.benchmarks.peers.bridge import CASE, peaks, with_spring

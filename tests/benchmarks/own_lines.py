@@ -12,14 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from eventpound import simulate_many
+from eventpound import Case, simulate_many
 from eventpound.accuracy.compare import Comparison, entries, judge_entries
 from eventpound.accuracy.work_precision import Judged
-from eventpound.case.case import Case
 from eventpound.mechanics.model import assemble
-from eventpound.scene import BilinearElastic, Scene, Spring
-from eventpound.scene.contact import BARRIER
-from eventpound.scene.spring import GROUND
+from eventpound.scene import BARRIER, GROUND, BilinearElastic, Scene, Spring
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.penalty.elements import contact_stiffness

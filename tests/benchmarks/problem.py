@@ -5,8 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eventpound import load_case
-from eventpound.scene import Scene
+from eventpound import Scene, load_case
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task

@@ -16,12 +16,9 @@ from tempfile import TemporaryDirectory
 
 import pandas as pd
 
-from eventpound import load_case
-from eventpound.case import Case
+from eventpound import Case, EventpoundError, Record, load_case
 from eventpound.case.case import member_case
 from eventpound.case.suite import Member
-from eventpound.errors import EventpoundError
-from eventpound.motion import Record
 from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from tests.benchmarks import yardsticks

@@ -28,15 +28,12 @@ from typing import TYPE_CHECKING
 
 from PIL import Image
 
-from eventpound import load_case
+from eventpound import Case, ComputationError, InputError, Record, load_case
 from eventpound.accuracy.compare import Comparison, entries, judge_entries
 from eventpound.accuracy.comparison_tables import text_table
 from eventpound.accuracy.work_precision import Judged, SolverChoice
-from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions
 from eventpound.case.solver_options import SolverOptions, solver_words
-from eventpound.errors import ComputationError, InputError
-from eventpound.motion.record import Record
 from eventpound.report import work_precision as diagram
 from eventpound.report.style import png, styled
 from eventpound.results import write_together

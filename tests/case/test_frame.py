@@ -6,10 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from eventpound import Case, frame, load_case, modal_damping, rayleigh
+from eventpound import Case, Contact, Linear, Point, frame, load_case, modal_damping, rayleigh
 from eventpound.case import read_case
 from eventpound.cli import main
-from eventpound.scene import Contact, Linear, Point
 from eventpound.scene.modes import modes_of
 
 PULSE = '[excitation]\nkind = "sine"\namplitude = "0.3 g"\nperiod = "0.5 s"\n'

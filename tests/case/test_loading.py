@@ -5,8 +5,7 @@ import time
 
 import pytest
 
-from eventpound.case import load_case, read_case, write_template
-from eventpound.case.solver_options import SolverOptions
+from eventpound.case import SolverOptions, load_case, read_case, write_template
 from eventpound.errors import InputError
 from eventpound.scene import BARRIER
 

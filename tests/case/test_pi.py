@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from eventpound import load_case
-from eventpound.errors import InputError
+from eventpound import InputError, load_case
 from eventpound.scene.pi_terms import pi_terms
 
 TEXT = """

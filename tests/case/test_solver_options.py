@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eventpound import Case, Study, load_case, simulate, simulate_many, simulate_suite
+from eventpound import Case, InputError, Study, load_case, simulate, simulate_many, simulate_suite
 from eventpound.case.solver_options import FAST, default_solver
 from eventpound.cli import main
-from eventpound.errors import InputError
 from eventpound.solvers import knows_scene, solver_named
 from eventpound.study.reading import load_study
 from tests.study.test_suite import time_series

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from eventpound import load_case, simulate
+from eventpound import InputError, load_case, simulate
 from eventpound.case import read_case
 from eventpound.case.case import member_case
-from eventpound.errors import InputError
 from eventpound.motion.synthetic import synthetic_motion
 
 CASE = """\

@@ -5,11 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eventpound import load_case, simulate
+from eventpound import InputError, load_case, simulate
 from eventpound.case import read_case, write_template
 from eventpound.case.template import SCENES
 from eventpound.cli import main
-from eventpound.errors import InputError
 from eventpound.scene import GROUND, Body, BoucWen, Linear, Spring
 from eventpound.scene.modes import modes_of
 from eventpound.units import STANDARD_GRAVITY

@@ -15,10 +15,9 @@ import pytest
 import eventpound.cli.arguments
 import eventpound.response
 import eventpound.results.files
-from eventpound import results
+from eventpound import Scene, results
 from eventpound.cli import main, progress
 from eventpound.cli.progress import Watch
-from eventpound.scene import Scene
 from tests.motion.readers.writers import at2, motion
 
 DECK = """\

@@ -4,8 +4,7 @@ import tomllib
 from dataclasses import dataclass
 from functools import cached_property
 
-from eventpound import load_case
-from eventpound.case import Case
+from eventpound import Case, load_case
 from tests.hard.generated import FOLDER, folder_of
 
 REFUSED = {"endless": "impacts in one instant do not end"}

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import nnls
 
 from eventpound.mechanics.contact_problem import LONG_ROW, solve_contacts
-from tests.numerics.problems import Contacts, graph, joints, rounding, row, violation
+from tests.numerics.problems import Contacts, assert_solved, graph, joints, row
 
 
 def _together(parts: list[Contacts], rng: np.random.Generator) -> Contacts:
@@ -27,12 +27,7 @@ def _together(parts: list[Contacts], rng: np.random.Generator) -> Contacts:
 
 def _check(contacts: Contacts, p: np.ndarray) -> None:
     G, q = contacts.G, contacts.factor.T @ p
-    x, w, solved = solve_contacts(contacts.joints, q, 0.0)
-    assert solved
-    assert violation(G, q, x) <= 1.0
-    assert (w >= 0.0).all()
-    assert not (x * w).any()
-    assert (np.abs(G @ x + q - w) <= rounding(G, x, q)).all()
+    assert_solved(G, q, *solve_contacts(contacts.joints, q, 0.0))
 
 
 def test_many_parts():

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from eventpound.mechanics.reduced import forcing_of
-from eventpound.motion import GroundMotion, NoMotion, Record, Ricker, Sine
-from eventpound.motion.base import Family
+from eventpound.motion import Family, GroundMotion, NoMotion, Record, Ricker, Sine
 from eventpound.motion.constant import Constant, PhasedSine
 from eventpound.motion.delayed import Delayed
 from eventpound.motion.forcing import decay_time, next_corner, signal_value

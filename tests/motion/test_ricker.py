@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from eventpound.errors import InputError
-from eventpound.motion import AntisymmetricRicker, Ricker
-from eventpound.motion.base import Family
+from eventpound.motion import AntisymmetricRicker, Family, Ricker
 
 
 def test_symmetric_wavelet_by_its_formula():

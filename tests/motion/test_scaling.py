@@ -5,10 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eventpound import load_case
+from eventpound import InputError, Record, load_case
 from eventpound.case import read_case
-from eventpound.errors import InputError
-from eventpound.motion import Record
 from eventpound.motion.scaling import Target, factor_to, psa_of
 from eventpound.study.response_spectrum import response_spectrum
 

@@ -98,3 +98,12 @@ def violation(G: Floats, q: Floats, x: Floats) -> float:
     level = np.where(level > 0.0, level, 1.0)
     active = np.where(x > 0.0, np.abs(w), np.maximum(-w, 0.0))
     return float(np.max(active / level, initial=0.0)) if (x >= 0.0).all() else np.inf
+
+
+def assert_solved(G: Floats, q: Floats, x: Floats, w: Floats, solved: bool) -> None:
+    """The conditions of optimality hold."""
+    assert solved
+    assert violation(G, q, x) <= 1.0
+    assert (w >= 0.0).all()
+    assert not (x * w).any()
+    assert (np.abs(G @ x + q - w) <= rounding(G, x, q)).all()

@@ -7,17 +7,22 @@ import pytest
 from scipy.optimize import nnls
 
 from eventpound.numerics.lcp import solve_chain, solve_dense
-from tests.numerics.problems import EPS, Contacts, graph, masses, rounding, row, violation
+from tests.numerics.problems import (
+    EPS,
+    Contacts,
+    assert_solved,
+    graph,
+    masses,
+    rounding,
+    row,
+    violation,
+)
 
 
 def _check_solution(G: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Solve and assert the conditions of optimality; returns x and w."""
     x, w, solved = solve_dense(G, q, 0.0)
-    assert solved
-    assert violation(G, q, x) <= 1.0
-    assert (w >= 0.0).all()
-    assert not (x * w).any()
-    assert (np.abs(G @ x + q - w) <= rounding(G, x, q)).all()
+    assert_solved(G, q, x, w, solved)
     return x, w
 
 

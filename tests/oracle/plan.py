@@ -16,8 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.scene import BARRIER, Deck, Scene
-from eventpound.scene.joint import Joint
+from eventpound.scene import BARRIER, Deck, Joint, Scene
 from tests.oracle.pieces import Event, Floats, march
 
 TOO_FAST = 1e-4

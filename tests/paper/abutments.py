@@ -14,8 +14,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from eventpound import Response, load_case, simulate
-from eventpound.motion import Record, read_record
+from eventpound import Record, Response, load_case, read_record, simulate
 from eventpound.scene import BilinearElastic, Linear, Scene, Series, Spring
 from eventpound.solvers.base import EventKind
 from tests.benchmarks.problem import CASES

@@ -15,11 +15,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from eventpound import load_case, simulate
+from eventpound import Record, Scene, load_case, simulate
 from eventpound.accuracy.conditioning import conditioning
 from eventpound.case.case import Case, member_case
-from eventpound.motion.record import Record
-from eventpound.scene import Scene
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.study.plan import Plan

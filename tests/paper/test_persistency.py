@@ -2,8 +2,7 @@
 
 import pytest
 
-from eventpound import load_case
-from eventpound.scene import BoucWen
+from eventpound import BoucWen, load_case
 from tests.paper import persistency
 
 

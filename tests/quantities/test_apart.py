@@ -7,8 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from eventpound import Response, design_numbers, load_case, simulate, simulate_many
-from eventpound.motion import Record, Ricker
+from eventpound import Record, Response, Ricker, design_numbers, load_case, simulate, simulate_many
 from eventpound.results.trade import Trade
 from eventpound.scene import (
     BARRIER,

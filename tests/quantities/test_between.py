@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from eventpound import simulate
-from eventpound.errors import AccuracyWarning
-from eventpound.motion import Cosine, Record
+from eventpound import AccuracyWarning, Cosine, Record, simulate
 from eventpound.quantities import between, rows
 from eventpound.quantities.between import SETTLED
 from eventpound.quantities.rows import AGREEMENT

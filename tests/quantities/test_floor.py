@@ -8,15 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import load_case, simulate
-from eventpound.case.case import Case
+from eventpound import Case, InputError, Response, load_case, simulate
 from eventpound.case.run_options import RunOptions
 from eventpound.case.solver_options import SolverOptions
 from eventpound.cli import main
-from eventpound.errors import InputError
-from eventpound.motion import Cosine, Record, Sine
-from eventpound.motion.free import NoMotion
-from eventpound.response import Response
+from eventpound.motion import Cosine, NoMotion, Record, Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.study.response_spectrum import response_spectrum
 from tests.models import CASES

@@ -7,9 +7,8 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from eventpound import load_case, simulate, simulate_many
+from eventpound import InputError, load_case, simulate, simulate_many
 from eventpound.cli import main
-from eventpound.errors import InputError
 from eventpound.quantities.lookup import find, listing, names_of
 from eventpound.results.run_files import summarise
 from tests.models import ROOT

@@ -9,12 +9,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import load_case, prepare, simulate, simulate_suite, verify, write
+from eventpound import Response, load_case, prepare, simulate, simulate_suite, verify, write
 from eventpound.basics.told import OptionWarning
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Harmonic, NoMotion
-from eventpound.response import Response
 from eventpound.scene import Backfill, Body, Linear, Scene, Slider, Spring
 from eventpound.scene.spring import GROUND, LawName
 from tests.models import ROOT

@@ -8,11 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import simulate, simulate_many
-from eventpound.errors import InputError
-from eventpound.motion import Cosine
+from eventpound import Cosine, InputError, Response, simulate, simulate_many
 from eventpound.quantities.lookup import names_of
-from eventpound.response import Response
 from eventpound.results.run_files import summarise
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from tests.solvers.scenes import pounding_pair

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from eventpound import load_case
-from eventpound.motion import Record, Ricker
+from eventpound import Record, Ricker, load_case
 from eventpound.motion.pulse_fit import fit_pulse
 from eventpound.motion.synthetic import synthetic_motion
 from eventpound.report.pulse_fit import pulse_fit_figure

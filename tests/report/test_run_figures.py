@@ -8,10 +8,9 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from eventpound import load_case, simulate
+from eventpound import InputError, load_case, simulate
 from eventpound.case import write_template
 from eventpound.cli import main
-from eventpound.errors import InputError
 from eventpound.report.run_figures import figures, view_of_run
 from eventpound.report.towers import storeys_of, towers_of
 from eventpound.results import gather

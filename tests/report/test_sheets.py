@@ -2,8 +2,7 @@
 
 import pytest
 
-from eventpound import design_numbers, load_case, simulate
-from eventpound.case.case import Case
+from eventpound import Case, design_numbers, load_case, simulate
 from eventpound.report.design_report import Told, design_sheets
 from eventpound.report.sheets import as_html, as_pdf, share_of
 from tests.models import CASES

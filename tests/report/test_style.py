@@ -8,10 +8,9 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from eventpound import load_case, plot, simulate
+from eventpound import InputError, load_case, plot, simulate
 from eventpound.case import write_template
 from eventpound.cli import main
-from eventpound.errors import InputError
 from eventpound.report.displacements import displacement_figure, shades_of
 from eventpound.report.notes import wrapped
 from eventpound.report.run_figures import figures

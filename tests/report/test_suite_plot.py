@@ -10,10 +10,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import load_case, simulate, simulate_suite
-from eventpound.case import Case
+from eventpound import Case, InputError, load_case, simulate, simulate_suite
 from eventpound.case.case import member_case
-from eventpound.errors import InputError
 from eventpound.report import suite_plot
 from eventpound.report.similarity_contours import similarity_contours_figure
 from eventpound.report.suite_plot import (

@@ -11,17 +11,13 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
-from eventpound import load_case
-from eventpound.case.case import Case
+from eventpound import Case, InputError, load_case
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.run_options import RunOptions
 from eventpound.case.solver_options import SolverOptions
 from eventpound.case.suite import Suite
-from eventpound.errors import InputError
-from eventpound.motion import Cosine, Record, Sine
-from eventpound.motion.base import Family, Piece, Scales
+from eventpound.motion import Cosine, Family, NoMotion, Piece, Record, Scales, Sine
 from eventpound.motion.constant import PhasedSine
-from eventpound.motion.free import NoMotion
 from eventpound.results import export
 from eventpound.results.export import sampled_motion
 from eventpound.scene import (

@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from eventpound.scene import BARRIER, Deck
-from eventpound.scene.joint import Joint
+from eventpound.scene import BARRIER, Deck, Joint
 
 
 @pytest.mark.parametrize("skew", [0.0, 0.3, -0.8])

@@ -8,10 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import eig, eigh, sqrtm
 
-from eventpound import load_case, modal_damping, simulate
+from eventpound import InputError, Sine, load_case, modal_damping, simulate
 from eventpound.case import read_case
-from eventpound.errors import InputError
-from eventpound.motion import Sine
 from eventpound.scene import (
     GROUND,
     BilinearElastic,

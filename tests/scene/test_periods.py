@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eventpound import InputError, Study, load_case, prepare, simulate, simulate_suite
-from eventpound.motion import Record
+from eventpound import InputError, Record, Study, load_case, prepare, simulate, simulate_suite
 from eventpound.motion.scaling import psa_of
 from eventpound.scene import GROUND, Body, Linear, Scene, Spring
 from eventpound.scene.periods import period_called

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from eventpound import Response, simulate, simulate_many
-from eventpound.motion import Cosine
+from eventpound import Cosine, Response, simulate, simulate_many
 from eventpound.quantities.lookup import names_of
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.scene.separation import correlation_of, is_between_structures

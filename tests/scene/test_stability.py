@@ -10,10 +10,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 
-from eventpound import InputError, load_case, simulate, simulate_many
+from eventpound import Cosine, InputError, load_case, simulate, simulate_many
 from eventpound.cli import main
 from eventpound.mechanics.model import assemble
-from eventpound.motion import Cosine
 from eventpound.results.input_tables import input_lines
 from eventpound.results.inputs import inputs_of
 from eventpound.scene import BilinearElastic, Body, BoucWen, Force, Linear, Scene, Spring

@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from eventpound.motion import NoMotion
-from eventpound.motion.base import GroundMotion
+from eventpound.motion import GroundMotion, NoMotion
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import BARRIER, Contact, Deck, Force, Scene
 from eventpound.scene.deck import DeckStart

@@ -7,9 +7,8 @@ import math
 import numpy as np
 
 from eventpound.motion import NoMotion, Ricker
-from eventpound.scene import BARRIER, GROUND, Dashpot, Deck, Linear, Scene, Spring
+from eventpound.scene import BARRIER, GROUND, Dashpot, Deck, Joint, Linear, Scene, Spring
 from eventpound.scene.deck import DeckStart, place_in_a_row
-from eventpound.scene.joint import Joint
 
 
 def random_plan(seed: int) -> tuple[Scene, list[Joint], float]:

@@ -7,10 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from eventpound import simulate, simulate_many
-from eventpound.errors import ComputationError, InputError
+from eventpound import ComputationError, InputError, Response, simulate, simulate_many
 from eventpound.motion import Cosine, MavroeidisPapageorgiou, NoMotion
-from eventpound.response import Response
 from eventpound.scene import (
     GROUND,
     Backfill,

@@ -10,11 +10,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import airy
 
-from eventpound import simulate
+from eventpound import InputError, MavroeidisPapageorgiou, NoMotion, Response, simulate
 from eventpound.case import read_case
-from eventpound.errors import InputError
-from eventpound.motion import MavroeidisPapageorgiou, NoMotion
-from eventpound.response import Response
 from eventpound.scene import GROUND, Body, BoucWen, Contact, DegradingBoucWen, Linear, Scene, Spring
 from tests.solvers.random_scenes import random_scene
 

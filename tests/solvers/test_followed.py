@@ -5,9 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound import simulate, simulate_many
-from eventpound.motion import NoMotion
-from eventpound.response import Response
+from eventpound import NoMotion, Response, simulate, simulate_many
 from eventpound.scene import BARRIER, GROUND, Backfill, Body, Contact, Linear, Scene, Spring
 from eventpound.scene.parameters import number_places, with_values
 from eventpound.solvers import solver_named

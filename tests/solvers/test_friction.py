@@ -8,9 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound import simulate
-from eventpound.errors import ComputationError, InputError
-from eventpound.motion import Harmonic
+from eventpound import ComputationError, Harmonic, InputError, Joint, simulate
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import (
     BARRIER,
@@ -25,7 +23,6 @@ from eventpound.scene import (
 )
 from eventpound.scene.contact_law import IMPACT_LAWS
 from eventpound.scene.deck import DeckStart
-from eventpound.scene.joint import Joint
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from tests.oracle.plan import states

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from eventpound.motion import AntisymmetricRicker, NoMotion, Record, Ricker
-from eventpound.motion.base import GroundMotion
+from eventpound.motion import AntisymmetricRicker, GroundMotion, NoMotion, Record, Ricker
 from eventpound.scene import (
     BARRIER,
     GROUND,

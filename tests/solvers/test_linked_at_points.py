@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from eventpound.motion import NoMotion, Ricker
-from eventpound.motion.pulses import Sine
+from eventpound.motion import NoMotion, Ricker, Sine
 from eventpound.scene import (
     BARRIER,
     GROUND,

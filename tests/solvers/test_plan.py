@@ -10,12 +10,10 @@ import numpy as np
 import pytest
 
 from eventpound.errors import ComputationError
-from eventpound.motion import NoMotion, Ricker
-from eventpound.motion.base import GroundMotion
+from eventpound.motion import GroundMotion, NoMotion, Ricker
 from eventpound.numerics.arrays import Floats
-from eventpound.scene import BARRIER, GROUND, Dashpot, Deck, Linear, Scene, Spring
+from eventpound.scene import BARRIER, GROUND, Dashpot, Deck, Joint, Linear, Scene, Spring
 from eventpound.scene.deck import DeckStart, place_in_a_row
-from eventpound.scene.joint import Joint
 from eventpound.simulation import response_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task

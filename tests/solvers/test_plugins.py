@@ -8,9 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from eventpound import load_case, simulate
+from eventpound import InputError, load_case, simulate
 from eventpound.cli import main
-from eventpound.errors import InputError
 from eventpound.solvers import available, plugins, solver_named
 from tests.models import ROOT
 from tests.plugged import plug_in

@@ -13,9 +13,8 @@ from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions
 from eventpound.case.solver_options import SolverOptions
 from eventpound.mechanics.model import assemble
-from eventpound.motion import NoMotion, Ricker
+from eventpound.motion import NoMotion, Ricker, Sine
 from eventpound.motion.constant import Constant
-from eventpound.motion.pulses import Sine
 from eventpound.numerics.compiled import PLAIN
 from eventpound.scene import (
     BARRIER,

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from eventpound import simulate
-from eventpound.motion import Harmonic, NoMotion
+from eventpound import Harmonic, NoMotion, simulate
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import GROUND, Body, Dashpot, Scene, Slider, Spring
 from eventpound.solvers.base import Recording

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 from numba.core import types
 
-from eventpound import simulate_many
-from eventpound.motion.record import Record
+from eventpound import Record, simulate_many
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.simulation import response_of

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound.case import write_template
-from eventpound.case.loading import load_case
+from eventpound.case import load_case, write_template
 from eventpound.errors import InputError
 from eventpound.motion.record import Record
 from eventpound.scene import GROUND, Body, Linear, Scene, Spring

@@ -8,15 +8,13 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from eventpound import simulate
+from eventpound import ComputationError, InputError, Response, simulate
 from eventpound.contact.sliders import begin_beside_sliders
 from eventpound.contact.state import Now
-from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.model import assemble, with_sliders
 from eventpound.motion import Harmonic, NoMotion, Record, Ricker, Sine
 from eventpound.motion.constant import Constant
 from eventpound.numerics.compiled import by_python
-from eventpound.response import Response
 from eventpound.scene import (
     BARRIER,
     GROUND,

@@ -9,9 +9,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from eventpound import simulate_many
+from eventpound import ComputationError, ContactLaw, InputError, simulate_many
 from eventpound.case.defaults import default_duration
-from eventpound.errors import ComputationError, InputError
 from eventpound.motion import Harmonic, NoMotion, Record, Ricker, Sine
 from eventpound.motion.constant import Constant, PhasedSine
 from eventpound.motion.delayed import travelled
@@ -31,7 +30,6 @@ from eventpound.scene import (
     Support,
 )
 from eventpound.scene.check import check_scene
-from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.pi_terms import pi_terms
 from eventpound.simulation import response_of
 from eventpound.solvers import solver_named

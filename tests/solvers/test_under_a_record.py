@@ -6,8 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from eventpound import simulate_many
-from eventpound.motion.record import Record
+from eventpound import Record, simulate_many
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from eventpound import simulate_many
-from eventpound.motion import Cosine
+from eventpound import Cosine, simulate_many
 from eventpound.scene.pi_structure import Kind, PiStructure
 from eventpound.simulation import response_of
 from eventpound.study.reading import load_study

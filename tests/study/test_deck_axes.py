@@ -6,8 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import load_case, simulate, simulate_many
-from eventpound.errors import InputError
+from eventpound import InputError, load_case, simulate, simulate_many
 from eventpound.report.study_figure import study_figures
 from eventpound.study.plan import Chunk
 from eventpound.study.reading import load_study

@@ -8,10 +8,9 @@ import pandas as pd
 import pytest
 from scipy.integrate import solve_ivp
 
-from eventpound import InputError, design_numbers, load_case, simulate, simulate_suite
+from eventpound import Cosine, InputError, design_numbers, load_case, simulate, simulate_suite
 from eventpound.case import read_case
 from eventpound.cli import main
-from eventpound.motion import Cosine
 from eventpound.scene import (
     GROUND,
     BilinearElastic,

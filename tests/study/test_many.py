@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound import BatchResponse, load_case, simulate, simulate_many
-from eventpound.case.case import Case
+from eventpound import BatchResponse, Case, Response, load_case, simulate, simulate_many
 from eventpound.case.run_options import RunOptions
 from eventpound.case.solver_options import SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion import Cosine, Harmonic, Record
 from eventpound.numerics.arrays import Floats
-from eventpound.response import Response
 from eventpound.scene import (
     BARRIER,
     GROUND,

@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound import Case, InputError, Scene, load_case, prepare, simulate, simulate_many
-from eventpound.motion import Record
+from eventpound import Case, InputError, Record, Scene, load_case, prepare, simulate, simulate_many
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
 from eventpound.scene import Body, Contact, Dashpot, Linear, Series, Spring

@@ -2,9 +2,8 @@
 
 import pytest
 
-from eventpound import load_case, simulate
+from eventpound import InputError, load_case, simulate
 from eventpound.case.case import member_case
-from eventpound.errors import InputError
 from tests.benchmarks.real_records import INDEX
 from tests.models import CASES
 

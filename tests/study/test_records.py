@@ -5,9 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eventpound import load_case, simulate_suite
+from eventpound import InputError, load_case, simulate_suite
 from eventpound.cli import main
-from eventpound.errors import InputError
 from eventpound.study.engine import Batch, Processes
 from eventpound.study.plan import Chunk
 from eventpound.study.reading import load_study

@@ -6,10 +6,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from eventpound import Study, load_case, prepare, simulate
+from eventpound import Cosine, InputError, Record, Study, load_case, prepare, simulate
 from eventpound.cli import main
-from eventpound.errors import InputError
-from eventpound.motion import Cosine, Record
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Scene, Spring, Support
 from eventpound.scene.parameters import number_places, with_values
 from eventpound.study.table import read_table

@@ -9,14 +9,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import Study, load_case, simulate, simulate_suite
+from eventpound import InputError, Ricker, Study, Support, load_case, simulate, simulate_suite
 from eventpound.case.case import member_case
 from eventpound.case.loading import read_case
 from eventpound.cli import main
-from eventpound.errors import InputError
-from eventpound.motion import Ricker
 from eventpound.motion.intensity import intensity
-from eventpound.scene import Support
 from eventpound.scene.periods import longest_period
 from eventpound.study.response_spectrum import response_spectrum
 from eventpound.study.table import read_suite

@@ -5,10 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound import load_case, simulate, simulate_many
+from eventpound import InputError, Sine, load_case, simulate, simulate_many
 from eventpound.case.solver_options import SolverOptions
-from eventpound.errors import InputError
-from eventpound.motion import Sine
 from eventpound.scene import GROUND, Body, Contact, Linear, Scene, Spring, Support
 from eventpound.study import sweep
 from eventpound.study.axes import given_axes

@@ -13,10 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from eventpound import ComputationError, load_case
-from eventpound.case.case import Case
+from eventpound import Case, ComputationError, ContactLaw, load_case
 from eventpound.numerics.arrays import Floats
-from eventpound.scene import ContactLaw
 from eventpound.simulation import response_of
 from eventpound.solvers.opensees import PACKAGE
 from tests.models import CASES

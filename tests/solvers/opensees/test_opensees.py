@@ -6,9 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound import load_case, simulate
-from eventpound.errors import ComputationError, InputError
-from eventpound.motion.pulses import Cosine
+from eventpound import ComputationError, Cosine, InputError, load_case, simulate
 from eventpound.scene import (
     GROUND,
     BilinearElastic,

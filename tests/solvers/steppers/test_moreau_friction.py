@@ -9,9 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from eventpound import simulate
-from eventpound.errors import ComputationError, InputError
-from eventpound.motion import Harmonic
+from eventpound import ComputationError, Harmonic, InputError, simulate
 from eventpound.scene import (
     BARRIER,
     Body,
