@@ -9,17 +9,12 @@ from eventpound.cli import main
 from tests.plugged import plug_in
 
 CASE = """
+body = [{ name = "deck", mass = 1.0 }]
+spring = [{ between = ["ground", "deck"], law = "linear", stiffness = 40.0 }]
 [excitation]
 kind = "sine"
 amplitude = 1.0
 period = 1.0
-[[body]]
-name = "deck"
-mass = 1.0
-[[spring]]
-between = ["ground", "deck"]
-law = "linear"
-stiffness = 40.0
 [run]
 duration = 2.0
 [solver]

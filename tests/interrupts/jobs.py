@@ -9,19 +9,15 @@ from typing import NamedTuple
 import numpy as np
 
 CASE = """
+body = [{{ name = "left", mass = "1301 t" }}, {{ name = "right", mass = "3210 t" }}]
+contact = [{{ between = ["left", "right"], name = "joint", gap = "1 cm", restitution = 0.6 }}]
 [excitation]
 kind = "record"
 file = "record.txt"
 units = "m/s2"
 time_step = "0.02 s"
-
-[[body]]
-name = "left"
-mass = "1301 t"
-[[body]]
-name = "right"
-mass = "3210 t"
-
+[run]
+duration = "{duration}"
 [[spring]]
 between = ["ground", "left"]
 name = "frame1"
@@ -36,15 +32,6 @@ law = "bouc-wen"
 initial_stiffness = "101048 kN/m"
 yield_force = "3794 kN"
 hardening = 0.05
-
-[[contact]]
-between = ["left", "right"]
-name = "joint"
-gap = "1 cm"
-restitution = 0.6
-
-[run]
-duration = "{duration}"
 """
 STUDY = """
 [solver]

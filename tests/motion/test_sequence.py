@@ -30,17 +30,16 @@ from eventpound.scene.periods import longest_period
 from tests.models import ROOT
 
 CASE = """
+body = [{ name = "a", mass = "10 t" }, { name = "b", mass = "30 t" }]
+dashpot = [{ between = ["ground", "b"], ratio = "5 %" }]
+contact = [{ name = "joint", between = ["a", "b"], gap = "1 cm", restitution = 0.6 }]
 [excitation]
 kind = "record"
 file = ["mainshock.csv", "aftershock.csv"]
 rest = "2 s"
 units = "m/s2"
-[[body]]
-name = "a"
-mass = "10 t"
-[[body]]
-name = "b"
-mass = "30 t"
+[solver]
+rtol = 1e-11
 [[spring]]
 name = "a"
 between = ["ground", "a"]
@@ -53,16 +52,6 @@ name = "b"
 between = ["ground", "b"]
 law = "linear"
 stiffness = "1 MN/m"
-[[dashpot]]
-between = ["ground", "b"]
-ratio = "5 %"
-[[contact]]
-name = "joint"
-between = ["a", "b"]
-gap = "1 cm"
-restitution = 0.6
-[solver]
-rtol = 1e-11
 """
 
 
@@ -161,7 +150,7 @@ def test_a_shock_that_cannot_go_on_from_the_state_says_why(folder, capsys):
 body = "a"
 value = "300 kN"
 """
-    law = 'law = "kelvin-voigt"\nrestitution = 0.1\nstiffness = "10 MN/m"'
+    law = 'law = "kelvin-voigt", restitution = 0.1, stiffness = "10 MN/m"'
     pressed = CASE.replace("restitution = 0.6", law)
     (folder / "case.toml").write_text(pressed.replace("[solver]", weight + "[solver]"))
     assert main(["run", str(folder), "--no-figures", "--solver", "cvode"]) == 0

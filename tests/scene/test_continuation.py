@@ -153,10 +153,10 @@ def test_states_that_nothing_can_go_on_from_are_refused(made, final, said):
 
 
 CASE = """
-[[body]]
-name = "a"
-mass = 1.0
-initial = { velocity = 1.0 }
+body = [{ name = "a", mass = 1.0, initial = { velocity = 1.0 } }]
+contact = [{ name = "c", between = ["a", "barrier"], gap = 0.1, restitution = 0.5 }]
+[excitation]
+kind = "none"
 [[spring]]
 name = "s"
 between = ["ground", "a"]
@@ -164,13 +164,6 @@ law = "bouc-wen"
 stiffness = 50.0
 strength = 2.0
 yield_displacement = 0.01
-[[contact]]
-name = "c"
-between = ["a", "barrier"]
-gap = 0.1
-restitution = 0.5
-[excitation]
-kind = "none"
 [run]
 duration = 1.0
 """

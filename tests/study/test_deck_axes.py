@@ -14,25 +14,15 @@ from eventpound.study.table import compute
 from tests.models import CASES
 
 TEXT = """
+deck = [
+  { name = "A", mass = "900 t", length = "36 m", width = "11 m" },
+  { name = "B", mass = "700 t", length = "28 m", width = "11 m" },
+]
+joint = [{ name = "J", between = ["A", "B"], gap = "4 cm", restitution = 0.5 }]
 [excitation]
 kind = "cosine"
 amplitude = "0.3 g"
 period = "0.8 s"
-[[deck]]
-name = "A"
-mass = "900 t"
-length = "36 m"
-width = "11 m"
-[[deck]]
-name = "B"
-mass = "700 t"
-length = "28 m"
-width = "11 m"
-[[joint]]
-name = "J"
-between = ["A", "B"]
-gap = "4 cm"
-restitution = 0.5
 [study]
 quantities = ["decks.<deck>.abs_max_rotation"]
 [[study.axis]]

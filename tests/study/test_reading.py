@@ -7,16 +7,12 @@ from eventpound.study.reading import load_study
 from tests.study.conftest import ELASTOPLASTIC
 
 PAIR = """
+body = [{ name = "left", mass = "500 t" }, { name = "right", mass = "500 t" }]
+contact = [{ between = ["left", "right"], name = "joint", gap = "1 cm", restitution = 0.6 }]
 [excitation]
 kind = "sine"
 amplitude = "0.4 g"
 period = "1 s"
-[[body]]
-name = "left"
-mass = "500 t"
-[[body]]
-name = "right"
-mass = "500 t"
 [[spring]]
 between = ["ground", "left"]
 name = "l"
@@ -29,11 +25,6 @@ between = ["ground", "right"]
 name = "r"
 law = "linear"
 period = "0.8 s"
-[[contact]]
-between = ["left", "right"]
-name = "joint"
-gap = "1 cm"
-restitution = 0.6
 """
 
 
