@@ -82,25 +82,6 @@ def test_a_case_may_ask_for_it_or_leave_it_out(tmp_path):
     assert found is None
 
 
-def test_what_the_tolerance_does_not_tell_is_a_warning():
-    case = eventpound.load_case(ROOT / "cases" / "hard" / "stiff-beside-soft")
-    response_of(case, "fast")
-    with pytest.warns(AccuracyWarning, match="contact 'a-b' comes to rest"):
-        found = eventpound.simulate(case, "cvode")
-    assert found.error_estimate["warnings"]
-
-
-def test_two_bodies_that_part_later_name_every_contact():
-    """Bodies of 1e-3 kg between others of some kg: no tolerance of cvode tells their bounces.
-
-    Whether the first contact has one more or less than `fast` is a matter of rounding.
-    """
-    from tests.hard.stiff import named, solved, stiff_scene
-
-    scene, end = stiff_scene(3)
-    assert named(solved(scene, end, "cvode", 1e-9, 60.0)) >= {1, 2}
-
-
 def test_without_contacts_there_is_an_estimate_too():
     scene = Scene((Body("b", 1.0, 0.1),), (Spring("s", (GROUND, "b"), Linear(1.0)),))
     found = eventpound.simulate(scene, duration=2.0).error_estimate

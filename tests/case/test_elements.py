@@ -12,7 +12,6 @@ from eventpound.results.inputs import inputs_of
 from eventpound.scene import BARRIER, Contact, ContactLaw, Scene
 from eventpound.scene.check import check_scene
 from eventpound.scene.parameters import number_places, value_at, with_values
-from eventpound.simulation import check_solver, response_of
 
 Table = dict[str, object]
 
@@ -128,15 +127,6 @@ def test_numbers_by_their_keys():
     (changed,) = with_values(scene, {place: 2e4}).contacts
     assert changed.law == ContactLaw("kelvin-voigt", 2e4)
     assert "contact.a-b.stiffness" not in number_places(case_with(restitution=0.5).scene)
-
-
-def test_solvers_without_a_law_refuse_it():
-    case = case_with(law="hertz", stiffness=1e4)
-    with pytest.raises(
-        InputError, match=r"moreau does not know the laws of contacts 'a-b' \(hertz"
-    ):
-        response_of(case, solver="moreau")
-    check_solver(replace(case.solver, name="moreau"), replace(case.scene, contacts=()))
 
 
 def test_a_scene_built_in_python_is_checked():

@@ -79,7 +79,27 @@ to = {to}
 count = {count}
 {part}
 {part}
+[figure]
+name = "a"
+x = "pi.omega_s"
+y = "pi_um"
+marks = {marks}
+[intensity]
+measure = "pi.omega_s"
+demand = "pi_um"
+records = "row"
+fractiles = {fractiles}
+[solver]
+name = "moreau"
+theta = {theta}
 """
+SOUND_STUDY = {
+    "periods": 10, "to": 2.0, "count": 3, "part": "", "marks": "[1.0]", "fractiles": "[50]",
+    "theta": 0.5,
+}  # fmt: skip
+
+
+NO_NUMBERS = "1" + "0" * 400, "true", "nan"
 
 
 @pytest.mark.parametrize(
@@ -89,12 +109,14 @@ count = {count}
         ({"to": "1e300"}, "pi.omega_s"),  # an overflow
         ({"periods": "5e-324"}, "duration"),  # refused without a message
         ({"part": "[[study.part]]"}, "study"),  # two parts without a name: a KeyError
+        *(({key: f"[{no}]"}, key) for key in ("marks", "fractiles") for no in NO_NUMBERS),
+        ({"fractiles": "[]"}, "fractiles"),
+        ({"theta": "1" + "0" * 400}, "theta"),
     ],
 )
 def test_studies_out_of_all_reason(changes, key, tmp_path):
     file = tmp_path / "case.toml"
-    sound = {"periods": 10, "to": 2.0, "count": 3, "part": ""}
-    file.write_text(STUDY.format(**(sound | changes)))
+    file.write_text(STUDY.format(**(SOUND_STUDY | changes)))
     with pytest.raises(InputError, match=key):
         load_study(file)
 
@@ -133,44 +155,3 @@ def test_thousands_of_channels_take_no_hours(tmp_path):
     file = tmp_path / "many.txt"
     file.write_text("\n".join(lines[:points] + lines[points : points + 9] * 1000))
     assert len(read_components(file, format="csmip")) == 1000
-
-
-FIGURE = """\
-[excitation]
-kind = "sine"
-[pi]
-structure = "elastic"
-epsilon = 0.7
-periods = 10
-delta = 0.5
-[study]
-[[study.axis]]
-key = "pi.omega_s"
-values = [0.5, 1.0]
-[figure]
-name = "a"
-x = "pi.omega_s"
-y = "pi_um"
-marks = {marks}
-[intensity]
-measure = "pi.omega_s"
-demand = "pi_um"
-records = "row"
-fractiles = {fractiles}
-[solver]
-name = "moreau"
-theta = {theta}
-"""
-
-
-@pytest.mark.parametrize(
-    ("key", "value"),
-    [("marks", "[1" + "0" * 400 + "]"), ("fractiles", "[1" + "0" * 400 + "]"), ("marks", "[true]"),
-     ("marks", "[nan]"), ("fractiles", "[]"), ("theta", "1" + "0" * 400)],
-)  # fmt: skip
-def test_lists_of_numbers_that_are_none(key, value, tmp_path):
-    file = tmp_path / "case.toml"
-    sound = {"marks": "[1.0]", "fractiles": "[50]", "theta": "0.5"}
-    file.write_text(FIGURE.format(**(sound | {key: value})))
-    with pytest.raises(InputError, match=key):
-        load_study(file)

@@ -1,9 +1,7 @@
 """``python -m tests.hard [NAME ...] [--csv FILE]``: the catalogue of hard scenes, by solver.
 
 Digits are those to which fast and ida agree with cvode, the largest difference of anything
-that is compared, in parts of its scale. moreau and penalty run with the steps that they
-choose by themselves: the largest error of a peak or final value in parts of the body's own
-motion, and impacts missed and extra.
+that is compared, in parts of its scale.
 """
 
 import argparse

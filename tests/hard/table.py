@@ -5,7 +5,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.hard.baselines import BASELINES, Baseline, baseline
 from tests.hard.catalogue import SOLVERS, Hard
 from tests.hard.outcome import Verdict, outcome, verdict
 
@@ -19,45 +18,32 @@ class Row:
 
     name: str
     verdict: Verdict
-    baselines: dict[str, Baseline]
 
 
 def row(hard: Hard) -> Row:
     """Run a scene by every solver."""
-    outcomes = [outcome(hard, solver) for solver in hard.solvers]
-    agreed = outcomes[0].response
-    return Row(
-        hard.name,
-        verdict(hard, outcomes),
-        {solver: baseline(hard, solver, agreed) for solver in BASELINES},
-    )
+    return Row(hard.name, verdict(hard, [outcome(hard, solver) for solver in hard.solvers]))
 
 
 def head() -> str:
     """Titles of the text."""
     cells = [f"{'scene':<31}", f"{'word':<7}", *(f"{f'{s} digits':>11}" for s in CHECKED)]
-    return "  ".join([*cells, *(f"{solver:<38}" for solver in BASELINES), "remark"])
+    return "  ".join([*cells, "remark"])
 
 
 def line(row: Row) -> str:
     """A scene in the text."""
     shown = [str(row.verdict.digits.get(solver, "-")) for solver in CHECKED]
     cells = [f"{row.name:<31}", f"{row.verdict.word:<7}", *(f"{text:>11}" for text in shown)]
-    others = [f"{row.baselines[solver].text:<38}" for solver in BASELINES]
-    return "  ".join([*cells, *others, row.verdict.remark]).rstrip()
+    return "  ".join([*cells, row.verdict.remark]).rstrip()
 
 
 def write(rows: Iterable[Row], path: Path) -> None:
     """The same, in full, as CSV."""
     titles = ["scene", "word", *(f"{s}_digits" for s in CHECKED), "remark"]
-    parts = ("error", "missed", "extra", "refusal")
-    titles += [f"{solver}_{part}" for solver in BASELINES for part in parts]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(titles)
         for each in rows:
             found = [each.verdict.digits.get(solver, "") for solver in CHECKED]
-            cells = [each.name, each.verdict.word, *found, each.verdict.remark]
-            cells += [getattr(each.baselines[s], part) for s in BASELINES for part in parts]
-            # An error that there is none of is an empty cell.
-            writer.writerow(["" if cell != cell else cell for cell in cells])
+            writer.writerow([each.name, each.verdict.word, *found, each.verdict.remark])

@@ -6,9 +6,8 @@ import pytest
 
 from eventpound.motion.synthetic import synthetic_motion
 from eventpound.solvers import solver_named
-from tests.benchmarks import rows, scipy_baseline, suite, yardsticks
+from tests.benchmarks import scipy_baseline, suite, yardsticks
 from tests.benchmarks.answers import answer_of, deviation
-from tests.benchmarks.peers import __main__ as peers
 from tests.benchmarks.peers.programs import PROGRAMS
 
 YARDSTICKS = yardsticks.load()
@@ -51,21 +50,6 @@ def test_programs_of_others_are_right(name, problem):
     call, _ = PROGRAMS[name].ready(YARDSTICKS[problem], 1e-10)
     far = deviation(call(), YARDSTICKS[problem].answer, YARDSTICKS[problem].task.end)
     assert (far.remark, far.error < 1e-6) == ("", True)
-
-
-def test_peers_command_prints_its_table(capsys):
-    peers.main(["--programs", "SciPy, DOP853", "sundials4py", "--problems", "P3", "--no-bridge"])
-    rows = capsys.readouterr().out.splitlines()
-    assert rows[2].startswith("| SciPy, DOP853 | ")
-    assert ("absent" in rows[3]) != PROGRAMS["sundials4py"].installed
-
-
-@pytest.mark.sweep
-def test_rows_command_prints_its_table(capsys):
-    rows.main(["--bodies", "1", "3", "--end", "0.5"])
-    printed = capsys.readouterr().out
-    assert "| 3 | " in printed
-    assert "time of a step: exponent" in printed
 
 
 def test_suite_command_prints_its_table(capsys, monkeypatch, tmp_path):

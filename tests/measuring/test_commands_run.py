@@ -51,6 +51,17 @@ RUN = {
     "tests.benchmarks.contact_laws": Small(constants=_once(MULTIPLES=(1e3,))),
     "tests.benchmarks.estimate_cost": Small(call=lambda m: m.main(1)),
     "tests.benchmarks.figure_agreement": Small(call=lambda m: m.main(12, 1)),
+    "tests.benchmarks.orders": Small(
+        call=lambda m: m.main(["--solvers", "moreau", "fast"]),
+        constants={"STEPS": (50, 100), "TOLERANCES": (1e-5, 1e-7)},
+    ),
+    "tests.benchmarks.peers": Small(
+        call=lambda m: m.main(["--programs", "SciPy, DOP853", "--problems", "P3", "--no-bridge"])
+    ),
+    "tests.benchmarks.penalty_split": Small(
+        call=lambda m: m.main(["--problems", "chain"]), constants={"FINE": 100}
+    ),
+    "tests.benchmarks.rows": Small(call=lambda m: m.main(["--bodies", "1", "3", "--end", "0.5"])),
     "tests.benchmarks.studies": Small(call=lambda m: m.main([1000])),
     "tests.hard.stiff": Small(call=lambda m: m.main(1, 0, 20.0)),
     "tests.motion.readers.outcomes": Small(

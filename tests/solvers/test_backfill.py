@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from eventpound import ComputationError, InputError, Response, simulate, simulate_many
+from eventpound import ComputationError, Response, simulate, simulate_many
 from eventpound.motion import Cosine, MavroeidisPapageorgiou, NoMotion
 from eventpound.scene import (
     GROUND,
@@ -185,15 +185,6 @@ def test_soil_under_a_slow_push_goes_along_its_loop_by_hand():
     assert law.residual_gap(-1.0, z) == pytest.approx(0.5)
     assert law.dissipated(-1.0, z) == pytest.approx(1.0 - math.log(2.0) - 0.125, rel=1e-14)
     assert law.residual_gap(-0.75, z + 0.25) == pytest.approx(0.5)
-
-
-@pytest.mark.parametrize("solver", ["moreau", "penalty"])
-def test_a_solver_that_does_not_know_soil_says_so_in_one_message(solver):
-    with pytest.raises(InputError) as caught:
-        simulate(BETWEEN_TWO, solver=solver, duration=1.0)
-    said = f"[solver]: {solver} does not know the laws of springs 'left' (backfill), 'right'"
-    assert str(caught.value).startswith(said)
-    assert str(caught.value).endswith("; accepted: cvode, ida, fast")
 
 
 def test_soil_beside_a_bearing_that_yields_keeps_energy():

@@ -275,15 +275,6 @@ def test_damage_goes_on_in_an_aftershock(solver):
     np.testing.assert_allclose(second.recording.z, whole.recording.z, rtol=1e-8)
 
 
-@pytest.mark.parametrize("solver", ["moreau", "penalty"])
-def test_a_solver_that_does_not_know_it_says_so_in_one_message(solver):
-    with pytest.raises(InputError) as caught:
-        simulate(POUNDING, solver=solver, duration=1.0)
-    said = f"[solver]: {solver} does not know the laws of springs 'pier' (degrading-bouc-wen)"
-    assert str(caught.value).startswith(said)
-    assert str(caught.value).endswith("; accepted: cvode, ida, fast")
-
-
 def test_numbers_that_would_heal_it_are_refused():
     for key, value in (("beta", 0.6), ("strength_degradation", -0.1), ("initial_loss", -1.0)):
         law = replace(WORN, **{key: value})

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from eventpound import ComputationError, InputError, Response, simulate
+from eventpound import ComputationError, Response, simulate
 from eventpound.contact.sliders import begin_beside_sliders
 from eventpound.contact.state import Now
 from eventpound.mechanics.model import assemble, with_sliders
@@ -630,15 +630,6 @@ def test_what_supports_squeeze_without_a_way_out_is_refused_by_name(solver):
     )
     with pytest.raises(ComputationError, match=r"supports close in .*joint, wall"):
         simulate(scene, solver, duration=1.0)
-
-
-@pytest.mark.parametrize("solver", ["moreau", "penalty"])
-def test_a_solver_that_does_not_know_sliders_says_so_in_one_message(solver):
-    deck, bearing = on_ground(Slider(0.1, 1.0))
-    with pytest.raises(InputError) as caught:
-        simulate(Scene((deck,), (bearing,), motion=Sine(1.0, 1.0)), solver=solver, duration=1.0)
-    said = f"[solver]: {solver} does not know the laws of springs 'bearing' (slider)"
-    assert str(caught.value) == f"{said}; accepted: cvode, ida, fast"
 
 
 @pytest.mark.parametrize("cut", [0.4, 1.8], ids=["while it slips", "while it sticks"])

@@ -672,17 +672,6 @@ def test_a_rest_that_no_force_decides_does_not_come_again_for_ever():
     assert len(impacts(found)) == 6
 
 
-@pytest.mark.parametrize(
-    ("name", "word"), [("moreau", "supports"), ("penalty", "supports"), ("penalty", "forces")]
-)
-def test_others_refuse(name, word):
-    scene = pounding_on_two()
-    if word == "forces":
-        scene = replace(pounding_pair(), forces=(Force("a", 1.0),))
-    with pytest.raises(InputError, match=f"{name}.*{word}"):
-        response_of(scene, name, settings={"time_step": 1e-3}, duration=1.0)
-
-
 def test_delays_in_one_call():
     scene = replace(pounding_on_two(), supports=(Support("pier", 0.05),))
     delays = [0.0, 0.03, 0.06]

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import InputError, Study, design_numbers, load_case, simulate, simulate_many
+from eventpound import InputError, Study, design_numbers, load_case, simulate
 from eventpound.case.case import member_case
 from eventpound.cli import main
 from eventpound.motion import Record, Ricker
@@ -277,26 +277,3 @@ def test_the_spectral_difference_is_what_two_linear_buildings_need_under_white_n
     assert np.mean(needed) == pytest.approx(one_sided * np.mean(cqc), rel=0.09)
     # Of so like periods the peaks alone say more than is needed.
     assert np.mean(needed) < 0.9 * np.mean(srss)
-
-
-def test_ten_records_need_what_a_bisection_finds(tmp_path):
-    text = CASE.format('suite = "?.txt"\nunits = "g"\ntime_step = "0.02 s"')
-    (tmp_path / "case.toml").write_text(text)
-    for seed in range(10):
-        (tmp_path / f"{seed}.txt").write_text(time_series(0.1 + 0.08 * seed))
-    case = load_case(tmp_path)
-    table = by_name(design_numbers(case))
-    edges = []
-    for member in case.suite.members(tmp_path):
-        own, low, high = member_case(case, member, member.read()), 0.0, 2.0
-        while high - low > 1e-7:
-            tried = np.linspace(low, high, 34)[1:-1]
-            many = simulate_many(own, {"contact.joint.gap": tried}, rtol=1e-9)
-            count = np.count_nonzero(many.impacts[:, 0])
-            assert many.impacts[:count, 0].all()
-            low, high = [low, *tried][count], [*tried, high][count]
-        edges.append(0.5 * (low + high))
-    found = table.loc[JOINT + "avoiding_gap_alone"]
-    assert found["largest"] == pytest.approx(max(edges), abs=2e-7)
-    for part in (50, 84):
-        assert found[f"{part} %"] == pytest.approx(np.percentile(edges, part), abs=2e-7)

@@ -239,15 +239,6 @@ def test_a_study_in_pi_terms_has_their_columns_too(tmp_path):
         assert gap > 0.1
 
 
-def test_a_wide_gap_avoids_what_a_narrower_one_does_not(tmp_path):
-    case = load_case(written(tmp_path, "avoiding_gap = true"))
-    (gap,) = by_command(tmp_path, "avoiding_gap = true", "contacts.joint.avoiding_gap")
-    # The least gap is known to the error of the runs.
-    many = simulate_many(case, {KEY: [gap * (1.0 - 1e-6), gap * (1.0 + 1e-6)]}, rtol=1e-10)
-    assert (many.impacts[:, 0] > 0).tolist() == [True, False]
-    assert many.table["contacts.joint.avoiding_gap"].to_numpy() == pytest.approx(gap, rel=1e-8)
-
-
 def test_a_curve_of_fragility_over_the_gap_that_avoids_contact(tmp_path):
     folder = written(tmp_path, "avoiding_gap = true", 'suite = "?.txt"')
     for name, amplitude in zip("abcdef", (0.2, 0.25, 0.4, 0.35, 0.6, 0.8), strict=True):
