@@ -3,6 +3,7 @@
 import pytest
 
 from eventpound.study.reading import load_study
+from eventpound.study.table import compute, header
 
 ELASTOPLASTIC = """
 [excitation]
@@ -41,3 +42,18 @@ def make_study(tmp_path):
         return load_study(folder)
 
     return make
+
+
+def expected_table(study):
+    return header(study) + b"".join(compute(study, chunk) for chunk in study.chunks())
+
+
+def table_by(engine, study, at=-1, act=None):
+    """The table of an engine, which gives each chunk once; before the chunk `at` something acts."""
+    found = {}
+    for chunk, rows in engine.run(study, study.chunks()):
+        if len(found) == at:
+            act()
+        assert chunk.number not in found
+        found[chunk.number] = rows
+    return header(study) + b"".join(found[number] for number in sorted(found))

@@ -10,8 +10,7 @@ import time
 import pytest
 
 from eventpound.cli import main
-from eventpound.study.table import compute, header
-from tests.study.conftest import ELASTOPLASTIC
+from tests.study.conftest import ELASTOPLASTIC, expected_table, table_by
 
 pytest.importorskip("distributed", reason="Dask is not installed")
 
@@ -38,24 +37,13 @@ def cluster(tmp_path):
         process.wait()
 
 
-def expected_table(study):
-    return header(study) + b"".join(compute(study, chunk) for chunk in study.chunks())
-
-
 @pytest.mark.filterwarnings("default")
 def test_two_workers_give_the_same_table_though_one_is_killed(make_study, cluster):
     from eventpound.study.engine import Cluster
 
     address, workers = cluster
     study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 640")).study
-    found = {}
-    for chunk, rows in Cluster(address).run(study, study.chunks()):
-        if len(found) == 5:
-            workers[0].kill()
-        assert chunk.number not in found
-        found[chunk.number] = rows
-    table = header(study) + b"".join(found[number] for number in sorted(found))
-    assert table == expected_table(study)
+    assert table_by(Cluster(address), study, 5, workers[0].kill) == expected_table(study)
 
 
 @pytest.mark.filterwarnings("default")
@@ -82,11 +70,10 @@ def test_the_only_worker_is_killed_and_comes_back(make_study):
 
     study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 320")).study
     with Client(n_workers=1, threads_per_worker=1, dashboard_address=None) as client:
-        found = {}
-        for chunk, rows in Cluster(client.scheduler.address).run(study, study.chunks()):
-            if len(found) == 3:
-                (pid,) = client.run(os.getpid).values()
-                os.kill(pid, signal.SIGKILL)
-            found[chunk.number] = rows
-    table = header(study) + b"".join(found[number] for number in sorted(found))
+
+        def kill() -> None:
+            (pid,) = client.run(os.getpid).values()
+            os.kill(pid, signal.SIGKILL)
+
+        table = table_by(Cluster(client.scheduler.address), study, 3, kill)
     assert table == expected_table(study)

@@ -10,31 +10,24 @@ import pytest
 
 from eventpound.study.engine import Batch, Processes
 from eventpound.study.running import Store, run_study
-from eventpound.study.table import header
-from tests.study.conftest import ELASTOPLASTIC
-from tests.study.test_running import MANY, expected_table, files, start, wait_for_a_chunk
+from tests.study.conftest import ELASTOPLASTIC, expected_table, table_by
+from tests.study.test_running import MANY, files, start, wait_for_a_chunk
 
 
 @pytest.mark.sweep
 def test_processes_give_the_same_table_of_the_reference_solver(make_study):
     text = ELASTOPLASTIC.replace("count = 40", "count = 3") + '[solver]\nname = "cvode"\n'
     study = make_study(text.replace('"free.pi_um", "amplification", ', "")).study
-    found = {chunk.number: rows for chunk, rows in Processes(2).run(study, study.chunks())}
-    assert len(found) == 4
-    table = header(study) + b"".join(found[number] for number in sorted(found))
-    assert table == expected_table(study)
+    assert len(list(study.chunks())) == 4
+    assert table_by(Processes(2), study) == expected_table(study)
 
 
 def test_processes_give_the_same_table_though_one_is_killed(make_study):
     study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 130")).study
-    found = {}
-    for chunk, rows in Processes(2).run(study, study.chunks()):
-        if len(found) == 3:
-            os.kill(active_children()[0].pid, signal.SIGKILL)
-        assert chunk.number not in found
-        found[chunk.number] = rows
-    table = header(study) + b"".join(found[number] for number in sorted(found))
-    assert table == expected_table(study)
+    killed = table_by(
+        Processes(2), study, 3, lambda: os.kill(active_children()[0].pid, signal.SIGKILL)
+    )
+    assert killed == expected_table(study)
 
 
 def test_a_killed_study_gives_the_identical_table(make_study, tmp_path):

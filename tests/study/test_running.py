@@ -11,14 +11,10 @@ import pytest
 from eventpound.cli import main
 from eventpound.study.engine import Batch
 from eventpound.study.running import Store, run_study
-from eventpound.study.table import compute, header, read_table
-from tests.study.conftest import ELASTOPLASTIC
+from eventpound.study.table import read_table
+from tests.study.conftest import ELASTOPLASTIC, expected_table
 
 MANY = ELASTOPLASTIC.replace("count = 40", "count = 480")
-
-
-def expected_table(study):
-    return header(study) + b"".join(compute(study, chunk) for chunk in study.chunks())
 
 
 class Broken:
