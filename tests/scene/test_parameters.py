@@ -39,38 +39,23 @@ PLACES = number_places(SCENE)
 
 
 def test_every_number_has_a_key():
+    numbers = {
+        "body.a": {"mass": 1.0, "displacement": 0.0, "velocity": 0.0},
+        "body.b.1": {"mass": 2.0, "displacement": 0.0, "velocity": 0.0},
+        "spring.s": {"stiffness": 1.0, "strength": 2.0, "yield_displacement": 0.1, "exponent": 20.0,
+                     "beta": 0.5, "gamma": 0.5, "initial_z": 0.2},
+        "spring.soil": {"initial_stiffness": 1.0, "ultimate_force": 2.0, "failure_ratio": 0.7,
+                        "gap": 0.02, "initial_gap": 0.0},
+        "spring.stop.parts.1": {"stiffness": 3.0},
+        "spring.stop.parts.2": {"compression": 0.0, "extension": 4.0, "offset": 0.1},
+        "dashpot.ground-a": {"coefficient": 0.1},
+        "dashpot.ground-a.2": {"coefficient": 0.2},
+        "contact.c": {"gap": 0.01, "restitution": 0.5},
+        "contact.wall": {"gap": 0.1, "restitution": 1.0},
+        "excitation": {"amplitude": 5.0, "period": 6.0, "start": 0.0},
+    }  # fmt: skip
     assert {key: value_at(SCENE, place) for key, place in PLACES.items()} == {
-        "body.a.mass": 1.0,
-        "body.a.displacement": 0.0,
-        "body.a.velocity": 0.0,
-        "body.b.1.mass": 2.0,
-        "body.b.1.displacement": 0.0,
-        "body.b.1.velocity": 0.0,
-        "spring.s.stiffness": 1.0,
-        "spring.s.strength": 2.0,
-        "spring.s.yield_displacement": 0.1,
-        "spring.s.exponent": 20.0,
-        "spring.s.beta": 0.5,
-        "spring.s.gamma": 0.5,
-        "spring.s.initial_z": 0.2,
-        "spring.soil.initial_stiffness": 1.0,
-        "spring.soil.ultimate_force": 2.0,
-        "spring.soil.failure_ratio": 0.7,
-        "spring.soil.gap": 0.02,
-        "spring.soil.initial_gap": 0.0,
-        "spring.stop.parts.1.stiffness": 3.0,
-        "spring.stop.parts.2.compression": 0.0,
-        "spring.stop.parts.2.extension": 4.0,
-        "spring.stop.parts.2.offset": 0.1,
-        "dashpot.ground-a.coefficient": 0.1,
-        "dashpot.ground-a.2.coefficient": 0.2,
-        "contact.c.gap": 0.01,
-        "contact.c.restitution": 0.5,
-        "contact.wall.gap": 0.1,
-        "contact.wall.restitution": 1.0,
-        "excitation.amplitude": 5.0,
-        "excitation.period": 6.0,
-        "excitation.start": 0.0,
+        f"{of}.{key}": value for of, keys in numbers.items() for key, value in keys.items()
     }
 
 

@@ -10,85 +10,34 @@ import pytest
 from eventpound.case.loading import read_case
 from eventpound.errors import InputError
 
+DECK, OTHER = {"between": ["ground", "deck"]}, {"between": ["ground", "other"]}
 CASE: dict[str, Any] = {
-    "excitation": {
-        "kind": "mavroeidis-papageorgiou",
-        "amplitude": 3.0,
-        "period": 0.8,
-        "gamma": 2.0,
-        "phase": 1.0,
-        "start": 0.5,
-    },
+    "excitation": {"kind": "mavroeidis-papageorgiou", "amplitude": 3.0, "period": 0.8,
+                   "gamma": 2.0, "phase": 1.0, "start": 0.5},
     "body": [
         {"name": "deck", "mass": 4e5, "initial": {"displacement": 0.01, "velocity": 0.1}},
         {"name": "other", "mass": 8e5},
     ],
     "spring": [
-        {
-            "between": ["ground", "deck"],
-            "name": "piers",
-            "law": "degrading-bouc-wen",
-            "stiffness": 4e6,
-            "strength": 5e5,
-            "yield_displacement": 0.02,
-            "exponent": 2.0,
-            "beta": 0.4,
-            "gamma": 0.6,
-            "strength_degradation": 0.05,
-            "stiffness_degradation": 0.05,
-            "initial_loss": 2.0,
-            "height": 6.0,
-        },
-        {"between": ["ground", "other"], "name": "frame", "law": "linear", "stiffness": 2e7},
-        {
-            "between": ["pier2", "other"],
-            "name": "stop",
-            "law": "bilinear-elastic",
-            "compression": 3e7,
-            "extension": 5e7,
-            "offset": 0.05,
-        },
-        {
-            "between": ["ground", "deck"],
-            "name": "soil",
-            "law": "backfill",
-            "initial_stiffness": 2e8,
-            "ultimate_force": 2e6,
-            "failure_ratio": 0.8,
-            "gap": 0.02,
-            "initial_gap": 0.03,
-        },
-        {
-            "between": ["ground", "deck"],
-            "name": "wall",
-            "law": "backfill",
-            "wall_height": 1.7,
-            "wall_width": 8.0,
-        },
-        {
-            "between": ["ground", "other"],
-            "name": "bearing",
-            "law": "slider",
-            "friction": 0.05,
-            "normal_force": 4e6,
-            "stiffness": 1e6,
-        },
+        {**DECK, "name": "piers", "law": "degrading-bouc-wen", "stiffness": 4e6, "strength": 5e5,
+         "yield_displacement": 0.02, "exponent": 2.0, "beta": 0.4, "gamma": 0.6, "height": 6.0,
+         "strength_degradation": 0.05, "stiffness_degradation": 0.05, "initial_loss": 2.0},
+        {**OTHER, "name": "frame", "law": "linear", "stiffness": 2e7},
+        {"between": ["pier2", "other"], "name": "stop", "law": "bilinear-elastic",
+         "compression": 3e7, "extension": 5e7, "offset": 0.05},
+        {**DECK, "name": "soil", "law": "backfill", "initial_stiffness": 2e8,
+         "ultimate_force": 2e6, "failure_ratio": 0.8, "gap": 0.02, "initial_gap": 0.03},
+        {**DECK, "name": "wall", "law": "backfill", "wall_height": 1.7, "wall_width": 8.0},
+        {**OTHER, "name": "bearing", "law": "slider", "friction": 0.05, "normal_force": 4e6,
+         "stiffness": 1e6},
     ],
-    "dashpot": [{"between": ["ground", "deck"], "ratio": 0.05, "refers_to": 6.0}],
-    "contact": [
-        {
-            "between": ["deck", "other"],
-            "name": "joint",
-            "gap": 0.05,
-            "law": "kelvin-voigt",
-            "stiffness": 1e9,
-            "damping": 0.2,
-        }
-    ],
+    "dashpot": [{**DECK, "ratio": 0.05, "refers_to": 6.0}],
+    "contact": [{"between": ["deck", "other"], "name": "joint", "gap": 0.05,
+                 "law": "kelvin-voigt", "stiffness": 1e9, "damping": 0.2}],
     "support": [{"name": "pier2", "delay": 0.1}],
     "force": [{"body": "deck", "kind": "sine", "amplitude": 1e5, "period": 2.0}],
     "run": {"start_time": 0.1, "duration": 20.0, "threshold_speed": 0.01},
-}
+}  # fmt: skip
 
 
 NOTHING = {
