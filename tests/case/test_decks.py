@@ -199,8 +199,6 @@ def test_each_shock_has_one_factor_for_both_components(pairs: Path, size: str) -
         'file = ["x/1.csv", "x/2.csv"]\nrest = 2.0\nacross = { file = ["y/1.csv", "y/2.csv"] }\n'
     )
     scene = load(pairs, RECORD + files + size)
-    assert isinstance(scene.motion, Record)
-    assert isinstance(scene.across, Record)
     assert [f for _, f in scene.across.shocks] == [f for _, f in scene.motion.shocks]
     # The second components are halves of the first.
     np.testing.assert_allclose(scene.across.values, scene.motion.values / 2.0, rtol=1e-6, atol=1e-9)
@@ -211,8 +209,6 @@ def test_components_of_a_shock_may_differ_by_some_samples(pairs: Path) -> None:
         'file = ["x/1.csv", "x/2.csv"]\nrest = 2\nacross = { file = ["short.csv", "y/2.csv"] }\n'
     )
     scene = load(pairs, RECORD + files + DECKS)
-    assert isinstance(scene.motion, Record)
-    assert isinstance(scene.across, Record)
     assert np.array_equal(scene.across.begins, scene.motion.begins)
     t = np.linspace(scene.motion.begins[1], scene.motion.end, 500)
     np.testing.assert_allclose(
