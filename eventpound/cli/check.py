@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
+from eventpound.errors import InputError
 
 if TYPE_CHECKING:
     from eventpound.case import Case
@@ -122,10 +123,11 @@ def _quantities_of(path: Path) -> Iterable[str]:
     from eventpound.quantities.lookup import names_of
     from eventpound.study.quantities import quantities_of
 
-    return dict.fromkeys(
-        arguments.by_kind(
-            path,
-            lambda case: names_of(case.scene),
-            lambda case: [n for base in case.study.bases for n in quantities_of(base.case.scene)],
-        )
+    names = arguments.by_kind(
+        path,
+        lambda case: names_of(case.scene) if case.scene.bodies else [],
+        lambda case: [n for base in case.study.bases for n in quantities_of(base.case.scene)],
     )
+    if not names:
+        raise InputError(f"{path}: the case has no bodies, and so no quantities")
+    return dict.fromkeys(names)

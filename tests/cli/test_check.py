@@ -301,3 +301,8 @@ def test_of_many_dashpots_a_few_are_listed(case, capsys):
     out, _ = said(["check", str(case)], 0, capsys)
     # One to the ground for each body, one between every two.
     assert "and 9 more" in out
+
+
+def test_records_alone_have_no_quantities(capsys):
+    _, error = said(["check", str(CASES / "figure-01"), "--quantities"], 2, capsys)
+    assert "the case has no bodies, and so no quantities" in error
