@@ -179,15 +179,6 @@ def task_of(case: Case, rtol: float | None = None) -> Task:
     return task_with(case.scene, case.run, options, None)
 
 
-def refuse_suite(case: Case) -> None:
-    """Raise an `InputError` for a case of many records where one run is meant."""
-    if case.suite is not None:
-        raise InputError(
-            "the case holds a suite of records, which `eventpound run` and simulate_suite run; "
-            "for one of them give its `file` in [excitation], not `suite` or `synthetic`"
-        )
-
-
 def check_case(case: Case | Scene) -> None:
     """Refuse a scene that cannot be computed, also of a case that was changed since it was read."""
     case = case_of(case)
@@ -197,7 +188,7 @@ def check_case(case: Case | Scene) -> None:
 def options_of(case: Case | Scene, **given: object) -> tuple[RunOptions, SolverOptions]:
     """Options of a checked case, or defaults for a scene, with what a call gives instead."""
     case = case_of(case)
-    refuse_suite(case)
+    case.refuse_suite()
     return with_given(case.run, given, case.scene), case.solver
 
 

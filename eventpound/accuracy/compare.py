@@ -29,7 +29,7 @@ from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import Element
 from eventpound.scene.scene import Scene
 from eventpound.score.difference import Difference
-from eventpound.simulation import check_case, check_solver, refuse_suite
+from eventpound.simulation import check_case, check_solver
 from eventpound.solvers import solver_named
 from eventpound.tolerances import REPEATS
 
@@ -208,7 +208,7 @@ def judge_entries(
     ComparisonInterrupted
         After Ctrl-C, where a run was done by then.
     """
-    refuse_suite(case)
+    case.refuse_suite()
     check_case(case)
     if not asked and not against:
         raise InputError("compare: found nothing to judge; accepted: a solver, or a history")

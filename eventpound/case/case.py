@@ -13,6 +13,7 @@ from eventpound.case.run_options import DEFAULTS, RunOptions
 from eventpound.case.solver_options import SolverOptions
 from eventpound.case.suite import ATTACK, SECOND, Member, Suite
 from eventpound.case.understood import sources_of, understood_case
+from eventpound.errors import InputError
 from eventpound.motion.readers.base import RecordData
 from eventpound.scene.pi_structure import PiStructure
 from eventpound.scene.scene import Scene
@@ -99,6 +100,24 @@ class Case:
     def size(self) -> RecordScaling:
         """How large every record of its suite is made."""
         return RecordScaling() if self.suite is None else self.suite.options.size
+
+    def records_at(self, name: str = "", delay: float | None = None) -> dict[str, object]:
+        """What records of a suite do to the ground, or to a support or the second component.
+
+        Nothing of a case of one run.
+        """
+        if self.suite is None:
+            return {}
+        suite, at = self.suite, self.directory
+        return suite.told_at(name, delay, at) if name else suite.told(at)
+
+    def refuse_suite(self) -> None:
+        """Raise an `InputError` for a case of many records where one run is meant."""
+        if self.suite is not None:
+            raise InputError(
+                "the case holds a suite of records, which `eventpound run` and simulate_suite run; "
+                "for one of them give its `file` in [excitation], not `suite` or `synthetic`"
+            )
 
     def apart(self, scene: Scene) -> Case:
         """The same of another scene, of which nothing is asked beyond what it gives."""

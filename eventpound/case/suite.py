@@ -215,6 +215,18 @@ class Suite:
         pairs = zip(*columns, strict=True) if columns else ((),) * len(members)
         return [replace(m, beside=own) if own else m for m, own in zip(members, pairs, strict=True)]
 
+    def told(self, directory: Path) -> dict[str, object]:
+        """How many records there are, and how they are scaled."""
+        scaling = self.options.size.words()
+        return {"suite": len(self.members(directory)), **({"scaling": scaling} if scaling else {})}
+
+    def told_at(self, name: str, delay: float | None, directory: Path) -> dict[str, object]:
+        """What its records do to a support or the second component; nothing where none go there."""
+        own = dict(self.beside).get(name)
+        if own is not None:
+            return {"suite": len(own.members(directory))}
+        return {} if delay is None else {"delay": delay}
+
     def _own_members(self, directory: Path) -> list[Member]:
         """The motions of the ground."""
         if self.pattern is None:

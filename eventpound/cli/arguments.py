@@ -16,7 +16,8 @@ from eventpound.errors import InputError, told_of
 if TYPE_CHECKING:
     from eventpound.case import Case
     from eventpound.report.style import Paper
-    from eventpound.study.plan import Base, Plan
+    from eventpound.study.base import Base
+    from eventpound.study.plan import Plan
     from eventpound.study.reading import StudyCase
 
 T = TypeVar("T")

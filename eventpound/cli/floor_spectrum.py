@@ -38,11 +38,11 @@ def _floor_spectrum(options: Options) -> int:
     from eventpound.report.style import on_paper
     from eventpound.results import check_writable
     from eventpound.results.tables import table_csv
-    from eventpound.simulation import refuse_suite, response_of
+    from eventpound.simulation import response_of
 
     paper, periods, damping = options.paper(), _periods(options.periods), options.damping
     case = arguments.loaded_case(options.case)
-    refuse_suite(case)
+    case.refuse_suite()
     arguments.check_solver_of(case)
     warn_left_out(case.run, Way.FLOOR)
     out = options.results

@@ -92,8 +92,8 @@ def _suite_entry(directory: Path, out: Path) -> GalleryEntry:
     from eventpound.case import load_case
     from eventpound.report.gallery import GalleryEntry, about_case
     from eventpound.report.suite_plot import plot_suite
+    from eventpound.study.forms import SUITE_TABLE
     from eventpound.study.suite import simulate_suite
-    from eventpound.study.table import SUITE_TABLE
 
     case = load_case(directory)
     results = out / directory.name
@@ -111,9 +111,9 @@ def _study_entry(directory: Path, out: Path) -> GalleryEntry:
     from eventpound.report.gallery import GalleryEntry, about_case
     from eventpound.report.study_files import draw
     from eventpound.study.engine import engine_of
+    from eventpound.study.forms import TABLE
     from eventpound.study.reading import load_study
     from eventpound.study.running import run_study
-    from eventpound.study.table import TABLE
 
     case = load_study(directory)
     results = out / directory.name

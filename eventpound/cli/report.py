@@ -60,11 +60,10 @@ def add_report(commands: Commands) -> None:
 
 
 def _report(options: Options) -> int:
-    from eventpound.study.kinds import kind_of
+    from eventpound.study.kinds import is_folder
 
-    make = kind_of(options.case)[0].choose(run=_one, suite=_one, study=_one, folder=None)
-    if make is not None:
-        make(options, options.out or options.results / _FOLDER)
+    if not is_folder(options.case):
+        _one(options, options.out or options.results / _FOLDER)
         return 0
     options.refuse_others("--out", "is for a single case, and this is a folder of cases")
     from eventpound.report.gallery import links_page

@@ -83,7 +83,7 @@ def _failures(out: Path) -> int:
     """Rows of the table that failed."""
     import csv
 
-    from eventpound.study.table import MESSAGE, TABLE
+    from eventpound.study.forms import MESSAGE, TABLE
 
     with (out / TABLE).open(newline="", encoding="utf-8") as file:
         return sum(1 for row in csv.DictReader(file) if row[MESSAGE])

@@ -29,8 +29,9 @@ def run_and_tell_suite(case: Case, options: Options, out: Path, told: str) -> in
     Where it cannot be run the message begins as told.
     """
     from eventpound.study import suite
+    from eventpound.study.forms import SUITE_TABLE
     from eventpound.study.suite_statistics import INTENSITY_TABLE
-    from eventpound.study.table import SUITE_TABLE, read_table
+    from eventpound.study.table import read_table
 
     estimate = True if options.error_estimate else None
     with told_of(told):
@@ -60,7 +61,8 @@ def run_and_tell_suite(case: Case, options: Options, out: Path, told: str) -> in
 
 def _kept(out: Path, size: int) -> str:
     """What there is of a suite that was stopped."""
-    from eventpound.study.table import SUITE_MANIFEST, SUITE_TABLE, manifest_there
+    from eventpound.study.forms import SUITE_MANIFEST, SUITE_TABLE
+    from eventpound.study.table import manifest_there
 
     manifest = manifest_there(out, SUITE_MANIFEST) or {}
     if manifest.get("complete", True):

@@ -41,11 +41,11 @@ from eventpound.results.workbook import Row
 from eventpound.scene.at_rest import told_at_rest
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, Slider
+from eventpound.study.base import suite_base
 from eventpound.simulation import response_of
 from eventpound.study.demands import NEEDED, demands_of
 from eventpound.study.design import FRACTILES
 from eventpound.study.large_scales import large_scales_of
-from eventpound.study.plan import suite_base
 from eventpound.study.records import FAILED, SA, sa_of_suite
 from eventpound.units import TOLD, Dimension
 

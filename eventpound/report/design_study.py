@@ -18,9 +18,10 @@ from eventpound.results.manifest import solved_by
 from eventpound.results.tables import Cells, headed
 from eventpound.results.trade import Trade
 from eventpound.results.workbook import Row
+from eventpound.study.base import RECORD
 from eventpound.study.design import FRACTILES, MOST_CLOSE
 from eventpound.study.large_scales import large_scales_of
-from eventpound.study.plan import RECORD, Plan
+from eventpound.study.plan import Plan
 
 _SHOWN = (
     *("separation_needed", "ductility", "max_opening", "seat_used", "max_impulse"),

@@ -26,11 +26,11 @@ from eventpound.report.study_files import figures_of
 from eventpound.report.suite_plot import suite_figure
 from eventpound.report.symbols import dimension_of
 from eventpound.results.tables import Cells, cell_text, headed
+from eventpound.study.forms import MESSAGE, SUCCESS
 from eventpound.results.trade import trade_of
 from eventpound.study.reading import StudyCase
 from eventpound.study.records import SA, sa_of_suite
 from eventpound.study.stated import stated
-from eventpound.study.table import MESSAGE, SUCCESS
 
 _PARTS = (16.0, 50.0, 84.0)
 

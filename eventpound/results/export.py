@@ -34,7 +34,6 @@ from eventpound.scene.contact import Contact
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Law, Series
-from eventpound.simulation import refuse_suite
 
 _SAMPLES_A_PERIOD = 1000
 
@@ -102,7 +101,7 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
         Where the directory cannot be written to, the case has many motions, or contacts have
         friction.
     """
-    refuse_suite(case)
+    case.refuse_suite()
     if rubbing := case.scene.rubbing:
         raise InputError(
             f"export: found friction at {', '.join(rubbing)}; accepted: contacts that only push, "

@@ -136,17 +136,12 @@ def _driven(case: Case) -> dict[str, list[Row]]:
     scene, found = case.scene, dict[str, list[Row]]()
     if scene.supports:
         end = case.run.start_time + case.run.duration
-        suites = {} if case.suite is None else dict(case.suite.beside)
         rows = []
         for support in scene.supports:
             row: Row = {"name": support.name, "kind": support.moved_by(scene.motion).kind}
             rows.append(row)
-            if case.suite is not None and (support.name in suites or support.delay is not None):
-                # Where it goes, each record says.
-                row["kind"] = "record"
-                own = suites.get(support.name)
-                many = None if own is None else len(own.members(case.directory))
-                row |= {"delay": support.delay} if many is None else {"suite": many}
+            if told := case.records_at(support.name, support.delay):
+                row |= {"kind": "record", **told}
                 continue
             if support.delay is not None:
                 row["delay"] = support.delay
@@ -275,9 +270,8 @@ def _structure(scene: Scene, group: list[str]) -> Row:
 
 def _motion(case: Case) -> Row:
     """The ground motion, or what a suite does with its records."""
-    if case.suite is not None:
-        scaling = case.size.words()
-        return {"suite": len(case.members), **({"scaling": scaling} if scaling else {})}
+    if told := case.records_at():
+        return told
     row = _motion_itself(case.scene.motion)
     if case.record is not None:
         said = {key: getattr(case.record, key) for key in ("event", "date", "station", "component")}
@@ -293,10 +287,7 @@ def _second(case: Case) -> dict[str, Row]:
     row = _motion_itself(second) | {"attack": math.degrees(case.scene.attack)}
     if isinstance(second, Record) and second.source is not None:
         row["file"] = second.source.file
-    suites = {} if case.suite is None else dict(case.suite.beside)
-    if SECOND in suites:
-        row["suite"] = len(suites[SECOND].members(case.directory))
-    return {"across": row}
+    return {"across": row | case.records_at(SECOND)}
 
 
 def _motion_itself(motion: GroundMotion) -> Row:

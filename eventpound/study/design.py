@@ -28,15 +28,17 @@ from eventpound.quantities.storeys import storeys_of_structure
 from eventpound.response import Response
 from eventpound.scene.scene import Scene
 from eventpound.simulation import response_of
+from eventpound.study.base import RECORD, suite_base
 from eventpound.study.demands import STOREY_DRIFT, Demand, demands_of, words_of
 from eventpound.study.engine import engine_of
+from eventpound.study.forms import SUCCESS, SUITE_TABLE
 from eventpound.study.large_scales import warn_of_scales
-from eventpound.study.plan import RECORD, Plan, suite_base
+from eventpound.study.plan import Plan
 from eventpound.study.records import FAILED
 from eventpound.study.running import run_study
 from eventpound.study.study import Study
 from eventpound.study.suite import run_suite, suite_plan
-from eventpound.study.table import SUCCESS, SUITE_TABLE, read_table
+from eventpound.study.table import read_table
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -36,6 +36,11 @@ def has_records(document: Mapping[str, object]) -> bool:
     return isinstance(excitation, dict) and bool({"suite", "synthetic"} & set(excitation))
 
 
+def is_folder(path: Path) -> bool:
+    """Whether a directory holds cases and is none."""
+    return not (path / CASE_FILE).is_file() and any(path.glob(CASES))
+
+
 def kind_of(path: Path) -> tuple[Holds, Mapping[str, object]]:
     """What a directory holds, and the tables of its case.
 
@@ -44,7 +49,7 @@ def kind_of(path: Path) -> tuple[Holds, Mapping[str, object]]:
     InputError
         Where there is neither a case nor a folder of cases.
     """
-    if not (path / CASE_FILE).is_file() and any(path.glob(CASES)):
+    if is_folder(path):
         return Holds.FOLDER, {}
     document, _, _ = read_document(path)
     if "study" in document:
@@ -55,7 +60,8 @@ def kind_of(path: Path) -> tuple[Holds, Mapping[str, object]]:
 def kind_of_results(out: Path, path: Path) -> tuple[Holds, Mapping[str, object]]:
     """What results are of, by their table, else by the case, which need not be there any more."""
     # Who only asks what a case is does not pay for what makes tables.
-    from eventpound.study.table import SUITE_TABLE, table_there
+    from eventpound.study.forms import SUITE_TABLE
+    from eventpound.study.table import table_there
 
     try:
         kind, document = kind_of(path)

@@ -11,7 +11,7 @@ from eventpound.case.record_scaling import large_scales
 from eventpound.errors import InputError
 from eventpound.motion.record import Record
 from eventpound.scene.parameters import motion_with, number_places
-from eventpound.study.plan import Base
+from eventpound.study.base import Base
 from eventpound.study.variants import axis_values, rows_with
 
 

@@ -20,7 +20,7 @@ from eventpound.quantities.lookup import chosen, quantities_asked, values_of
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
-from eventpound.study.plan import base_of, solver_of
+from eventpound.study.base import base_of, solver_of
 from eventpound.study.runs import results_of
 from eventpound.study.sweep import WantedRuns
 from eventpound.study.variants import axis_values, rows_with, unknown_axes

@@ -19,8 +19,8 @@ from eventpound.scene.scene import Scene
 from eventpound.simulation import ReadyScene, check_case, made_ready, options_of, output_times
 from eventpound.solvers.base import Solver, Task
 from eventpound.study.axes import given_axes
+from eventpound.study.base import Base, base_of
 from eventpound.study.checked_numbers import CheckedRanges
-from eventpound.study.plan import Base, base_of
 from eventpound.study.variants import (
     complete,
     kinds_that_set_lengths,

@@ -18,7 +18,8 @@ from eventpound.quantities.lookup import chosen, names_of, quantities_asked, uns
 from eventpound.scene.parameters import number_places
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_solver
-from eventpound.study.plan import Base, Plan
+from eventpound.study.base import Base
+from eventpound.study.plan import Plan
 from eventpound.study.variants import check_axes
 
 

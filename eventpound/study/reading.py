@@ -28,10 +28,11 @@ from eventpound.case.table import CaseProblem, Table
 from eventpound.errors import InputError
 from eventpound.scene.periods import T_1
 from eventpound.study.axes import OF_PLAN, PI, NumberAxis, WordAxis, read_axes
+from eventpound.study.base import PART, RECORD, Base
 from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities
 from eventpound.study.kinds import has_records
-from eventpound.study.plan import PART, RECORD, Base, Plan
+from eventpound.study.plan import Plan
 from eventpound.study.quantities import planned
 from eventpound.study.table import manifest_there
 

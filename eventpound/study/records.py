@@ -23,7 +23,6 @@ from eventpound.scene.at_rest import at_rest
 from eventpound.scene.periods import longest_period
 from eventpound.scene.plausibility import motion_doubts
 from eventpound.solvers.base import Extremes
-from eventpound.study.plan import OfSuite
 from eventpound.study.runs import Results
 from eventpound.study.sweep import Sweep, WantedRuns
 
@@ -39,11 +38,11 @@ _SCALES, _MEASURES = ("scale", "PGA", "T_m", "omega_g", "L_e"), ("PGV", SA)
 _READ = "seconds.read"
 
 
-def record_columns(members: Sequence[Member], suite: OfSuite) -> tuple[str, ...]:
-    """Columns of a suite that tell of its records."""
+def record_columns(members: Sequence[Member], measured: bool) -> tuple[str, ...]:
+    """Columns of a suite that tell of its records, perhaps with PGV and Sa."""
     beside = [name for name, _ in members[0].beside]
     own = [f"{key}.{name}" for name in beside for key in (FILE, "sha256", "PGA")]
-    measures = () if suite.sa is None else _MEASURES
+    measures = _MEASURES if measured else ()
     return ("record", FILE, FAILED, *_IDENTITY, *own, *_SCALES, *measures, _READ)
 
 

@@ -32,18 +32,11 @@ from eventpound.results.files import (
 )
 from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import sha256
+from eventpound.study.base import RECORD
 from eventpound.study.engine import Engine
-from eventpound.study.plan import RECORD, Plan
-from eventpound.study.table import (
-    MANIFEST,
-    MESSAGE,
-    SUCCESS,
-    SUITE_MANIFEST,
-    TABLE,
-    files_of,
-    header,
-    manifest_there,
-)
+from eventpound.study.forms import MANIFEST, MESSAGE, SUCCESS, SUITE_MANIFEST, TABLE
+from eventpound.study.plan import Plan
+from eventpound.study.table import header, manifest_there
 
 FORMAT = "eventpound-study/1"
 """Name and number of the form of the files."""
@@ -65,7 +58,7 @@ class Store:
 
     def __init__(self, directory: Path, study: Plan) -> None:
         self.directory, self.study = directory, study
-        self.table, self.manifest = files_of(study)
+        self.table, self.manifest = study.form.table, study.form.manifest
         self.unfinished = directory / f"unfinished-{study.digest[:_DIGITS]}"
 
     def finished(self) -> bool:
@@ -270,12 +263,12 @@ def run_study(
             try:
                 _compute_missing(study, store, engine, progress)
             except KeyboardInterrupt:
-                if study.suite is not None and store.stored():
+                if store.stored() and not study.form.whole:
                     store.finish(header(study), details)
                 raise
             moved = store.finish(header(study), details)
         store.clear()
-        if study.suite is None and not (directory / PARQUET).exists():
+        if study.form.binary and not (directory / PARQUET).exists():
             write_parquet(study, directory)
     return moved
 

@@ -26,7 +26,7 @@ from eventpound.quantities.lookup import (
 )
 from eventpound.scene.parameters import number_places, value_at
 from eventpound.scene.scene import Scene
-from eventpound.study.plan import Base
+from eventpound.study.base import Base
 from eventpound.study.sweep import Sweep, WantedRuns
 from eventpound.study.variants import Rows, rows_of_base
 

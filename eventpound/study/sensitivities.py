@@ -34,8 +34,8 @@ from eventpound.scene.parameters import dimension_of_number, number_places, valu
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import PI, NumberAxis
+from eventpound.study.base import Base, base_of
 from eventpound.study.many import simulate_many
-from eventpound.study.plan import Base, base_of
 from eventpound.study.variants import check_axes
 from eventpound.tolerances import DIFFERENCE_STEP
 from eventpound.units import Dimension

@@ -8,7 +8,8 @@ from typing import Any
 from eventpound.motion.record import Record
 from eventpound.motion.scaling import DAMPING
 from eventpound.study.axes import PI
-from eventpound.study.plan import PART, Base, Plan
+from eventpound.study.base import PART, Base
+from eventpound.study.plan import Plan
 from eventpound.study.variants import PSA_PERIOD
 
 PSA = "excitation.psa"

@@ -21,12 +21,13 @@ from eventpound.errors import InputError
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_case
 from eventpound.study.axes import given_axes
+from eventpound.study.base import RECORD, base_of, described, solver_of
 from eventpound.study.engine import Batch, Processes
+from eventpound.study.forms import SUCCESS
 from eventpound.study.large_scales import warn_of_scales
-from eventpound.study.plan import RECORD, base_of, described, solver_of
 from eventpound.study.quantities import planned
 from eventpound.study.running import run_study
-from eventpound.study.table import SUCCESS, read_table
+from eventpound.study.table import read_table
 from eventpound.units import Dimension
 
 if TYPE_CHECKING:

@@ -27,13 +27,15 @@ from eventpound.response import Response
 from eventpound.results.manifest import case_in_manifest, machine, versions
 from eventpound.results.tables import table_csv
 from eventpound.simulation import check_solver
+from eventpound.study.base import base_of, described
 from eventpound.study.engine import Batch
+from eventpound.study.forms import SUITE_TABLE, OfSuite
 from eventpound.study.large_scales import warn_of_scales
-from eventpound.study.plan import OfSuite, Plan, base_of, described
+from eventpound.study.plan import Plan
 from eventpound.study.records import FAILED, record_columns, sa_of_suite
 from eventpound.study.running import run_study
 from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
-from eventpound.study.table import SUITE_FORMAT, SUITE_TABLE, read_table
+from eventpound.study.table import SUITE_FORMAT, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -160,10 +162,10 @@ def suite_plan(case: Case, error_estimate: bool | None = None, intensities: bool
         tabled = all_of(scene, [q for q in LISTED if q.tabled and q.source in _TABLED])
         quantities = [*(named.name for named in tabled), *quantities_asked([(scene, case.run)])]
     sa = sa_of_suite(case) if intensities else None
-    suite, base = OfSuite(sa, errors), described(base_of(case, (), members, options))
+    form, base = OfSuite(sa, errors), described(base_of(case, (), members, options))
     names = tuple(dict.fromkeys(quantities))
-    columns = record_columns(members, suite)
-    return Plan(case.title, (base,), columns, names, options.name, options.rtol, suite)
+    columns = record_columns(members, sa is not None)
+    return Plan(case.title, (base,), columns, names, options.name, options.rtol, form)
 
 
 def _handing_on(case: Case, keep: Keep) -> Callable[[Member, Response], None]:

@@ -22,8 +22,18 @@ from eventpound.response import Response
 from eventpound.results.jsontext import read_json
 from eventpound.results.run_files import read_manifest as read_stated
 from eventpound.results.tables import rows_csv
-from eventpound.study.plan import RECORD, Chunk, Plan
-from eventpound.study.records import FAILED, about, peak_errors, reason
+from eventpound.study.base import RECORD
+from eventpound.study.forms import (
+    MANIFEST,
+    MESSAGE,
+    SUCCESS,
+    SUITE_MANIFEST,
+    SUITE_TABLE,
+    TABLE,
+    Told,
+)
+from eventpound.study.plan import Chunk, Plan
+from eventpound.study.records import FAILED
 from eventpound.study.runs import Refused, Results, runs_in_parts
 from eventpound.study.sweep import WantedRuns
 from eventpound.study.variants import axis_cells
@@ -31,16 +41,8 @@ from eventpound.study.variants import axis_cells
 if TYPE_CHECKING:
     import pandas as pd
 
-TABLE, MANIFEST = "study.csv", "manifest.json"
-SUITE_TABLE, SUITE_MANIFEST = "suite.csv", "suite.json"
-"""Names of the files."""
 SUITE_FORMAT = "eventpound-suite/1"
 """Name and number of the form of the files of a suite."""
-SUCCESS, MESSAGE = "success", "message"
-"""Last two columns of the table of a study."""
-SECONDS, ERRORS = "seconds.solve", "error_estimate"
-"""Of that of a suite."""
-_FINAL = "t_final"
 _WORDS = {RECORD, "file", FAILED, MESSAGE, "event", "date", "station", "component", "format"} | {
     "sha256",
     "notes",
@@ -50,18 +52,10 @@ Keep = Callable[[Member, Response], None]
 Cells = Mapping[str, Sequence[object]]
 
 
-def files_of(study: Plan) -> tuple[str, str]:
-    """Names of the table and of its manifest."""
-    return (TABLE, MANIFEST) if study.suite is None else (SUITE_TABLE, SUITE_MANIFEST)
-
-
 def column_names(study: Plan) -> list[str]:
     """Names of the columns."""
-    names = [*study.columns, *study.quantities]
-    if study.suite is None:
-        return [*names, SUCCESS, MESSAGE]
     ran = any(base.case.scene.bodies for base in study.bases)
-    return names + [SECONDS] * ran + [ERRORS] * (ran and study.suite.errors)
+    return [*study.columns, *study.quantities, *study.form.last_columns(ran)]
 
 
 def header(study: Plan) -> bytes:
@@ -87,11 +81,9 @@ def compute(study: Plan, chunk: Chunk, keep: Keep | None = None) -> bytes:
         Its rows, CSV.
     """
     base, low, high = study.bases[chunk.base], chunk.low, chunk.high
-    told: list[dict[str, object]] = []
-    if study.suite is not None:
-        told = [about(member, study.suite.sa) for member in base.records[low:high]]
-        if not base.case.scene.bodies:
-            return rows_csv([row.get(name, "") for name in column_names(study)] for row in told)
+    told = study.form.told(base.records[low:high])
+    if not base.case.scene.bodies:
+        return rows_csv([row.get(name, "") for name in column_names(study)] for row in told)
     own = None if keep is None else lambda i, response: keep(base.records[i], response)
     wanted = WantedRuns(study.solver, study.rtol, study.quantities, keep=own)
     rows: list[bytes] = []
@@ -106,47 +98,32 @@ def compute(study: Plan, chunk: Chunk, keep: Keep | None = None) -> bytes:
 
 
 def _cells_of(
-    study: Plan, part: Results | Refused, told: Sequence[Mapping[str, object]]
+    study: Plan, part: Results | Refused, told: Sequence[Told]
 ) -> dict[str, Sequence[object]]:
     """Cells of some rows by their columns, of those that they have."""
+    said: list[str | None]
     if isinstance(part, Refused):
-        cells = axis_cells(part.base, part.at)
-        good, said = [False] * len(part.at), [str(part.error)] * len(part.at)
+        cells, said = axis_cells(part.base, part.at), [str(part.error)] * len(part.at)
     else:
         # An estimate that fails marks its run as failed.
         cells = axis_cells(part.rows.base, part.rows.at) | _numbers_of(study, part)
-        good, said = part.many.success.tolist(), part.many.message
-    said = ["" if ok else text for ok, text in zip(good, said, strict=True)]
-    if study.suite is None:
-        return cells | {SUCCESS: good, MESSAGE: [" ".join(text.split()) for text in said]}
-    cells |= {name: [_plain(row.get(name)) for row in told] for name in study.columns}
-    pairs = zip(told, said, strict=True)
-    cells[FAILED] = [row[FAILED] or reason(text, str(row["file"])) for row, text in pairs]
-    return cells
+        ended = zip(part.many.success.tolist(), part.many.message, strict=True)
+        said = [None if good else text for good, text in ended]
+    return cells | study.form.outcome(told, said, study.columns)
 
 
 def _numbers_of(study: Plan, part: Results) -> dict[str, Sequence[object]]:
-    """Cells of the quantities of some runs, and what a suite tells of each run."""
+    """Cells of the numbers of some runs."""
     found = {name: part.quantity(name) for name in study.quantities}
     columns = {name: values for name, values in found.items() if values is not None}
-    if study.suite is not None:
-        columns[SECONDS] = part.seconds
-        if study.suite.errors:
-            columns[ERRORS] = peak_errors(part, study.solver, study.rtol)
-        good = part.many.success
-        columns = {n: v if n == _FINAL else np.where(good, v, np.nan) for n, v in columns.items()}
-    return {name: _cells(name, values) for name, values in columns.items()}
+    whole = study.form.numbers(part, columns, study.solver, study.rtol)
+    return {name: _cells(name, values) for name, values in whole.items()}
 
 
 def _cells(name: str, values: Floats) -> list[object]:
     """Cells of a column; nothing where a run has no such number, counts as whole numbers."""
     kind = int if is_whole(name) else None
     return ["" if v != v else kind(v) if kind else v for v in values.tolist()]
-
-
-def _plain(value: object) -> object:
-    """A cell; nothing of what is not known."""
-    return "" if value is None or value != value else value
 
 
 def manifest_there(directory: Path, name: str = MANIFEST) -> dict[str, object] | None:

@@ -28,7 +28,7 @@ from eventpound.scene.pi_columns import ScaleColumns, numbers_with_terms, scale_
 from eventpound.scene.pi_terms import of_all
 from eventpound.scene.scene import Scene
 from eventpound.study.axes import PI, values_of_rows
-from eventpound.study.plan import RECORD, Base
+from eventpound.study.base import RECORD, Base
 
 PSA_PERIOD = "excitation.psa_period"
 """Key of the period at which a record is scaled."""

@@ -10,7 +10,7 @@ from eventpound.case.solver_options import SolverOptions
 from eventpound.scene import GROUND, Body, Contact, Linear, Scene, Spring, Support
 from eventpound.study import sweep
 from eventpound.study.axes import given_axes
-from eventpound.study.plan import base_of
+from eventpound.study.base import base_of
 from eventpound.study.variants import axis_values, rows_with
 from tests.models import CASES
 from tests.study.test_many import SCENES, assert_identical, variant

@@ -8,7 +8,8 @@ import pytest
 from eventpound.errors import ComputationError
 from eventpound.scene.parameters import with_values
 from eventpound.simulation import ReadyScene, response_of
-from eventpound.study.table import TABLE, compute, header, read_table
+from eventpound.study.forms import TABLE
+from eventpound.study.table import compute, header, read_table
 from eventpound.study.variants import rows_of_base, scene_of_row
 from tests.study.conftest import ELASTOPLASTIC
 
