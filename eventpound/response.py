@@ -16,8 +16,8 @@ from eventpound.contact.event import STRIKES
 from eventpound.errors import EventpoundError, InputError
 from eventpound.mechanics.supported import components
 from eventpound.motion.base import GroundMotion
-from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.motion.record import Record
+from eventpound.motion.scaling import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.apart import avoiding_gaps
 from eventpound.quantities.base import SIX, TakenFrom, pi_unit
@@ -27,8 +27,7 @@ from eventpound.quantities.decks import translates, turned_far
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_of
 from eventpound.quantities.owners import owners_of
-from eventpound.quantities.rows import rows_at, settled, warn_unsettled
-from eventpound.quantities.shocks import shocks_of
+from eventpound.quantities.rows import rows_at, settled, shocks_of, warn_unsettled
 from eventpound.quantities.spring_events import SpringEvent, spring_events
 from eventpound.scene.continuation import FinalState, continued, state_of
 from eventpound.scene.pi_columns import ScaleColumns

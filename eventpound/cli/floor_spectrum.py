@@ -70,7 +70,7 @@ def _floor_spectrum(options: Options) -> int:
 
 def _periods(between: tuple[float, float] | None) -> list[float]:
     """Periods (s), evenly spaced in their logarithm."""
-    from eventpound.motion.oscillators import PERIODS, read_periods
+    from eventpound.motion.scaling import PERIODS, read_periods
 
     if between is None:
         return list(PERIODS)

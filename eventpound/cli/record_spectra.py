@@ -66,8 +66,7 @@ def write_spectra(
 
 def _to_target(record: Record, target: pd.DataFrame, damping: float) -> str:
     """The factor that brings a record to a target, in words."""
-    from eventpound.motion.oscillators import PERIODS
-    from eventpound.motion.scaling import Target, factor_to
+    from eventpound.motion.scaling import PERIODS, Target, factor_to
 
     points = tuple(target["period"]), tuple(STANDARD_GRAVITY * target["PSA_g"])
     low, high = max(points[0][0], PERIODS[0]), min(points[0][-1], PERIODS[-1])

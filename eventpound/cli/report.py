@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from eventpound.case import Case
     from eventpound.report.html import Section
     from eventpound.report.sheets import Sheet
-    from eventpound.results.workbook import Row
+    from eventpound.results.tables import Row
     from eventpound.study.design import DesignRuns
     from eventpound.study.reading import StudyCase
 
@@ -111,7 +111,7 @@ def _pages(
     """The files of a report."""
     from eventpound.report.html import PAGE
     from eventpound.report.sheets import as_html, as_pdf
-    from eventpound.results.workbook import workbook
+    from eventpound.results.tables import workbook
 
     files = {PAGE: as_html(title, sheets, sections)}
     files |= {PRINTED: as_pdf(title, sheets)} if sheets else {}

@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.mechanics.supported import components
-from eventpound.motion.oscillators import spectrum_columns
+from eventpound.motion.scaling import spectrum_columns
 from eventpound.motion.swing import largest_swings
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene

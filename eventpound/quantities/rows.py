@@ -2,6 +2,9 @@
 
 Rows stand at every corner of what moves a scene, on either side of its jumps, and between. They
 are doubled until no number changes by more than `AGREEMENT`.
+
+The shocks of a sequence are runs of their own. Each begins in the state in which the whole run has
+it begin and ends where the next begins, so that extremes, impacts and what is left are its own.
 """
 
 from __future__ import annotations
@@ -16,8 +19,10 @@ import numpy as np
 from eventpound.basics.told import warn_caller
 from eventpound.errors import AccuracyWarning, InputError
 from eventpound.motion.base import Family, GroundMotion
+from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.at_rest import stiffest
+from eventpound.scene.continuation import FinalState, state_of
 from eventpound.scene.periods import local_periods
 from eventpound.scene.structures import of_frames
 from eventpound.solvers.base import Recording, Task
@@ -175,3 +180,28 @@ def _corners(motion: GroundMotion) -> tuple[Floats, Floats]:
             corners.append(first + dt * np.arange(piece.samples.size))
     jumps = np.unique(borders)
     return np.concatenate([jumps, *corners]), jumps
+
+
+def shocks_of(task: Task, rerun: Rerun) -> list[tuple[Task, FinalState | None]]:
+    """A task for each shock that begins within one, and the state that it goes on from.
+
+    None where there is one record only; the first goes on from nothing.
+
+    Parameters
+    ----------
+    task : Task
+        What was asked.
+    rerun : callable
+        Runs a task; a failure is a ComputationError.
+    """
+    scene, motion = task.scene, task.scene.motion
+    begins = motion.begins[1:] if isinstance(motion, Record) else np.empty(0)
+    begins = begins[(begins > task.start) & (begins < task.end)]
+    if not begins.size:
+        return []
+    run, places = rows_at(task, rerun, begins, SIDES[0])
+    h = run.history
+    states = [None, *(state_of(scene, h.u[i], h.v[i], h.z[i]) for i in places)]
+    ends = pairwise([task.start, *begins.tolist(), task.end])
+    parts = [replace(task, start=a, end=b, output_times=np.empty(0)) for a, b in ends]
+    return list(zip(parts, states, strict=True))

@@ -35,14 +35,13 @@ from eventpound.results import gather
 from eventpound.results.input_tables import input_tables, rest_words
 from eventpound.results.inputs import inputs_of
 from eventpound.results.manifest import case_in_manifest, sha256, solved_by
-from eventpound.results.tables import Cells
+from eventpound.results.tables import Cells, Row
 from eventpound.results.trade import Trade, three_digits, trade_of
-from eventpound.results.workbook import Row
 from eventpound.scene.at_rest import told_at_rest
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, Slider
-from eventpound.study.base import suite_base
 from eventpound.simulation import response_of
+from eventpound.study.base import suite_base
 from eventpound.study.demands import NEEDED, demands_of
 from eventpound.study.design import FRACTILES
 from eventpound.study.large_scales import large_scales_of

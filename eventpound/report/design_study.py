@@ -15,9 +15,8 @@ from eventpound.report.design_tables import NUMBERS, capacity_words
 from eventpound.report.sheets import Block, Head, Picture, Sheet, Words
 from eventpound.report.symbols import axis_label, display_unit, value_label
 from eventpound.results.manifest import solved_by
-from eventpound.results.tables import Cells, headed
+from eventpound.results.tables import Cells, Row, headed
 from eventpound.results.trade import Trade
-from eventpound.results.workbook import Row
 from eventpound.study.base import RECORD
 from eventpound.study.design import FRACTILES, MOST_CLOSE
 from eventpound.study.large_scales import large_scales_of

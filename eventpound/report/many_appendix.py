@@ -13,8 +13,7 @@ import pandas as pd
 
 from eventpound.case.case import Case
 from eventpound.errors import InputError
-from eventpound.motion.oscillators import PERIODS
-from eventpound.motion.scaling import psa_of
+from eventpound.motion.scaling import PERIODS, psa_of
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import parts_of
 from eventpound.quantities.listed import LISTED
@@ -26,8 +25,8 @@ from eventpound.report.study_files import figures_of
 from eventpound.report.suite_plot import suite_figure
 from eventpound.report.symbols import dimension_of
 from eventpound.results.tables import Cells, cell_text, headed
-from eventpound.study.forms import MESSAGE, SUCCESS
 from eventpound.results.trade import trade_of
+from eventpound.study.forms import MESSAGE, SUCCESS
 from eventpound.study.reading import StudyCase
 from eventpound.study.records import SA, sa_of_suite
 from eventpound.study.stated import stated

@@ -26,9 +26,9 @@ from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import influence, support_motion
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
-from eventpound.results.description import describe_scene
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
+from eventpound.results.manifest import describe_scene
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.elastic_laws import reduced

@@ -40,10 +40,9 @@ from eventpound.quantities.batch_response import BatchResponse
 from eventpound.quantities.lookup import FREE, Named, find, tabled
 from eventpound.quantities.spring_events import SpringEvent, spring_events
 from eventpound.response import EVENT_COLUMNS, Response
-from eventpound.results.description import describe_scene
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import read_json, to_json
-from eventpound.results.manifest import FORMAT, describe_run, sha256
+from eventpound.results.manifest import FORMAT, describe_run, describe_scene, sha256
 from eventpound.results.tables import rows_csv, table_csv
 from eventpound.scene.pi_terms import pi_terms
 from eventpound.scene.scene import Scene

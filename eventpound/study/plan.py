@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from eventpound.case.solver_options import FAST
-from eventpound.results.description import driven, pieces_hash
 from eventpound.results.jsontext import canonical
-from eventpound.results.manifest import versions
+from eventpound.results.manifest import driven, pieces_hash, versions
 from eventpound.study.axes import NumberAxis
 from eventpound.study.base import Base
 from eventpound.study.forms import OfStudy

@@ -17,7 +17,7 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
-from eventpound.motion.oscillators import PERIODS, read_damping, read_periods, spectrum_columns
+from eventpound.motion.scaling import PERIODS, read_damping, read_periods, spectrum_columns
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot

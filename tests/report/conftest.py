@@ -5,7 +5,7 @@ import pytest
 
 from eventpound.response import EVENT_COLUMNS
 from eventpound.results import StoredResults
-from eventpound.results.description import describe_scene
+from eventpound.results.manifest import describe_scene
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Scene, Spring
 
 DURATION = 12.0

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from eventpound.report.view import View
-from eventpound.results.description import describe_scene
+from eventpound.results.manifest import describe_scene
 from tests.test_cases import NAMES, loaded
 
 

@@ -4,7 +4,7 @@ import io
 from xml.etree import ElementTree
 from zipfile import ZipFile
 
-from eventpound.results.workbook import workbook
+from eventpound.results.tables import workbook
 
 MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 SHEETS = {

@@ -11,10 +11,10 @@ from eventpound.case import Case, read_case
 from eventpound.errors import InputError
 from eventpound.motion.pulses import Sine
 from eventpound.report.model_figure import model_figure
-from eventpound.results.description import describe_scene
 from eventpound.results.export import arrays_of
 from eventpound.results.input_tables import input_tables
 from eventpound.results.inputs import inputs_of
+from eventpound.results.manifest import describe_scene
 from eventpound.scene import (
     BARRIER,
     GROUND,
