@@ -21,8 +21,7 @@ import numpy as np
 
 from eventpound.case.case import Case
 from eventpound.case.run_options import Way, warn_left_out
-from eventpound.errors import InputError
-from eventpound.mechanics.model import assemble
+from eventpound.mechanics.model import assemble, differences
 from eventpound.mechanics.supported import influence, support_motion
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
@@ -83,6 +82,14 @@ IN_PLAN = {
         " -M 1 a_g. A deck is three bodies: x, y and r theta, r the radius at its contacts"
     )
 }
+WITH_FRICTION = {
+    "friction": (
+        "W_T has a column a contact: W_T^T v is how fast it slides, W_T lambda_T stands beside"
+        " W lambda; while it is closed -frictions lambda <= lambda_T <= frictions lambda, and"
+        " lambda_T = -frictions lambda sign(W_T^T v) while it slides; in an impact W_T L_T stands"
+        " beside W L, with L_T of L and of W_T^T v+ likewise"
+    )
+}
 
 
 def export(case: Case, directory: str | os.PathLike[str]) -> None:
@@ -98,15 +105,9 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
     Raises
     ------
     InputError
-        Where the directory cannot be written to, the case has many motions, or contacts have
-        friction.
+        Where the directory cannot be written to, or the case has many motions.
     """
     case.refuse_suite()
-    if rubbing := case.scene.rubbing:
-        raise InputError(
-            f"export: found friction at {', '.join(rubbing)}; accepted: contacts that only push, "
-            "for scene.json has no place for what rubs"
-        )
     warn_left_out(case.run, Way.EXPORT)
     start, end = case.run.start_time, case.run.start_time + case.run.duration
     scene_json = {"title": case.title, "start": start, "end": end} | _scene(case.scene, start)
@@ -241,7 +242,8 @@ def _scene(scene: Scene, start: float) -> dict[str, object]:
         | (WITH_WEIGHTS if any(spring.weight for spring in scene.springs) else {})
         | (WITH_SUPPORTS if scene.supports else {})
         | (WITH_FORCES if scene.forces else {})
-        | (IN_PLAN if scene.in_plan else {}),
+        | (IN_PLAN if scene.in_plan else {})
+        | (WITH_FRICTION if scene.rubbing else {}),
         "springs": [row | _condensed(spring.law) for row, spring in springs],
         **arrays_of(scene, start),
         **({"iota": parts} if scene.in_plan else {}),
@@ -267,6 +269,7 @@ def arrays_of(scene: Scene, start: float = 0.0) -> dict[str, object]:
     b_links = model.elongations(np.eye(model.bodies))
     C, B = b_links * model.law.damping @ b_links.T, b_links[:, : model.springs]
     W = model.rates(np.eye(model.bodies))
+    W_T = differences(model.with_points(np.eye(model.bodies)), *model.tangent.T)
     return {
         "M": model.mass[count : model.bodies],
         "C": C[count:, count:],
@@ -275,6 +278,7 @@ def arrays_of(scene: Scene, start: float = 0.0) -> dict[str, object]:
         **({"C_s": C[count:, :count], "B_s": B[:count], "W_s": W[:count]} if count else {}),
         "gaps": model.gap,
         "restitutions": model.restitution,
+        **({"W_T": W_T[count:], "frictions": model.friction} if scene.rubbing else {}),
         "initial": {
             "u": model.u0[count : model.bodies],
             "v": model.v0[count : model.bodies],

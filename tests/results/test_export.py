@@ -258,6 +258,16 @@ def test_a_deck_in_plan_as_another_program_reads_it(tmp_path):
     assert found.u == pytest.approx(y[:3], abs=1e-5 * np.abs(y[:3]).max())
 
 
-def test_friction_has_no_place(tmp_path):
-    with pytest.raises(InputError, match=r"found friction at rough west\.lower, rough west\.upper"):
-        export(load_case(CASES / "skew-deck-friction"), tmp_path)
+def test_friction_slides_along_the_edges(tmp_path):
+    """W_T by the shape of the deck: along (-sin α, cos α), at the arm of a place of the edge."""
+    export(load_case(CASES / "skew-deck-friction"), tmp_path)
+    told = json.loads((tmp_path / "scene.json").read_text())
+    assert "friction" in told["conventions"]
+    assert told["frictions"] == [0.0] * 4 + [0.3] * 4
+    column = np.array(told["W_T"])[:, 5]
+    alpha, y = math.radians(30.0), 5.5
+    along = np.array([-math.sin(alpha), math.cos(alpha)])
+    x = -18.0 - y * math.tan(alpha)
+    radius = math.sqrt((36.0**2 + (11.0 / math.cos(alpha)) ** 2) / 12.0)
+    turn = (x * along[1] - y * along[0]) / radius
+    assert column == pytest.approx([0.0, 0.0, 0.0, *along, turn], abs=1e-14)
