@@ -211,9 +211,13 @@ def _certificate(
     warnings = [f"{r.label} failed: {r.message}" for r in reports if r.message]
     if left := left_out(task.scene):
         warnings.append(
-            f"left out: {' and '.join(left)}, which do not take every contact of the scene; the "
-            "routes are methods of cvode, and what they share no other program confirms"
+            f"left out: {' and '.join(left)}, which do{'es' if len(left) == 1 else ''} not take "
+            "every contact of the scene"
         )
+        if all(run.route.solver == "cvode" for run in found.runs):
+            warnings[-1] += (
+                "; the routes are methods of cvode, and what they share no other program confirms"
+            )
     if conditions is None:
         warnings.append("runs with changed inputs failed: how inputs come through is not known")
         unknown = np.full(len(found.truth.quantities), np.nan)
