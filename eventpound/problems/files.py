@@ -3,8 +3,9 @@
 ``problem.md`` (the equations with all numbers), ``problem.json`` (the same for programs),
 ``problem.txt`` (the same as bare numbers, for programs that read no JSON),
 ``motion.csv`` (the ground acceleration in samples), ``answer.json``; beside them the case as
-eventpound takes it. The archive holds them for every problem, with ``score.py`` and the
-index, in one order, with one date, uncompressed: the same bytes each time.
+eventpound takes it. Problems in plan have more in each (`eventpound.problems.plan`). The archive
+holds them for every problem, with ``score.py`` and the index, in one order, with one date,
+uncompressed: the same bytes each time.
 """
 
 from __future__ import annotations
@@ -32,7 +33,8 @@ from eventpound.problems.collection import (
     moments_of,
 )
 from eventpound.problems.page import problem_page, set_page
-from eventpound.results.export import arrays_of, sampled_motion
+from eventpound.problems.plan import plan_conventions, plan_numbers, plan_rows
+from eventpound.results.export import arrays_of, sampled_signals
 from eventpound.results.jsontext import canonical
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
@@ -147,12 +149,10 @@ def problem_json(collection: Collection, problem: ProblemFolder) -> dict[str, ob
     """A problem in numbers, its springs of one law."""
     case = problem.case()
     scene, run = case.scene, case.run
-    of_law = any(contact.law or contact.friction for contact in scene.contacts)
-    if scene.is_driven or of_law:
+    if scene.supports or scene.forces or any(contact.law for contact in scene.contacts):
         raise InputError(
-            f"{problem.folder}: has supports, forces, decks in plan or contacts with a law or "
-            "friction, for which the files of a problem have no place; "
-            "`eventpound run CASE --export DIR` writes such a case"
+            f"{problem.folder}: has supports, forces or contacts with a law, for which the files "
+            "of a problem have no place; `eventpound run CASE --export DIR` writes such a case"
         )
     start, end = run.start_time, run.start_time + run.duration
     return {
@@ -161,7 +161,7 @@ def problem_json(collection: Collection, problem: ProblemFolder) -> dict[str, ob
         "title": case.title,
         "tests": problem.tests,
         "tags": problem.tags,
-        "conventions": CONVENTIONS,
+        "conventions": CONVENTIONS | plan_conventions(scene),
         "start": start,
         "end": end,
         "moments": moments_of(run),
@@ -173,7 +173,9 @@ def problem_json(collection: Collection, problem: ProblemFolder) -> dict[str, ob
             **{key: [_law(spring)[key] for spring in scene.springs] for key in LAW},
         },
         "frequencies": _frequencies(scene),
+        **plan_numbers(scene),
         "motion": _pieces(scene.motion, start, end),
+        **({"motion_across": _pieces(scene.across, start, end)} if scene.in_plan else {}),
     }
 
 
@@ -181,7 +183,8 @@ def bare_numbers(content: Mapping[str, Any]) -> bytes:
     """A problem as the two first lines of its answer, and then its numbers in this order.
 
     Bodies, springs, contacts, start, end; a line a body (M, u, v, its row of C), a spring (its
-    law, its column of B) and a contact (gap, restitution, its column of W).
+    law, its column of B) and a contact (gap, restitution, its column of W). In plan `plan_rows`
+    follow.
     """
     springs, initial = content["springs"], content["initial"]
     names, law = springs["names"], [springs[key] for key in LAW]
@@ -195,8 +198,10 @@ def bare_numbers(content: Mapping[str, Any]) -> bytes:
     rows += [[*numbers, *column] for *numbers, column in zip(*law, b, strict=True)]
     contacts = zip(content["gaps"], content["restitutions"], w, strict=True)
     rows += [[gap, restitution, *column] for gap, restitution, column in contacts]
-    head = f"# problem {content['problem']}\n{','.join(columns)}\n"
-    return (head + "".join(" ".join(f"{x:.17g}" for x in row) + "\n" for row in rows)).encode()
+    lines = [f"# problem {content['problem']}", ",".join(columns)]
+    for row in (*rows, *plan_rows(content)):
+        lines.append(row if isinstance(row, str) else " ".join(f"{x:.17g}" for x in row))
+    return ("\n".join(lines) + "\n").encode()
 
 
 def _frequencies(scene: Scene) -> list[float]:
@@ -259,14 +264,14 @@ def _motion_csv(problem: ProblemFolder) -> bytes:
     last digits of a sine are not the same on every processor.
     """
     case = problem.case()
-    start = case.run.start_time
-    t, a_g = sampled_motion(case.scene.motion, start, start + case.run.duration)
-    sampled = any(piece.family is Family.SAMPLES for piece in case.scene.motion.pieces())
-    rows = "".join(
-        f"{time!r},{a!r}\n" if sampled else f"{time:.15g},{a:.9g}\n"
-        for time, a in zip(t.tolist(), _whole(a_g).tolist(), strict=True)
-    )
-    return f"t,a_g\n{rows}".encode()
+    scene, start = case.scene, case.run.start_time
+    motions = [scene.motion, scene.across] if scene.in_plan else [scene.motion]
+    t, values = sampled_signals(motions, start, start + case.run.duration)
+    sampled = any(p.family is Family.SAMPLES for motion in motions for p in motion.pieces())
+    digits = (repr, repr) if sampled else ("{:.15g}".format, "{:.9g}".format)
+    columns = [map(digits[0], t.tolist()), *(map(digits[1], _whole(a).tolist()) for a in values)]
+    rows = map(",".join, zip(*columns, strict=True))
+    return "\n".join(["t,a_g,a_across" if scene.in_plan else "t,a_g", *rows, ""]).encode()
 
 
 def _whole(a_g: Floats) -> Floats:

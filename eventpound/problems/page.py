@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from eventpound.problems.collection import Collection, ProblemFolder
+from eventpound.problems.plan import OF_DECKS
 from eventpound.results.tables import markdown_of
 
 _FEW = 12
@@ -44,13 +45,15 @@ def problem_page(
         f"Tags: {', '.join(problem.tags)}. {_properties(answer)}{_frequencies(content)}",
         "## Equations (SI)",
         _LAWS,
+        *_plan_laws(content),
         "## Numbers",
         _bodies(content),
         *_tables(content),
+        *_plan_tables(content),
         f"Damping: {_damping(content)}",
         f"Time: from {content['start']!r} to {content['end']!r} s.",
         "## Ground motion",
-        "\n".join(_motion(content["motion"])),
+        *_motions(content),
         "## Answer",
         "\n".join(_answer(answer)),
     ]
@@ -101,14 +104,16 @@ def _tables(content: Mapping[str, Any]) -> Iterator[str]:
         numbers = zip(content["gaps"], content["restitutions"], strict=True)
         pairs = zip(content["contacts"], numbers, strict=True)
         rows = [
-            (name, _ends(content, "W", j, "barrier"), *map(float, two))
-            for j, (name, two) in enumerate(pairs)
+            (name, _ends(content, "W", j), *map(float, two)) for j, (name, two) in enumerate(pairs)
         ]
         yield markdown_of(("contact", "gap between", "delta", "eps"), rows)
 
 
-def _ends(content: Mapping[str, Any], matrix: str, column: int, outside: str = "ground") -> str:
-    """Both ends of a spring or contact, the one with -1 first."""
+def _ends(content: Mapping[str, Any], matrix: str, column: int) -> str:
+    """Both ends of a spring or contact, the one with -1 first; in plan their places."""
+    kind, outside = {"B": ("springs", "ground"), "W": ("contacts", "barrier")}[matrix]
+    if "places" in content:
+        return ", ".join(content["places"][kind][column])
     ends = {
         sign: body
         for body, row in zip(content["bodies"], content[matrix], strict=True)
@@ -116,6 +121,35 @@ def _ends(content: Mapping[str, Any], matrix: str, column: int, outside: str = "
         if float(row[column]) == sign
     }
     return f"{ends.get(-1.0, outside)}, {ends.get(1.0, outside)}"
+
+
+def _plan_laws(content: Mapping[str, Any]) -> Iterator[str]:
+    """What stands in the place of the equations on a line, or is added to them."""
+    said = content["conventions"]
+    yield from (f"{key.capitalize()}: {said[key]}." for key in ("plan", "friction") if key in said)
+
+
+def _plan_tables(content: Mapping[str, Any]) -> Iterator[str]:
+    """Decks, what pushes their coordinates, and the weights of springs and contacts."""
+    if "iota" not in content:
+        return
+    decks = [
+        (deck["name"], *(float(deck[key]) for key in OF_DECKS[1:5]),
+         ", ".join(repr(float(x)) for x in deck["centre"]), float(deck["radius"]))
+        for deck in content["decks"]
+    ]  # fmt: skip
+    yield markdown_of(("deck", *OF_DECKS[1:]), decks)
+    if "W_T" in content:
+        frictions = zip(content["contacts"], map(float, content["frictions"]), strict=True)
+        yield markdown_of(("contact", "friction"), [*frictions])
+    rows = {key: content[key] for key in ("iota", "B", "W", "W_T") if key in content}
+    few = len(content["bodies"]) <= _FEW
+    yield "\n".join(
+        f"{key}, a row a body: {'; '.join(str([*map(float, row)]) for row in matrix)}\n"
+        if few
+        else f"{key} in problem.json.\n"
+        for key, matrix in rows.items()
+    )
 
 
 def _damping(content: Mapping[str, Any]) -> str:
@@ -127,7 +161,14 @@ def _damping(content: Mapping[str, Any]) -> str:
     return "C in problem.json."
 
 
-def _motion(pieces: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+def _motions(content: Mapping[str, Any]) -> Iterator[str]:
+    """The ground acceleration, each of its components in plan."""
+    for key, name in (("motion", "a_g"), ("motion_across", "a_across")):
+        if key in content:
+            yield "\n".join(_motion(content[key], name))
+
+
+def _motion(pieces: Sequence[Mapping[str, Any]], name: str) -> Iterator[str]:
     if not pieces:
         yield "None."
     for piece in pieces:
@@ -138,11 +179,11 @@ def _motion(pieces: Sequence[Mapping[str, Any]]) -> Iterator[str]:
                 f"{float(a)!r} cos({float(w)!r} (t - {origin!r}) + {float(p)!r})"
                 for a, w, p in piece["sinusoids"]
             )
-            yield f"    {span}:  a_g = {terms}"
+            yield f"    {span}:  {name} = {terms}"
         elif "gaussian" in piece:
             q, *c = (float(number) for number in piece["gaussian"])
             powers = " + ".join(f"({x!r}) s^{k}" if k else f"({x!r})" for k, x in enumerate(c) if x)
-            yield f"    {span}:  a_g = ({powers}) exp(-{q!r} s^2),  s = t - {origin!r}"
+            yield f"    {span}:  {name} = ({powers}) exp(-{q!r} s^2),  s = t - {origin!r}"
         else:
             yield (
                 f"    {span}:  linear between the {len(piece['samples'])} samples of motion.csv, "
@@ -175,10 +216,11 @@ def set_page(collection: Collection) -> str:
     lines = [
         f"# {collection.name} {collection.version}",
         "",
-        "Structures that collide on a line, with certified answers. Each directory is a problem:",
+        "Structures that collide, with certified answers. Each directory is a problem:",
         "`problem.md` (equations and numbers), `problem.json` (the same for programs),",
         "`problem.txt` (as bare numbers: counts and run, bodies, springs, contacts, a line each),",
-        "`motion.csv` (ground acceleration), `answer.json`, and `case.toml` for eventpound.",
+        "`motion.csv` (ground acceleration), `answer.json`, and `case.toml` for eventpound. Those",
+        "tagged `plan` are decks that turn, with more in these files; the others are on a line.",
         "",
         "    python score.py 01-elastic-cosine my-answer.csv --html card.html",
         "",

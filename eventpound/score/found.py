@@ -164,8 +164,7 @@ def _work(problem: Problem, history: Motion, v: Floats) -> tuple[Floats, Floats]
     strength = np.array(problem.given["springs"]["strength"])[problem.hysteretic]
 
     def power(t: Floats, v: Floats, z: Floats | None) -> Floats:
-        p = problem.ground(t) * (v @ problem.array("M"))
-        p = p + np.einsum("ni,ij,nj->n", v, problem.array("C"), v)
+        p = problem.power(t, v) + np.einsum("ni,ij,nj->n", v, problem.array("C"), v)
         return p if z is None else p + ((v @ yielding) * z) @ strength
 
     first = np.flatnonzero(np.diff(t) > 0.0)
@@ -189,10 +188,13 @@ def _work(problem: Problem, history: Motion, v: Floats) -> tuple[Floats, Floats]
 def _unseen(problem: Problem, t: Floats) -> Floats:
     """Rows before which the ground does what a parabola through three of its values misses."""
     parts = (1e-9, 0.25, 0.5, 0.75, 1.0 - 1e-9)
+    unseen = np.zeros(t.size - 1, dtype=bool)
     at = [problem.ground(t[:-1] + part * np.diff(t)) for part in parts]
-    first, near, middle, far, last = at
-    off = np.maximum(
-        np.abs(near - (3.0 * first + 6.0 * middle - last) / 8.0),
-        np.abs(far - (3.0 * last + 6.0 * middle - first) / 8.0),
-    )
-    return np.flatnonzero(off > CREATED * np.max(np.abs(at), initial=0.0)) + 1
+    for component in zip(*at, strict=True):
+        first, near, middle, far, last = component
+        off = np.maximum(
+            np.abs(near - (3.0 * first + 6.0 * middle - last) / 8.0),
+            np.abs(far - (3.0 * last + 6.0 * middle - first) / 8.0),
+        )
+        unseen |= off > CREATED * np.max(np.abs(component), initial=0.0)
+    return np.flatnonzero(unseen) + 1

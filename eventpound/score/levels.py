@@ -24,7 +24,7 @@ EVENTS = {
 }
 """Events beside impacts as they are judged, and the kinds in a list: a rest has one end, however
 its contact is opened."""
-UNJUDGED = ("cut-impact",)
+UNJUDGED = ("cut-impact", "stick", "slip-forward", "slip-backward")
 """Kinds of events that a list may hold and that nobody is judged by."""
 ALWAYS = (-math.inf, math.inf)
 TINY = 1e-300

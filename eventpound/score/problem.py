@@ -91,10 +91,24 @@ class Problem:
         """Their rates for velocities of shape (n, N)."""
         return v @ self.array("W").reshape(len(self.bodies), -1)
 
-    def ground(self, t: Floats) -> Floats:
-        """Ground acceleration (m/s^2) at times of shape (n,); after a jump at its time."""
+    def ground(self, t: Floats) -> list[Floats]:
+        """Components of the ground acceleration (m/s^2) at times of shape (n,), one on a line.
+
+        After a jump at its time.
+        """
+        keys = ("motion", "motion_across") if "iota" in self.given else ("motion",)
+        return [self._component(key, t) for key in keys]
+
+    def power(self, t: Floats, v: Floats) -> Floats:
+        """Power against the ground (W), ``v^T M 1 a_g`` on a line, for v of shape (n, N)."""
+        if "iota" not in self.given:
+            return self.ground(t)[0] * (v @ self.array("M"))
+        pushed = self.array("M")[:, None] * self.array("iota")
+        return sum(a * (v @ part) for a, part in zip(self.ground(t), pushed.T, strict=True))
+
+    def _component(self, key: str, t: Floats) -> Floats:
         a_g = np.zeros(t.shape)
-        for piece in self.given["motion"]:
+        for piece in self.given[key]:
             inside = (t >= piece["start"]) & (t < piece["end"])
             s = t[inside] - piece["origin"]
             if "sinusoids" in piece:

@@ -16,13 +16,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.scene import BARRIER, Deck, Joint, Scene
+from eventpound.scene import BARRIER, GROUND, Deck, Joint, Scene
+from eventpound.scene.ends import End
+from eventpound.scene.plan_point import PlanPoint
 from tests.oracle.pieces import Event, Floats, march
 
 TOO_FAST = 1e-4
 """Interval between impacts (s) below which a scene is left to others."""
-_RTOL, _ATOL, _FIRST, _STEP = 1e-13, 1e-15, 1e-6, 0.02
-_STILL, _OFF, _NOISE, _TAKEN = 1e-10, 1e-8, 1e-13, 1e-3
+STEPS = {"rtol": 1e-13, "atol": 1e-15, "first_step": 1e-6, "max_step": 0.02}
+"""Settings of a run."""
+_STILL, _OFF, _TAKEN = 1e-10, 1e-8, 1e-3
 _WAY = {"+": 1.0, "-": -1.0}
 
 
@@ -39,7 +42,10 @@ class Held(NamedTuple):
 
 @dataclass
 class Plan:
-    """Arrays: M (n,), K and C (n, n), pushes (n, 2), W and T (k, n), gaps, ε and μ (k,)."""
+    """Arrays: M (n,), K and C (n, n), pushes (n, 2), W and T (k, n), gaps, ε and μ (k,).
+
+    What closes overlaps by a length (m), so that what has just opened does not close again.
+    """
 
     mass: Floats
     stiffness: Floats
@@ -54,6 +60,7 @@ class Plan:
     by_poisson: bool = False
     state: str = ""
     last_impact: float = -math.inf
+    overlap: float = 1e-13
     known: dict[str, Held] = field(default_factory=dict)
 
     def free(self, t: float, q: Floats, v: Floats) -> Floats:
@@ -148,7 +155,7 @@ class Plan:
 
         for j, s in enumerate(self.state):
             if s == "o":
-                add("close", j, lambda t, y, j=j: self.gap[j] + self.W[j] @ y[:n] + _NOISE)
+                add("close", j, lambda t, y, j=j: self.gap[j] + self.W[j] @ y[:n] + self.overlap)
                 continue
             add("release", j, lambda t, y, j=j: forces(t, y)[0][j])
             if s == "s":
@@ -283,36 +290,33 @@ def states(scene: Scene, joints: list[Joint], times: Floats) -> Floats | None:
     both = np.concatenate((unit, unit))
     start = [b.displacement for b in scene.bodies] + [b.velocity for b in scene.bodies]
     y = np.array(start) / both
-    steps = {"rtol": _RTOL, "atol": _ATOL, "first_step": _FIRST, "max_step": _STEP}
     try:
         plan.decide(float(times[0]), y, set(), {})
-        return np.array(march(plan, y, times.tolist(), **steps)) * both
+        return np.array(march(plan, y, times.tolist(), **STEPS)) * both
     except LeftAloneError:
         return None
 
 
 def plan_of(scene: Scene, joints: list[Joint]) -> Plan:
-    """Arrays of a scene of decks on springs and dashpots to the ground, one a coordinate."""
+    """Arrays of a scene of decks on linear springs and dashpots."""
     decks = {deck.name: i for i, deck in enumerate(scene.decks)}
     n = 3 * len(decks)
-    mass, K, C, pushed = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros((n, 2))
+    mass, K, C, pushed = np.zeros(n), np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, 2))
     cosine, sine = math.cos(scene.attack), math.sin(scene.attack)
-    for name, i in decks.items():
-        deck = scene.decks[i]
+    for i, deck in enumerate(scene.decks):
         # A parallelogram sheared by tan α, as a sum over its moments.
         shear = math.tan(deck.skew)
         J = deck.mass * (deck.length**2 + deck.width**2 * (1.0 + shear**2)) / 12.0
-        r_squared = J / deck.mass
         mass[3 * i : 3 * i + 3] = deck.mass, deck.mass, J
         pushed[3 * i] = cosine, -sine
         pushed[3 * i + 1] = sine, cosine
-        for k, (word, unit) in enumerate((("x", 1.0), ("y", 1.0), ("turn", r_squared))):
-            for spring in scene.springs:
-                if spring.between[1] == f"{name}.{word}":
-                    K[3 * i + k] += unit * spring.law.stiffness
-            for dashpot in scene.dashpots:
-                if dashpot.between[1] == f"{name}.{word}":
-                    C[3 * i + k] += unit * dashpot.coefficient
+    places = {name: 3 * i for name, i in decks.items()}
+    for spring in scene.springs:
+        b = _elongation(spring.between, places, mass)
+        K += spring.law.stiffness * np.outer(b, b)  # type: ignore[union-attr]
+    for dashpot in scene.dashpots:
+        b = _elongation(dashpot.between, places, mass)
+        C += dashpot.coefficient * np.outer(b, b)
     W, T, gaps, restitution = [], [], list[float](), list[float]()
     for joint in joints:
         pair = [None if end == BARRIER else scene.decks[decks[end]] for end in joint.between]
@@ -330,11 +334,26 @@ def plan_of(scene: Scene, joints: list[Joint]) -> Plan:
             gaps.append(gap)
             restitution.append(joint.restitution)
     return Plan(
-        mass, np.diag(K), np.diag(C), pushed, np.reshape(W, (-1, n)), np.reshape(T, (-1, n)),
+        mass, K, C, pushed, np.reshape(W, (-1, n)), np.reshape(T, (-1, n)),
         np.array(gaps), np.array(restitution, float),
         np.array([contact.friction for contact in scene.contacts], float),
         (scene.motion, scene.across), scene.impact_law == "poisson",
     )  # fmt: skip
+
+
+def _elongation(between: tuple[End, End], places: dict[str, int], mass: Floats) -> Floats:
+    """What u, v and θ of decks, the first at some places, make a spring or dashpot longer by."""
+    row = np.zeros(mass.size)
+    for end, sign in zip(between, (-1.0, 1.0), strict=True):
+        if isinstance(end, PlanPoint):
+            (x, y), (n_x, n_y) = end.at, end.normal
+            row[places[end.deck] :][:3] += sign * np.array([n_x, n_y, x * n_y - y * n_x])
+        elif end != GROUND:
+            deck, _, word = end.rpartition(".")
+            i = places[deck] + ("x", "y", "turn").index(word)
+            # Of a turn the length r θ.
+            row[i] += sign * (math.sqrt(mass[i] / mass[i - 1]) if word == "turn" else 1.0)
+    return row
 
 
 def _rows(deck: Deck, side: float, y: float) -> Floats:

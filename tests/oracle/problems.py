@@ -1,7 +1,8 @@
 """``python -m tests.oracle.problems [NAME ...]``: the problem set held against the oracle.
 
 Compares every number of every ``answer.json`` of ``cases/problems`` with the oracle's, within
-both bounds, and writes into it what came of that: how many were compared (`checked`), how many
+both bounds, that of decks in plan by the program of `tests.oracle.plan`, and writes into it what
+came of that: how many were compared (`checked`), how many
 of them agree, of how many the oracle itself is not sure to a tenth of the bound (`unsure`), or
 why it gives no answer (`silent`). Exit code 1 where a number does not agree.
 """
@@ -17,6 +18,7 @@ from eventpound.results.jsontext import read_json
 from eventpound.scene import Scene
 from tests.models import CASES
 from tests.oracle.certificates import NEAR, SAME, SURE
+from tests.oracle.plan_answer import ask_plan, joints_of
 from tests.oracle.program import Answer, NoAnswerError, Number, ask
 
 SET = CASES / "problems"
@@ -27,7 +29,10 @@ def compare(problem: ProblemFolder, answer: dict[str, Any]) -> dict[str, object]
     case = problem.case()
     start, end = case.run.start_time, case.run.start_time + case.run.duration
     try:
-        told = ask(case.scene, start, end, moments=answer["moments"])
+        if case.scene.decks:
+            told = ask_plan(case.scene, joints_of(problem.folder), (start, end), answer["moments"])
+        else:
+            told = ask(case.scene, start, end, moments=answer["moments"])
     except NoAnswerError as reason:
         return {"checked": 0, "agree": 0, "unsure": 0, "silent": str(reason), "differ": []}
     counts: Counter[str] = Counter()
@@ -41,7 +46,8 @@ def compare(problem: ProblemFolder, answer: dict[str, Any]) -> dict[str, object]
         if not agrees:
             differ.append(name)
     found = {key: counts[key] for key in ("checked", "agree", "unsure")}
-    return found | {"silent": "", "differ": differ}
+    program = {"program": "tests/oracle/plan.py"} if case.scene.decks else {}
+    return found | {"silent": "", "differ": differ} | program
 
 
 def _pairs(

@@ -22,7 +22,7 @@ def unpacked(tmp_path_factory):
     (folder / "set.zip").write_bytes(archive(SET))
     with zipfile.ZipFile(folder / "set.zip") as whole:
         whole.extractall(folder)
-    return folder / "eventpound-problems-1.1"
+    return folder / "eventpound-problems-1.2"
 
 
 @pytest.fixture(scope="module")

@@ -26,16 +26,20 @@ SOLVED = {
 
 def test_the_set_is_what_was_frozen():
     SET.check_frozen()
-    assert [p.name[:2] for p in SET.problems] == [f"{i:02d}" for i in range(1, 57)]
+    assert [p.name[:2] for p in SET.problems] == [f"{i:02d}" for i in range(1, 60)]
     assert {p.folder for p in SET.problems} == set(SET.folder.glob("[0-9]*"))
 
 
-def test_version_1_0_is_in_it_unchanged():
-    """By the hash with which it was published."""
-    earlier = json.loads((SET.folder / "frozen-1.0.json").read_text())
-    assert (earlier["version"], len(earlier["files"])) == ("1.0", 107)
+@pytest.mark.parametrize(
+    ("version", "files", "published"),
+    [("1.0", 107, "d3d543d810849dc2"), ("1.1", 115, "7f8a7925f912dcc6")],
+)
+def test_earlier_versions_are_in_it_unchanged(version, files, published):
+    """By the hash with which each was published."""
+    earlier = json.loads((SET.folder / f"frozen-{version}.json").read_text())
+    assert (earlier["version"], len(earlier["files"])) == (version, files)
     assert sha256(canonical(earlier["files"])) == earlier["sha256"]
-    assert earlier["sha256"].startswith("d3d543d810849dc2")
+    assert earlier["sha256"].startswith(published)
     now = SET.frozen()
     assert {n: h for n, h in earlier["files"].items() if now.get(n) != h}.keys() == {"set.toml"}
 
@@ -45,7 +49,8 @@ def test_every_answer_is_certified_and_agrees_with_the_independent_program(probl
     answer = problem.answer()
     said = answer["independent"]
     assert answer["certified"]
-    assert answer["set"] == f"{SET.name} {'1.0' if problem.name < '53' else '1.1'}"
+    version = "1.0" if problem.name < "53" else "1.1" if problem.name < "57" else "1.2"
+    assert answer["set"] == f"{SET.name} {version}"
     assert said["silent"] == ""
     assert said["checked"] == said["agree"] > 10
     assert {row[0].split(".")[0] for row in answer["quantities"]} == {"peaks", "final", "history"}
@@ -92,7 +97,7 @@ def copy(tmp_path):
         SET.folder,
         folder,
         ignore=lambda _, names: [
-            n for n in names if (n[:2] > "02" and n[:2].isdigit()) or n == "frozen-1.0.json"
+            n for n in names if (n[:2] > "02" and n[:2].isdigit()) or n.startswith("frozen-")
         ],
     )
     text = (folder / "set.toml").read_text().split("\n\n[[problem]]")[:3]
@@ -103,7 +108,7 @@ def copy(tmp_path):
 def test_a_changed_set_is_refused_until_it_is_frozen_anew(copy, tmp_path, capsys):
     out = ["--out", str(tmp_path / "set.zip")]
     assert main(["problems", "pack", str(copy), *out]) == 2
-    assert "is not version 1.1 as it was frozen" in capsys.readouterr().err
+    assert "is not version 1.2 as it was frozen" in capsys.readouterr().err
     assert main(["problems", "pack", str(copy), "--freeze"]) == 0
     assert main(["problems", "pack", str(copy), *out]) == 0
     case = copy / "01-elastic-cosine" / "case.toml"
@@ -126,7 +131,7 @@ def test_a_problem_is_added_certified_and_packed(copy, tmp_path, capsys):
     (copy / "03-mine" / "answer.json").unlink()
     index = copy / "set.toml"
     index.write_text(
-        index.read_text().replace('"1.1"', '"1.2"')
+        index.read_text().replace('"1.2"', '"1.3"')
         + '\n[[problem]]\nname = "03-mine"\ntests = "Nothing new."\ntags = ["mine"]\n'
     )
     assert main(["problems", "pack", str(copy), "--certify"]) == 0
@@ -137,16 +142,16 @@ def test_a_problem_is_added_certified_and_packed(copy, tmp_path, capsys):
         [sys.executable, "-m", "zipfile", "-l", tmp_path / "mine.zip"],
         capture_output=True, text=True, check=True,
     )  # fmt: skip
-    assert "eventpound-problems-1.2/03-mine/answer.json" in run.stdout
-    assert "eventpound-problems-1.2/frozen-1.1.json" in run.stdout
+    assert "eventpound-problems-1.3/03-mine/answer.json" in run.stdout
+    assert "eventpound-problems-1.3/frozen-1.2.json" in run.stdout
     # A version that begins with the same number keeps all problems as they are.
     case = copy / "01-elastic-cosine" / "case.toml"
     case.write_text(case.read_text() + "# changed\n")
-    index.write_text(index.read_text().replace('"1.2"', '"1.3"'))
+    index.write_text(index.read_text().replace('"1.3"', '"1.4"'))
     assert main(["problems", "pack", str(copy), "--freeze"]) == 2
     said = capsys.readouterr().err
-    assert "version 1.3 does not keep 01-elastic-cosine/case.toml of version 1.2" in said
-    index.write_text(index.read_text().replace('"1.3"', '"2.0"'))
+    assert "version 1.4 does not keep 01-elastic-cosine/case.toml of version 1.3" in said
+    index.write_text(index.read_text().replace('"1.4"', '"2.0"'))
     assert main(["problems", "pack", str(copy), "--freeze"]) == 0
 
 

@@ -5,10 +5,11 @@
 
    STEP is in parts of the run. Velocities v live between the steps, w at them. Gaps overlap by
    part of a step; of several contacts one is struck after the other. An impact is two rows of one
-   time. First order. */
+   time. First order. Decks in plan it does not know. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #define EACH(i, n) for (int i = 0; i < n; i++)
 enum { MOST = 256, COMPRESSION = 0, EXTENSION, OFFSET, STRENGTH, YIELD, POWER, BETA, GAMMA, Z };
 static double M[MOST], C[MOST][MOST], u[MOST], v[MOST], w[MOST], f[MOST], gap[MOST], eps[MOST];
@@ -51,7 +52,9 @@ int main(int argc, char **argv) {
     EACH(i, N) get(M + i, 1), get(u + i, 1), get(v + i, 1), get(C[i], N);
     EACH(j, S) get(spring[j], Z + 1), get(B[j], N);
     EACH(c, K) get(gap + c, 1), get(eps + c, 1), get(W[c], N);
-    more = scanf(" t,a_g") == 0;
+    char head[8] = "";
+    if (scanf("%7s", head) != 1 || strcmp(head, "t,a_g")) /* of more sections, or the samples */
+        return fputs("error: knows bodies on a line, no decks in plan\n", stderr), 3;
     long steps = 40 * ceil(1 / size / 40 - 1e-9); /* so that every moment is a step */
     long stride = steps / 40 % 25 ? 1 : steps / 1000; /* of rows, where no contact is near */
     double h = (end - start) / steps;

@@ -2,7 +2,8 @@
 %
 %   octave rk4_events.m PROBLEM_DIRECTORY out.csv STEP       (a step in parts of the run)
 %
-% Newton's law contact by contact. Nothing rests: where impacts accumulate it gives up.
+% Newton's law contact by contact. Nothing rests: where impacts accumulate it gives up. Decks in
+% plan it does not know.
 1;
 function a = ground(t, p)   % the formula of the motion, or its samples
   a = 0;
@@ -43,6 +44,7 @@ end
 
 [folder, out, size_] = argv(){end - 2:end};
 p = jsondecode(fileread([folder "/problem.json"]), "makeValidName", false);
+if isfield(p, "iota"), error("knows bodies on a line, no decks in plan"), end
 if isstruct(p.motion), p.motion = num2cell(p.motion); end
 p.N = N = numel(p.M);
 if isempty(p.springs.names)   % empty lists come as cells

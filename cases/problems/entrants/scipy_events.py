@@ -3,7 +3,7 @@
     python scipy_events.py PROBLEM_DIRECTORY out.csv RTOL
 
 Needs NumPy and SciPy. Contacts are struck one by one, nothing rests: where impacts accumulate
-it does not end.
+it does not end. Decks in plan it does not know.
 """
 
 import json
@@ -15,6 +15,8 @@ from scipy.integrate import solve_ivp
 
 folder, out, rtol = Path(sys.argv[1]), sys.argv[2], float(sys.argv[3])
 p = json.loads((folder / "problem.json").read_text())
+if "iota" in p:
+    sys.exit("error: knows bodies on a line, no decks in plan")
 M, C = np.array(p["M"]), np.array(p["C"])
 N = M.size
 B, W = np.array(p["B"]).reshape(N, -1), np.array(p["W"]).reshape(N, -1)

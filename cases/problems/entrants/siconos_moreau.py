@@ -3,7 +3,8 @@
     python3 siconos_moreau.py PROBLEM_DIRECTORY out.csv STEP       (a step in parts of the run)
 
 Linear springs and dashpots are implicit (theta 1/2); kinked and hysteretic springs are forces
-of the beginning of the step, z by the midpoint rule over its elongation.
+of the beginning of the step, z by the midpoint rule over its elongation. Contacts with friction
+are a cone problem in the place of the LCP.
 """
 
 import json
@@ -23,7 +24,8 @@ linear = (spring["compression"] == spring["extension"]) & (spring["strength"] ==
 k_linear = np.where(linear, spring["compression"], 0.0)
 K = (B * k_linear) @ B.T
 yielding = np.flatnonzero(spring["strength"])
-samples = np.loadtxt(folder / "motion.csv", delimiter=",", skiprows=1).reshape(-1, 2)
+iota = np.array(p.get("iota", [[1.0]] * N))
+samples = np.loadtxt(folder / "motion.csv", delimiter=",", skiprows=1, ndmin=2)
 steps = 40 * int(np.ceil(1.0 / size / 40.0 - 1e-9))
 h = (p["end"] - p["start"]) / steps
 
@@ -33,12 +35,19 @@ body.setCPtr(C)
 body.setFExtPtr(np.zeros(N))
 model = sk.NonSmoothDynamicalSystem(p["start"], p["end"])
 model.insertDynamicalSystem(body)
-for c, gap in enumerate(p["gaps"]):
-    law = sk.NewtonImpactNSL(p["restitutions"][c])
-    relation = sk.LagrangianLinearTIR(W[:, c].reshape(1, N), np.array([gap]))
+forces = sk.LCP()
+if "W_T" in p:
+    forces = sk.FrictionContact(2)
+    forces.numericsSolverOptions().dparam[0] = 1e-13
+for c, (gap, restitution) in enumerate(zip(p["gaps"], p["restitutions"], strict=True)):
+    law, rows = sk.NewtonImpactNSL(restitution), W[:, c].reshape(1, N)
+    if "W_T" in p:
+        law = sk.NewtonImpactFrictionNSL(restitution, 0.0, p["frictions"][c], 2)
+        rows = np.vstack((rows, np.array(p["W_T"])[:, c]))
+    relation = sk.LagrangianLinearTIR(rows, np.array([gap, 0.0])[: len(rows)])
     model.link(sk.Interaction(law, relation), body)
 simulation = sk.TimeStepping(
-    model, sk.TimeDiscretisation(p["start"], h), sk.MoreauJeanOSI(0.5), sk.LCP()
+    model, sk.TimeDiscretisation(p["start"], h), sk.MoreauJeanOSI(0.5), forces
 )
 
 z = spring["z0"].astype(float)
@@ -51,8 +60,10 @@ for step in range(1, steps + 1):
     k = np.where(x < 0.0, spring["compression"], spring["extension"])
     f = np.where(linear, -k_linear * spring["offset"], k * x) + spring["strength"] * z
     middle = p["start"] + (step - 0.5) * h
-    a_g = np.interp(middle, *samples.T) if samples[0, 0] <= middle < samples[-1, 0] else 0.0
-    body.setFExtPtr(-M * a_g - B @ f)
+    a_g = np.zeros(iota.shape[1])
+    if samples[0, 0] <= middle < samples[-1, 0]:
+        a_g = np.array([np.interp(middle, samples[:, 0], a) for a in samples.T[1:]])
+    body.setFExtPtr(-M * (iota @ a_g) - B @ f)
     simulation.computeOneStep()
     dx, half = B.T @ (body.q() - u) / spring["yield_displacement"], z
     for stage in (2.0, 1.0):
