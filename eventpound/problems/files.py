@@ -36,6 +36,7 @@ from eventpound.problems.page import problem_page, set_page
 from eventpound.problems.plan import plan_conventions, plan_numbers, plan_rows
 from eventpound.results.export import arrays_of, sampled_signals
 from eventpound.results.jsontext import canonical
+from eventpound.scene.contact_law import NEWTON
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BoucWen, Hysteretic, Spring
@@ -154,6 +155,8 @@ def problem_json(collection: Collection, problem: ProblemFolder) -> dict[str, ob
             f"{problem.folder}: has supports, forces or contacts with a law, for which the files "
             "of a problem have no place; `eventpound run CASE --export DIR` writes such a case"
         )
+    if scene.impact_law != NEWTON:
+        raise InputError(f"{problem.folder}: impact_law = {scene.impact_law!r}; accepted: {NEWTON}")
     start, end = run.start_time, run.start_time + run.duration
     return {
         "set": f"{collection.name} {collection.version}",

@@ -21,6 +21,7 @@ import numpy as np
 
 from eventpound.case.case import Case
 from eventpound.case.run_options import Way, warn_left_out
+from eventpound.errors import InputError
 from eventpound.mechanics.model import assemble, differences
 from eventpound.mechanics.supported import influence, support_motion
 from eventpound.motion.base import Family, GroundMotion, Piece
@@ -30,6 +31,7 @@ from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import describe_scene
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
+from eventpound.scene.contact_law import NEWTON
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Law, Series
@@ -105,9 +107,12 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
     Raises
     ------
     InputError
-        Where the directory cannot be written to, or the case has many motions.
+        Where the directory cannot be written to, the case has many motions, or its impacts
+        follow another law than Newton's.
     """
     case.refuse_suite()
+    if (law := case.scene.impact_law) != NEWTON:
+        raise InputError(f"export: found impact_law = {law!r}; accepted: {NEWTON}")
     warn_left_out(case.run, Way.EXPORT)
     start, end = case.run.start_time, case.run.start_time + case.run.duration
     scene_json = {"title": case.title, "start": start, "end": end} | _scene(case.scene, start)

@@ -313,7 +313,7 @@ def plan_of(scene: Scene, joints: list[Joint]) -> Plan:
     places = {name: 3 * i for name, i in decks.items()}
     for spring in scene.springs:
         b = _elongation(spring.between, places, mass)
-        K += spring.law.stiffness * np.outer(b, b)  # type: ignore[union-attr]
+        K += spring.law.stiffness * np.outer(b, b)
     for dashpot in scene.dashpots:
         b = _elongation(dashpot.between, places, mass)
         C += dashpot.coefficient * np.outer(b, b)

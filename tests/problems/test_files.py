@@ -9,8 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from eventpound import load_case
 from eventpound.errors import InputError
 from eventpound.problems.files import LAW, archive, bare_numbers, problem_files, problem_json
+from eventpound.results.export import export
 from eventpound.results.jsontext import canonical
 from eventpound.results.manifest import sha256
 from eventpound.score.problem import Problem
@@ -109,3 +111,14 @@ def test_what_the_files_have_no_place_for_is_refused(tmp_path, case):
     problem = replace(SET.problems[0], folder=folder)
     with pytest.raises(InputError, match=r"01-wave: has supports, .*eventpound run"):
         problem_json(SET, problem)
+
+
+def test_another_impact_law_is_refused(tmp_path):
+    """By the files of a problem, and by an export: neither has equations for it."""
+    case = tmp_path / "case.toml"
+    text = (SET.folder / "59-skew-deck-friction" / "case.toml").read_text()
+    case.write_text('impact_law = "poisson"\n' + text)
+    with pytest.raises(InputError, match=r"impact_law = 'poisson'; accepted: newton"):
+        problem_json(SET, replace(SET.problems[0], folder=tmp_path))
+    with pytest.raises(InputError, match=r"found impact_law = 'poisson'; accepted: newton"):
+        export(load_case(tmp_path), tmp_path / "out")

@@ -44,14 +44,14 @@ def test_bare_numbers_have_sections_of_plan_and_friction():
 
 def test_places_are_told_in_words():
     given = problem_json(SET, SET.some(["58"])[0])
-    west, east = given["places"]["contacts"][2]  # type: ignore[index]
+    west, east = given["places"]["contacts"][2]
     assert west.startswith("right-lower corner of west at (")
     assert east.startswith("left-lower corner of east at (")
     cosine, sine = (f"{f(math.radians(40.0)):.6g}" for f in (math.cos, math.sin))
     assert east.endswith(f"toward ({cosine}, {sine})")
     # The motion comes 20 degrees from the left of x.
     c, s = math.cos(math.radians(20.0)), math.sin(math.radians(20.0))
-    assert given["iota"][:2] == [pytest.approx([c, -s]), pytest.approx([s, c])]  # type: ignore[index]
+    assert given["iota"][:2] == [pytest.approx([c, -s]), pytest.approx([s, c])]
 
 
 @pytest.fixture(scope="module")
