@@ -372,7 +372,7 @@ def _record_of(task: Task, model: Model, scales: SceneScales) -> RunRecord:
             extremes=extremes,
             running=in_python(running_of)(extremes, at),
             saved_extremes=np.zeros_like(extremes),
-            saved_rows=np.zeros(1, np.int64),
+            saved_cursor=np.zeros(2, np.int64),
         )
     )
 

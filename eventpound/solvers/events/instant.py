@@ -19,14 +19,13 @@ from eventpound.contact.instant import any_may_rest, decide_rests, settle_impact
 from eventpound.contact.kinks import lacks_branch, pass_kinks
 from eventpound.contact.rubbing import Rubs
 from eventpound.contact.sliders import begin_beside_sliders, decide_sticks
-from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import CurrentPiece, longest_safe_step, next_corner
 from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.by_address import by_address
 from eventpound.numerics.compiled import deferred_kernel, kernel
-from eventpound.solvers.events.dense import Dense, DenseStep, observe_at
-from eventpound.solvers.events.law_contacts import add_shares, switch_elements
+from eventpound.solvers.events.dense import Dense
+from eventpound.solvers.events.law_contacts import switch_elements
 from eventpound.solvers.events.location import any_located, clear_located
 from eventpound.solvers.events.present import (
     forcing_now,
@@ -37,11 +36,16 @@ from eventpound.solvers.events.present import (
     save_record,
     set_state,
 )
-from eventpound.solvers.events.recorder import PASSED, WRITTEN, is_due
+from eventpound.solvers.events.recorder import PASSED, WRITTEN
 from eventpound.solvers.events.run import Dynamics, Run
 from eventpound.solvers.events.short_series import local_series
-from eventpound.solvers.events.step_check import broken_contact
-from eventpound.solvers.events.step_search import BROKEN, record_inside, search_between, search_step
+from eventpound.solvers.events.step_search import (
+    BROKEN,
+    BROKEN_BEFORE,
+    NO_EVENT,
+    search_step,
+    search_to_event,
+)
 
 MOST_REVERSALS = 3
 """Reversals of links after which short steps end although no event is in sight."""
@@ -71,36 +75,22 @@ def short_step(arrays: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     if not series.finite:
         return NOT_FINITE
     # The arrays of `series` are kept alive by its use at the end.
-    step = by_address(DenseStep(series.dense, mode, forcing, arrays.observations[2]))
-    tau = series.dense.end
-    observe_at(tau, by_address(DenseStep(series.dense, mode, forcing, arrays.observations[1])))
-    first, marked = search_between(tau, arrays, mode, step)
-    if first < np.inf:
-        tau = first
-    else:
+    tau = search_step(arrays, mode, piece, series.dense)
+    if tau == BROKEN_BEFORE:
+        return BROKEN
+    if tau == NO_EVENT:
+        tau = series.dense.end
         clear_located(located)
         for j in range(series.closing.size):
             located.closing[j] = series.closing[j]
-    any_event = any_located(located)
+    any_event, observed = any_located(located), arrays.observations[2]
     fleeting = any_event and is_fleeting(tau, now, rules.time)
-    # Where a mode is none no time passes either.
+    # Where a mode is none no time passes either, and nothing recorded since is of one.
     end = t if fleeting else t + tau
-    if marked or is_due(end, record.journal):
-        record_inside(tau, marked, arrays, step)
-    if arrays.laws.contact.size > 0:
-        add_shares(tau, arrays, step)
-    observe_at(tau, step)
-    observed = step.observed
-    # What was recorded since is of a mode that is none.
     if fleeting:
         restore_record(record)
     elif any_event:
         put_instant(end, observed, record)
-    else:
-        update_extremes(observed, end, record.running)
-    if broken_contact(observed, mode.watched, rules.length_noise) >= 0:
-        now.t = end
-        return BROKEN
     since = now.since_impact
     set_state(evaluate_series(series.dense.Y, tau)[0], end, mode, forcing, state)
     pass_kinks(located.kinked, state.z, arrays.instant)
@@ -151,7 +141,7 @@ def proceed(
     if wanted == SETTLE:
         return _settle(most, arrays, mode, piece)
     if wanted == SEARCH:
-        return search_step(arrays, mode, piece, dense)
+        return search_to_event(arrays, mode, piece, dense)
     if wanted == SET_STATE:
         t = dense.end
         set_state(

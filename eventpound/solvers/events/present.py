@@ -20,7 +20,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.by_address import by_address
 from eventpound.numerics.compiled import kernel, scalar_kernel
-from eventpound.solvers.events.recorder import WRITTEN, write_row
+from eventpound.solvers.events.recorder import write_row
 from eventpound.solvers.events.run import Dynamics, Rules, Run, RunRecord, State
 
 
@@ -131,12 +131,12 @@ def put_present(arrays: Run, settled: bool) -> None:
 @kernel
 def save_record(record: RunRecord) -> None:
     """Remember history and extremes as they are, for `restore_record`."""
-    record.saved_rows[0] = record.journal.cursor[WRITTEN]
+    copy_numbers(record.journal.cursor, record.saved_cursor)
     copy_extremes(record.extremes, record.saved_extremes)
 
 
 @kernel
 def restore_record(record: RunRecord) -> None:
     """Take back what has come into history and extremes since `save_record`."""
-    record.journal.cursor[WRITTEN] = record.saved_rows[0]
+    copy_numbers(record.saved_cursor, record.journal.cursor)
     copy_extremes(record.saved_extremes, record.extremes)

@@ -72,7 +72,7 @@ class State(NamedTuple):
 class RunRecord(NamedTuple):
     """What a run leaves: history, event rows, extremes (5, M) and the same row by row.
 
-    saved_extremes (5, M), saved_rows (1,): those written before a mode that may be none.
+    saved_extremes (5, M), saved_cursor (2,): as they were before a mode that may be none.
     """
 
     journal: Journal
@@ -80,7 +80,7 @@ class RunRecord(NamedTuple):
     extremes: Floats
     running: Running
     saved_extremes: Floats
-    saved_rows: Ints
+    saved_cursor: Ints
 
 
 class Located(NamedTuple):

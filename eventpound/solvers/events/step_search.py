@@ -26,6 +26,8 @@ CLEAR, EVENT = 40, 41
 """What a search finds: nothing, or an event."""
 BROKEN = 31
 """How it fails: a contact penetrates or pulls."""
+NO_EVENT, BROKEN_BEFORE = np.inf, -np.inf
+"""Times where there is none, and where a contact is broken before any."""
 (OURSELVES, INTEGRATOR, FOUND_AT_END) = range(3)
 """Who finds events in a step of an integrator; it has found one at the end of its last."""
 _SAMPLES = int(Family.SAMPLES)
@@ -38,94 +40,96 @@ def _observed_at(step: DenseStep, tau: float) -> Observed:
     return step.observed
 
 
-@kernel
-def search_between(h: float, arrays: Run, mode: Dynamics, step: DenseStep) -> tuple[float, bool]:
-    """Search a step for events between the first two observations of a run, h (s) apart.
-
-    The end of the local series tells itself which gaps close there.
-
-    Returns
-    -------
-    tau : float
-        When the first is (s, local), as `located` of the run tells; or inf.
-    marked : bool
-        Whether anything was marked.
-    """
-    marks, watched, (before, after, _) = arrays.marks, mode.watched, arrays.observations
-    if not inspect_step(before, after, h, watched, arrays.record.running, marks):
-        return np.inf, False
-    if not step.dense.own and arrays.state.progress[0].finder != OURSELVES:
-        # Events are found by the library: only turning points are left to look for.
-        return np.inf, True
-    if step.dense.own:
-        for j in range(marks.closing.size):
-            marks.closing[j] = False
-    return first_event(marks, watched, arrays.rules, arrays.located, step), True
-
-
-@kernel
-def record_inside(end: float, marked: bool, arrays: Run, step: DenseStep) -> None:
-    """Take the turning points of a step up to `end` (s), where marked, and what is due there."""
-    record, origin = arrays.record, step.forcing.start
-    if marked:
-        update_peaks(arrays.marks.peak, end, arrays.rules.near, record.running, step)
-    if is_due(origin + end, record.journal):
-        write_samples(_observed_at, step, origin, step.dense.start, end, record.journal)
-
-
-@deferred_kernel.but(ahead=True)
-def search_step(arrays: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> int:
-    """Search a step of an integrator that was marked for events, from sample to sample.
-
-    The step is recorded up to the first of them, whose state becomes the present one.
+@deferred_kernel
+def search_step(arrays: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> float:
+    """Search a step for its first event, from sample to sample, and record it up to there.
 
     Parameters
     ----------
     arrays, mode, piece : Run, Dynamics, CurrentPiece
-        The run, at the start of the segment.
+        The run, at the instant from which times of the step count. Of its observations the first
+        is at the start of a local series, or is made; the last becomes that at the event, at a
+        broken contact, or at the end of a local series.
     dense : Dense
-        The step, in times from there.
+        The step. One on a local series has no corner of the motion inside, and tells itself which
+        gaps close at its end.
 
     Returns
     -------
-    int
-        CLEAR, EVENT or BROKEN; of a broken contact the last of `run.observations` tells.
+    float
+        When the first event is (s, local), as `located` of the run tells; or NO_EVENT; or
+        BROKEN_BEFORE where a contact penetrates or pulls, at the present time of the run then.
     """
     rules, state, record = arrays.rules, arrays.state, arrays.record
-    origin = state.now[0].t
+    origin, (before, after, there) = state.now[0].t, arrays.observations
     forcing = by_address(forcing_now(piece, origin))
-    observations, watched = arrays.observations, mode.watched
-    low, high = dense.start, dense.start
-    while high < dense.end:
+    high = dense.start
+    while True:
         low, high = high, dense.end
-        if piece.family >= _SAMPLES:
+        if piece.family >= _SAMPLES and not dense.own:
             following = next_corner(piece, origin + low, origin + high)
             high = high if following >= origin + high else following - origin
         part = Dense(dense.Y, dense.center, low, high, dense.frame, dense.own, dense.gaps)
-        observe_at(low, by_address(DenseStep(part, mode, forcing, observations[0])))
-        observe_at(high, by_address(DenseStep(part, mode, forcing, observations[1])))
-        step = by_address(DenseStep(part, mode, forcing, observations[2]))
-        tau, marked = search_between(high - low, arrays, mode, step)
+        step = by_address(DenseStep(part, mode, forcing, there))
+        if not dense.own:
+            observe_at(low, by_address(DenseStep(part, mode, forcing, before)))
+        observe_at(high, by_address(DenseStep(part, mode, forcing, after)))
+        tau = _search_part(arrays, step)
         # The integrator stands on its root: `located` has it, and what vanishes with it is added.
-        if high == dense.end and state.progress[0].finder == FOUND_AT_END:
+        if high == dense.end and not dense.own and state.progress[0].finder == FOUND_AT_END:
             tau = high
-            observe_at(tau, step)
-            add_vanished(step.observed, watched, rules, arrays.located)
-        end = min(high, tau)
-        record_inside(end, marked, arrays, step)
-        if arrays.laws.contact.size > 0:
-            add_shares(end, arrays, step)
-        if tau < np.inf:
-            observe_at(tau, step)
-            put_instant(origin + tau, step.observed, record)
-            set_state(state_at(tau, step), origin + tau, mode, forcing, state)
-            close_located(arrays)
-            return EVENT
+            add_vanished(after, mode.watched, rules, arrays.located)
         # Beyond an event there is another mode, in which none of these need hold.
-        after = observations[1]
-        if broken_contact(after, watched, rules.length_noise) >= 0:
-            observe_at(high, step)
-            state.now[0].t = origin + end
-            return BROKEN
-        update_extremes(after, origin + end, record.running)
-    return CLEAR
+        broken = tau == NO_EVENT and broken_contact(after, mode.watched, rules.length_noise) >= 0
+        if tau < NO_EVENT or broken or dense.own:
+            observe_at(min(high, tau), step)
+        if broken:
+            state.now[0].t = origin + high
+            return BROKEN_BEFORE
+        if tau < NO_EVENT:
+            return tau
+        update_extremes(after, origin + high, record.running)
+        if high >= dense.end:
+            return NO_EVENT
+
+
+@kernel
+def _search_part(arrays: Run, step: DenseStep) -> float:
+    """When the first event of a part of a step without samples inside is (s, local), or NO_EVENT.
+
+    The first two observations of the run are those of its ends.
+    """
+    dense, watched, origin = step.dense, step.dynamics.watched, step.forcing.start
+    (before, after, _), marks, record = arrays.observations, arrays.marks, arrays.record
+    marked = inspect_step(before, after, dense.end - dense.start, watched, record.running, marks)
+    for j in range(marks.closing.size):
+        marks.closing[j] = marks.closing[j] and not dense.own
+    tau = NO_EVENT
+    # Where the library finds events only turning points are left to look for.
+    if marked and (dense.own or arrays.state.progress[0].finder == OURSELVES):
+        tau = first_event(marks, watched, arrays.rules, arrays.located, step)
+    end = min(dense.end, tau)
+    if marked:
+        update_peaks(marks.peak, end, arrays.rules.near, record.running, step)
+    if is_due(origin + end, record.journal):
+        write_samples(_observed_at, step, origin, dense.start, end, record.journal)
+    if arrays.laws.contact.size > 0:
+        add_shares(end, arrays, step)
+    return tau
+
+
+@kernel
+def search_to_event(arrays: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) -> int:
+    """`search_step` of an integrator's: CLEAR, EVENT, which becomes the present, or BROKEN."""
+    state, origin, there = arrays.state, arrays.state.now[0].t, arrays.observations[2]
+    tau = search_step(arrays, mode, piece, dense)
+    if tau == BROKEN_BEFORE:
+        return BROKEN
+    if tau == NO_EVENT:
+        return CLEAR
+    put_instant(origin + tau, there, arrays.record)
+    forcing = by_address(forcing_now(piece, origin))
+    y = state_at(tau, by_address(DenseStep(dense, mode, forcing, there)))
+    set_state(y, origin + tau, mode, forcing, state)
+    close_located(arrays)
+    return EVENT
