@@ -23,7 +23,7 @@ from scipy.linalg import null_space
 from scipy.optimize import brentq, lsq_linear, nnls
 
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.least_distance import least_distance
+from eventpound.tolerances import INSIDE
 
 PUSHING, HARDEST = 1e3, 1e11
 """Stiffness of a contact at first and at most, in parts of that of its bodies."""
@@ -274,7 +274,22 @@ def _nearest(potential: Potential, u: Floats, start: Floats) -> Floats:
     rows = np.vstack((way[:, None] * W[~pressed], B, -B))
     room = np.concatenate((way * potential.gaps(u)[~pressed], x - low[slack], high[slack] - x))
     bounded = np.isfinite(room)
-    return np.asarray(u + Z @ least_distance(rows[bounded] @ Z, -room[bounded]))
+    return np.asarray(u + Z @ _least_distance(rows[bounded] @ Z, -room[bounded]))
+
+
+def _least_distance(A: Floats, b: Floats) -> Floats:
+    """The least x with ``A x >= b``, of a system that has solutions.
+
+    The problem LDP of C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1974,
+    chapter 23: the residual of a non-negative least-squares problem.
+    """
+    size = np.abs(b).max(initial=0.0)
+    if not (b > INSIDE * size).any():
+        return np.zeros(A.shape[1])
+    system = np.vstack((A.T, b / size))
+    wanted = np.append(np.zeros(A.shape[1]), 1.0)
+    residual = system @ nnls(system, wanted)[0] - wanted
+    return np.asarray(residual[:-1] / -residual[-1] * size)
 
 
 def _closed(potential: Potential, u: Floats) -> Floats:

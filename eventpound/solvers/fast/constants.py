@@ -19,13 +19,12 @@ from eventpound.motion.parametric import Parametric
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python
-from eventpound.numerics.joined_arrays import JoinedArrays
-from eventpound.numerics.latest import Keep, made_anew
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
 from eventpound.solvers.fast.compiled import compiled_noinline
 from eventpound.solvers.fast.locate import clear_located
+from eventpound.solvers.fast.reused import JoinedArrays, Reuse, made_anew
 from eventpound.solvers.fast.run import (
     MORE_TERMS,
     REST_TERMS,
@@ -119,7 +118,7 @@ def _starts(sizes: list[int]) -> Ints:
     return np.array(list(accumulate(sizes, initial=0)), np.int64)
 
 
-def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_anew) -> FastPlan:
+def plan_of(task: Task, model: Model, scales: SceneScales, keep: Reuse = made_anew) -> FastPlan:
     """Constants of a run.
 
     Parameters
@@ -130,7 +129,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales, keep: Keep = made_ane
         Its scene, assembled.
     scales : SceneScales
         The scene's own.
-    keep : Keep
+    keep : Reuse
         Gives what follows from a part of this.
     """
     atol, motion = tolerances(task, scales), task.scene.motion

@@ -33,8 +33,6 @@ from eventpound.numerics.by_address import change_first, with_address
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
-from eventpound.numerics.joined_arrays import JoinedArrays
-from eventpound.numerics.latest import Latest
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import IMPACT_LAWS
@@ -68,6 +66,7 @@ from eventpound.solvers.fast.evaluate import blank_fast_observed
 from eventpound.solvers.fast.followed import follow
 from eventpound.solvers.fast.links import all_variables
 from eventpound.solvers.fast.record import rows_wanted
+from eventpound.solvers.fast.reused import JoinedArrays, LatestParts
 from eventpound.solvers.fast.run import (
     CROWDED,
     FINISHED,
@@ -182,14 +181,14 @@ class Arrays:
         self.numbers = JoinedArrays(list(own.values()))
         named = dict(zip(own, self.numbers.arrays, strict=True))
         self.rows = {key: array[None] for key, array in named.items()}
-        self._model, self._keep = with_numbers(model, named), Latest()
+        self._model, self._keep = with_numbers(model, named), LatestParts()
         of_contacts = sum(named[key].nbytes for key in OF_CONTACTS)
         # Those of contacts are the last.
         self._others = self.numbers.data[: self.numbers.data.size - of_contacts]
         self._moving = moving_of(model)
         self._run: FastRun | None = None
 
-    def run(self, task: Task) -> Left:
+    def run(self, task: Task) -> FastOutcome:
         """Run a task of the present numbers, but for the motion, which is that of its scene."""
         clock, begun = Stopwatch(), self._begun(task)
         run, ended, stopped = _run(task, self._blank_run(begun))
@@ -241,7 +240,7 @@ class Arrays:
 
     def _left(
         self, task: Task, scales: SceneScales, run: FastRun, ended: int, clock: Stopwatch
-    ) -> Left:
+    ) -> FastOutcome:
         """What a run leaves, in arrays of its own."""
         state, record, model = run.state, run.record, self._model
         events = record.events[: state.now["events"][0]].copy()
@@ -256,7 +255,7 @@ class Arrays:
         if any(model.v0.tolist()):
             rows = np.vstack((lines_before(task, model, scales), rows))
         unique = record.unique[: model.own_contacts].tolist()
-        return Left(
+        return FastOutcome(
             (
                 *task.scene.contacts,
                 *(task.scene.springs[a] for a in model.sliders),
@@ -300,7 +299,7 @@ def put_start(
     extremes[:], unique[:] = blank_extremes(places_in(model), scales), True
 
 
-class Left(NamedTuple):
+class FastOutcome(NamedTuple):
     """What a run has left, from which a recording is made when it is asked for.
 
     Behind the `contacts` of the scene are its sliders, or those with friction. Of `model` only the
