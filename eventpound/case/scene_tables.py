@@ -95,9 +95,7 @@ def read_scene(
     piers = [body for body, _ in carrying.bodies]
     bodies = [*(read_body(table) for table in tables["body"]), *piers, *in_plan.bodies]
     masses = {body.name: body.mass for body in bodies}
-    in_suite = excitation is not None and excitation.suite is not None
-    given = tables["support"], tables["force"]
-    driven = read_driven(*given, masses, directory, in_suite=in_suite)
+    driven = read_driven(tables["support"], tables["force"], masses, directory, excitation)
     supports = [support.name for support in driven.supports]
     springs = read_springs(tables["spring"], masses, supports, in_plan.decks)
     scene = Scene(

@@ -64,8 +64,7 @@ def read_driven(
     forces: Sequence[Table],
     bodies: Iterable[str],
     directory: Path,
-    *,
-    in_suite: bool = False,
+    excitation: Excitation | None,
 ) -> Driven:
     """Supports and forces from their tables.
 
@@ -77,9 +76,10 @@ def read_driven(
         Names of the bodies.
     directory : Path
         Of the case, to which files are relative.
-    in_suite : bool
-        Whether the case has a suite, with which those of supports may go.
+    excitation : Excitation or None
+        Of the case, where it is sound; with its suite those of supports may go.
     """
+    in_suite = excitation is not None and excitation.suite is not None
     read = [_read_support(table, directory, in_suite) for table in supports]
     names = list(bodies)
     pushed = [pair for table in forces for pair in _read_forces(table, names, directory)]
