@@ -121,7 +121,7 @@ def _all_quantities() -> Iterator[str]:
 def _quantities_of(path: Path) -> Iterable[str]:
     """Names of the quantities of a case, or of what a study may tabulate."""
     from eventpound.quantities.lookup import names_of
-    from eventpound.study.quantities import quantities_of
+    from eventpound.study.plan import quantities_of
 
     names = arguments.by_kind(
         path,

@@ -32,8 +32,7 @@ from eventpound.study.base import PART, RECORD, Base
 from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities
 from eventpound.study.kinds import has_records
-from eventpound.study.plan import Plan
-from eventpound.study.quantities import planned
+from eventpound.study.plan import Plan, planned
 from eventpound.study.table import manifest_there
 
 _Document = Mapping[str, object]

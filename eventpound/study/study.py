@@ -25,7 +25,7 @@ from eventpound.study.base import RECORD, base_of, described, solver_of
 from eventpound.study.engine import Batch, Processes
 from eventpound.study.forms import SUCCESS
 from eventpound.study.large_scales import warn_of_scales
-from eventpound.study.quantities import planned
+from eventpound.study.plan import planned
 from eventpound.study.running import run_study
 from eventpound.study.table import read_table
 from eventpound.units import Dimension

@@ -20,7 +20,7 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.scene.parameters import dimension_of_number, number_places
-from eventpound.study.quantities import quantities_of
+from eventpound.study.plan import quantities_of
 from eventpound.units import STANDARD_GRAVITY
 
 MOTIONS: list[GroundMotion] = [
