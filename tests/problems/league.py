@@ -3,7 +3,8 @@
 Runs our solvers, SciPy, a C program, and Octave and Siconos where they are found, with at most
 `LIMIT` s a run and `JOBS` problems at a time, and prints the tables of docs/league.md. With
 ``--out`` it writes league.csv (a row a program and problem, with what keeps it back), league.html
-and league.json as well. Programs that are not there are named and left out.
+and league.json as well; with ``--speed`` it prints error and time of every run. Programs that are
+not there are named and left out.
 """
 
 import argparse
@@ -153,6 +154,22 @@ def event_table(found: Found) -> Iterator[str]:
         yield f"| {label} | " + " | ".join(cells) + " |"
 
 
+def speeds(found: Found) -> Iterator[str]:
+    """Of each problem and program the largest error and the time (ms) of every size."""
+    yield "| problem | program | error (processor time, ms), from coarse to fine |"
+    yield "| --- | --- | --- |"
+    for name in next(iter(found.values())):
+        for label, by_problem in found.items():
+            cells = [
+                f"{max(errors):.1e} ({1e3 * card.seconds:.3g})"
+                for card in by_problem[name]
+                if (errors := [q.error for q in card.deviations if ".t_" not in q.quantity.name])
+                and card.seconds
+            ]
+            if cells:
+                yield f"| {name} | {label} | {', '.join(cells)} |"
+
+
 def _cause(why: str) -> str:
     return next(cause for cause, words in CAUSES.items() if re.search(words, why))
 
@@ -186,6 +203,7 @@ def main() -> None:
     """Run everything and print the tables."""
     parser = argparse.ArgumentParser(prog="python -m tests.problems.league", description=__doc__)
     parser.add_argument("--out", metavar="DIRECTORY", type=Path, help="write all of it, too")
+    parser.add_argument("--speed", action="store_true", help="print errors and times, too")
     parser.add_argument("names", metavar="NAME", nargs="*", help="problems (all)")
     options = parser.parse_args()
     collection = read_collection(SET)
@@ -203,6 +221,8 @@ def main() -> None:
     print("\n".join(tables(found, problems)))
     print()
     print("\n".join(event_table(found)))
+    if options.speed:
+        print("\n".join(("", *speeds(found))))
     print("\n".join(f"Left out: {what}." for what in missing))
     used = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
     print(
