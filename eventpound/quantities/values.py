@@ -15,6 +15,7 @@ from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.ends import opening
 from eventpound.scene.joints import joints_of
 from eventpound.scene.parameters import number_places, told_of_variants
+from eventpound.scene.plan_point import TURN
 from eventpound.scene.scene import Scene
 from eventpound.scene.separation import correlation, cqc
 from eventpound.scene.spring import GROUND, BoucWen, Hysteretic
@@ -242,9 +243,13 @@ def avoiding_gap(many: Runs, i: int) -> Floats:
 
 def avoiding_gap_alone(many: Runs, i: int) -> Floats:
     """Smallest gap that would have avoided contact i, those of other ends as they are (m)."""
-    contacts = many.scene.contacts
+    turning = {body.name for body in many.scene.bodies if body.direction == TURN}
+    ways = [
+        tuple(part for part in contact.direction if part[0] not in turning)
+        for contact in many.scene.contacts
+    ]
     # Corners of one joint open together, or the wider one would need the gap of the other.
-    joint = tuple(k for k, c in enumerate(contacts) if c.direction == contacts[i].direction)
+    joint = tuple(k for k, way in enumerate(ways) if way == ways[i])
     return many.t * np.nan if many.apart is None else many.apart(joint)[:, joint.index(i)]
 
 

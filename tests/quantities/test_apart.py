@@ -18,6 +18,8 @@ from eventpound.scene import (
     BoucWen,
     Contact,
     Dashpot,
+    Deck,
+    Joint,
     Linear,
     Point,
     Scene,
@@ -302,3 +304,35 @@ def test_a_pulse_and_one_contact_have_the_motion_without_it():
     run = simulate(replace(scene, contacts=(contact,)), duration=END)
     own = run.quantity(f"contacts.{contact.name}.avoiding_gap")
     assert needed_by(run) == pytest.approx([own], rel=2e-6)
+
+
+def test_corners_of_a_joint_open_together():
+    """With the gaps that are told nothing touches there, and the other joint strikes as ever."""
+    deck = Deck("west", "900 t", "36 m", "11 m", "40 deg")
+    springs = [Spring(n, ("ground", f"west.{n}"), Linear("40 MN/m")) for n in ("x", "y", "turn")]
+
+    def response(*gaps):
+        joints = (
+            Joint("left", ("barrier", "west"), gaps, 0.5),
+            Joint("right", ("west", "barrier"), 0.03, 0.5),
+        )
+        contacts = [c for joint in joints for c in joint.contacts({"west": deck})]
+        motion, across = Ricker("0.5 g", "0.8 s"), Ricker("0.3 g", "0.7 s")
+        scene = Scene(
+            deck.bodies(), springs, contacts=contacts, decks=[deck], motion=motion, across=across
+        )
+        return simulate(scene, "fast", duration=3.0, error_estimate=False)
+
+    narrow = response(0.02, 0.02)
+    needed = [
+        narrow.quantity(f"contacts.left.{end}.avoiding_gap_alone") for end in ("lower", "upper")
+    ]
+    wide = response(*needed)
+    for end, gap in zip(("lower", "upper"), needed, strict=True):
+        assert gap > 0.02
+        assert wide.quantity(f"contacts.left.{end}.smallest_gap") == pytest.approx(
+            0.0, abs=1e-8 * gap
+        )
+    assert wide.quantity("contacts.right.lower.impacts") > 0
+    far = [e for e in response(*(1.001 * gap for gap in needed)).recording.events if e.contact < 2]
+    assert not far
