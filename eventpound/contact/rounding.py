@@ -11,7 +11,7 @@ import numpy as np
 from eventpound.contact.state import Instant
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_pull
-from eventpound.mechanics.elements import memory_stiffness, pull_per_z
+from eventpound.mechanics.elements import drag_slope, memory_stiffness, pull_per_z
 from eventpound.mechanics.followers import is_support
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
 from eventpound.motion.base import Family
@@ -88,15 +88,16 @@ def _slopes(y: Floats, system: Reduced) -> tuple[Floats, Floats]:
     """Sizes of initial stiffness (N/m) and damping (N s/m) of links, of an element at y, (A,)."""
     stiffness, damping = system.stiffness.copy(), system.damping.copy()
     for a in range(stiffness.size):
+        x, x_rate = link_motion(a, y, system)
         if system.iz[a] <= FIRST_CODE:
-            code, (x, x_rate), f = system.iz[a], link_motion(a, y, system), system.preload[a]
+            code, f = system.iz[a], system.preload[a]
             # The numbers of its law are no stiffness and no dashpot: that of hertz-damp, over a
             # closing speed of 1e-12 m/s, would make all there is rounding.
             slopes = element_pull(code, stiffness[a], f, damping[a], x, x_rate, 0.0)
             stiffness[a], damping[a] = abs(slopes[1]), slopes[2]
         else:
             stiffness[a] = abs(stiffness[a] + memory_stiffness(a, system.memory))
-            damping[a] = abs(damping[a])
+            damping[a] = abs(drag_slope(a, system, x_rate))
     return stiffness, damping
 
 
@@ -145,7 +146,7 @@ def round_as_the_scene(system: Reduced, forcing: Forcing) -> Bools:
     """
     rough = np.full(system.mass.size, 1.0 if forcing.family != _GAUSSIAN else 0.0)
     for a in range(system.stiffness.size):
-        pulls = system.stiffness[a] != 0.0 or system.damping[a] != 0.0
+        pulls = system.stiffness[a] != 0.0 or drag_slope(a, system, 0.0) != 0.0
         if pulls or pull_per_z(a, system.memory) != 0.0:
             for c in system.ends[a]:
                 if c >= 0:

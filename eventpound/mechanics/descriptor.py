@@ -27,7 +27,6 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.elements import memory_on_branches
-from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python
@@ -57,7 +56,8 @@ class Descriptor(NamedTuple):
     framed: Floats
     stiffness: Floats
     preload: Floats
-    law: LinkLaw
+    damping: Floats
+    memory: Floats
     B: Floats
     W: Floats
     opening: Floats
@@ -108,7 +108,8 @@ def descriptor_form(
         framed=np.where(clusters.of_body[:bodies] < 0, 0.0, 1.0),
         stiffness=stiffness,
         preload=preload,
-        law=LinkLaw(model.law.damping, in_python(memory_on_branches)(model.law.memory, branch)),
+        damping=model.law.damping,
+        memory=in_python(memory_on_branches)(model.law.memory, branch),
         B=np.ascontiguousarray(model.elongations(np.eye(bodies)).T),
         W=W,
         opening=model.gap[members],

@@ -13,6 +13,8 @@ import numpy as np
 
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.elements import (
+    drag,
+    drag_slope,
     link_force,
     number_beside,
     pull_per_z,
@@ -53,16 +55,16 @@ class DescriptorProblem(NamedTuple):
 @kernel
 def _link_loads(d: Descriptor, y: Floats, z_rates: Floats, loads: Floats) -> None:
     """Rates of z (H,), and what the links put on each body (N,), ``-Σ_l B_l F_l``."""
-    N, law = d.mass.size, d.law
+    N = d.mass.size
     loads[:] = 0.0
     for link in range(d.stiffness.size):
         x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
-        h, k, c = d.z_of_link[link], d.stiffness[link], law.damping[link]
+        h = d.z_of_link[link]
         z = y[2 * N + h] if h >= 0 else 0.0
         if h >= 0:
-            beside = y[2 * N + d.z_of_link[number_beside(link, law.memory)]]
-            z_rates[h] = z_rate(link, law.memory, x_rate, x_rate, z, beside)
-        force = link_force(link, law.memory, k, d.preload[link], c, x, x_rate, z)
+            beside = y[2 * N + d.z_of_link[number_beside(link, d.memory)]]
+            z_rates[h] = z_rate(link, d.memory, x_rate, x_rate, z, beside)
+        force = link_force(link, d, x, x_rate, z)
         for b in range(N):
             loads[b] -= d.B[link, b] * force
 
@@ -164,10 +166,11 @@ def constraint_errors(d: Descriptor, y: Floats) -> tuple[float, float]:
 
 
 @kernel
-def _acceleration_slopes(d: Descriptor, slopes: Floats) -> None:
+def _acceleration_slopes(d: Descriptor, x_rate: Floats, slopes: Floats) -> None:
     """Add ∂u''/∂y, shape (N, size)."""
     N, H = d.mass.size, d.hysteretic
     for link in range(d.stiffness.size):
+        by_rate = drag_slope(link, d, x_rate[link])
         for b in range(N):
             pull = -d.B[link, b] / d.mass[b]
             # It is zero for a support, too, whose mass is infinite.
@@ -175,9 +178,9 @@ def _acceleration_slopes(d: Descriptor, slopes: Floats) -> None:
                 continue
             for c in range(N):
                 slopes[b, c] += pull * d.stiffness[link] * d.B[link, c]
-                slopes[b, N + c] += pull * d.law.damping[link] * d.B[link, c]
+                slopes[b, N + c] += pull * by_rate * d.B[link, c]
             if d.z_of_link[link] >= 0:
-                slopes[b, 2 * N + d.z_of_link[link]] += pull * pull_per_z(link, d.law.memory)
+                slopes[b, 2 * N + d.z_of_link[link]] += pull * pull_per_z(link, d.memory)
     for b in range(N):
         for j in range(d.opening.size):
             slopes[b, 2 * N + H + j] = d.W[j, b] / d.mass[b]
@@ -195,13 +198,14 @@ def _ledger_slopes(d: Descriptor, y: Floats, x_rate: Floats, ground: float, J: F
     for b in range(N):
         J[first, N + b] = own_mass(b, d.mass) * ground
     for link in range(d.stiffness.size):
-        h, q = d.z_of_link[link], pull_per_z(link, d.law.memory)
+        h, q, rate = d.z_of_link[link], pull_per_z(link, d.memory), x_rate[link]
+        by_rate = drag(link, d, rate) + drag_slope(link, d, rate) * rate
         for b in range(N):
-            J[first + 1, N + b] -= 2.0 * d.law.damping[link] * x_rate[link] * d.B[link, b]
+            J[first + 1, N + b] -= by_rate * d.B[link, b]
             if h >= 0:
                 J[first + 2, N + b] -= q * y[2 * N + h] * d.B[link, b]
         if h >= 0:
-            J[first + 2, 2 * N + h] -= q * x_rate[link]
+            J[first + 2, 2 * N + h] -= q * rate
 
 
 @kernel
@@ -229,7 +233,7 @@ def _z_slopes(d: Descriptor, y: Floats, x_rate: Floats, cj: float, J: Floats) ->
         h = d.z_of_link[link]
         if h < 0:
             continue
-        memory, rate = d.law.memory, x_rate[link]
+        memory, rate = d.memory, x_rate[link]
         other = 2 * N + d.z_of_link[number_beside(link, memory)]
         by_rate, by_z = z_slopes(link, memory, rate, y[2 * N + h], y[other])
         # Before the entry of z itself: where nothing stands beside it this is the same place.
@@ -259,7 +263,7 @@ def jacobian(tau: float, y: Floats, cj: float, J: Floats, problem: DescriptorPro
     for link in range(x_rate.size):
         x_rate[link] = dot(d.B[link], relative[N : 2 * N])
     slopes = np.zeros((N, d.size))
-    _acceleration_slopes(d, slopes)
+    _acceleration_slopes(d, x_rate, slopes)
     J[:] = 0.0
     for b in range(N):
         J[b, b], J[b, N + b] = cj, -1.0

@@ -33,6 +33,8 @@ z is one. Whether it sticks `eventpound.contact.sliders` decides.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from eventpound.mechanics.link_law import (
@@ -70,15 +72,43 @@ INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MOST_TERMS)])
 
 
 @step_kernel
-def link_force(
-    a: int, memory: Floats, k: float, f: float, c: float, x: float, x_rate: float, z: float
-) -> float:
-    """``F = k x + f + c x' + Q z`` of link a (N).
+def drag(a: int, links: Any, x_rate: float) -> float:
+    """What x' makes link a pull with (N); `links` are its `damping` and `memory`, at least."""
+    return float(links.damping[a] * x_rate)
 
-    As F is linear in them, also its rate from f = 0 and the rates of x, x' and z, and its Taylor
-    coefficients from those.
-    """
-    return float(k * x + f + c * x_rate + memory[a, STRENGTH] * z)
+
+@step_kernel
+def drag_slope(a: int, links: Any, x_rate: float) -> float:
+    """∂F/∂x' of link a (N s/m)."""
+    return float(links.damping[a])
+
+
+@step_kernel
+def drag_coefficient(a: int, k: int, links: Any, x_rate: Floats) -> float:
+    """Taylor coefficient k of `drag` from those of x' up to k."""
+    return float(links.damping[a] * x_rate[k])
+
+
+@step_kernel
+def link_force(a: int, links: Any, x: float, x_rate: float, z: float) -> float:
+    """``F = k x + f + c x' + Q z`` of link a (N); `links` are its `stiffness`, `preload`, too."""
+    elastic = links.stiffness[a] * x + links.preload[a]
+    return float(elastic + drag(a, links, x_rate) + links.memory[a, STRENGTH] * z)
+
+
+@step_kernel
+def link_force_rate(a: int, links: Any, x_rate: float, x_second: float, z_rate: float) -> float:
+    """Rate of F (N/s) from those of x, and of x' and z."""
+    elastic = links.stiffness[a] * x_rate
+    viscous = drag_slope(a, links, x_rate) * x_second
+    return float(elastic + viscous + links.memory[a, STRENGTH] * z_rate)
+
+
+@step_kernel
+def link_coefficient(a: int, k: int, links: Any, x: float, x_rate: Floats, z: float) -> float:
+    """Taylor coefficient k of F from those of x and z, and those of x' up to k."""
+    elastic = links.stiffness[a] * x + (links.preload[a] if k == 0 else 0.0)
+    return float(elastic + drag_coefficient(a, k, links, x_rate) + links.memory[a, STRENGTH] * z)
 
 
 @step_kernel

@@ -15,7 +15,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.contact_laws import element_pull
-from eventpound.mechanics.elements import contact_code, link_force
+from eventpound.mechanics.elements import contact_code, link_force, link_force_rate
 from eventpound.mechanics.followers import answers, drive, own_mass, place_points
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.model import Model
@@ -247,14 +247,13 @@ def _link_forces(bodies: Bodies, out: Observed) -> None:
         x = out.elongation[0, link] = difference(out.u, first, second)
         x_rate = out.elongation[1, link] = difference(out.v, first, second)
         x_second = out.elongation[2, link] = difference(out.a, first, second)
-        k, preload, c = bodies.stiffness[link], bodies.preload[link], bodies.damping[link]
         force, force_rate, h = 0.0, 0.0, bodies.z_of_link[link]
         if link < plain:
             z, z_rate = (out.z[0, h], out.z[1, h]) if h >= 0 else (0.0, 0.0)
-            force = link_force(link, bodies.memory, k, preload, c, x, x_rate, z)
-            # F is linear in x, x' and z, so their rates give its rate; f is constant.
-            force_rate = link_force(link, bodies.memory, k, 0.0, c, x_rate, x_second, z_rate)
+            force = link_force(link, bodies, x, x_rate, z)
+            force_rate = link_force_rate(link, bodies, x_rate, x_second, z_rate)
         elif h < -1:
+            k, preload, c = bodies.stiffness[link], bodies.preload[link], bodies.damping[link]
             force, by_x, by_rate = element_pull(h, k, preload, c, x, x_rate, 0.0)
             force_rate = by_x * x_rate + by_rate * x_second
         out.force[0, link], out.force[1, link] = force, force_rate

@@ -23,6 +23,7 @@ from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.elements import (
     contact_code,
+    drag,
     link_force,
     number_beside,
     pull_per_z,
@@ -360,13 +361,13 @@ def rate_on_ground(
     for a in range(system.stiffness.size):
         first, second = system.ends[a, 0], system.ends[a, 1]
         x, x_rate = link_motion(a, y, system)
-        k, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
         place, direction = system.iz[a], system.direction[a]
         if a < system.plain:
             z = y[place] if place >= 0 else 0.0
-            force = link_force(a, system.memory, k, preload, c, x, x_rate, z)
-            viscous += c * x_rate * x_rate
+            force = link_force(a, system, x, x_rate, z)
+            viscous += drag(a, system, x_rate) * x_rate
         elif place < -1:
+            k, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
             # What a closed contact element loses is counted with its contact.
             force = element_pull(place, k, preload, c, x, x_rate, direction)[0]
         else:

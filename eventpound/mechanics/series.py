@@ -13,7 +13,12 @@ import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents
-from eventpound.mechanics.elements import link_force, pull_per_z, z_coefficient
+from eventpound.mechanics.elements import (
+    drag_coefficient,
+    link_coefficient,
+    pull_per_z,
+    z_coefficient,
+)
 from eventpound.mechanics.followers import answers, is_support
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
@@ -79,7 +84,7 @@ def _add_ledger(
         for j in range(k + 1):
             # Lower codes are contact elements, whose losses are counted with their contacts.
             if system.iz[a] >= -1:
-                out[1] += system.damping[a] * x_rate[a, j] * x_rate[a, k - j]
+                out[1] += drag_coefficient(a, j, system, x_rate[a]) * x_rate[a, k - j]
             if system.iz[a] >= 0:
                 z = Y[j, system.iz[a]]
                 out[2] += pull_per_z(a, system.memory) * z * x_rate[a, k - j]
@@ -162,8 +167,7 @@ def _set_forces(
         x_rate = terms.x_rate[a]
         x, x_rate[k] = link_motion(a, Y[k], system)
         z = Y[k, iz[a]] if iz[a] >= 0 else 0.0
-        preload, c = system.preload[a] if k == 0 else 0.0, system.damping[a]
-        term = link_force(a, system.memory, system.stiffness[a], preload, c, x, x_rate[k], z)
+        term = link_coefficient(a, k, system, x, x_rate, z)
         if iz[a] < -1:
             terms.x[a, k] = x
             d = terms.overlap[a]

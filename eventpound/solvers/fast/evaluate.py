@@ -61,16 +61,15 @@ def _link_forces(ground: float, run: FastRun) -> None:
     """Fill `observed` with z and the forces of the links at its displacements and velocities."""
     plan, observed = run.plan, run.observed
     observed.base[0] = ground
-    links, law = plan.links, plan.links.law
+    links = plan.links
     observed.body_force[:] = 0.0
     observed.base[1] = 0.0
     for a in range(links.ends.shape[0]):
         x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], observed.u, observed.v)
-        force, z = link_force(a, x, run)
+        observed.force[a], pull, z = link_force(a, x, x_rate, run)
         if links.z_of_link[a] >= 0:
             observed.z[links.z_of_link[a]] = z
-        observed.force[a] = force
-        add_pull(a, force + law.damping[a] * x_rate, links, observed)
+        add_pull(a, pull, links, observed)
 
 
 @compiled_deferred

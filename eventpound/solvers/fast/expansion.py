@@ -253,13 +253,14 @@ def begin_series(t: float, piece: CurrentPiece, run: FastRun) -> None:
         h = links.z_of_link[a]
         # The step before has ended here, and its end was observed.
         if known:
-            force, z = observed.force[a], observed.z[h] if h >= 0 else 0.0
+            z = observed.z[h] if h >= 0 else 0.0
+            pull = observed.force[a] + links.law.damping[a] * x_rate
         else:
-            force, z = link_force(a, x, run)
+            _, pull, z = link_force(a, x, x_rate, run)
         if h >= 0:
             series.z[h, 0] = z
         series.stiffness[a] = tangent(a, links, state)
-        series.F[a, 0] = force + links.law.damping[a] * x_rate
+        series.F[a, 0] = pull
     saturate(series.x, plan.hysteresis, state)
     _set_weights(run)
 

@@ -90,8 +90,11 @@ def on_part(part: int, xi: float, tables: Floats, at: int) -> float:
 
 
 @compiled
-def link_force(a: int, x: float, run: FastRun) -> tuple[float, float]:
-    """Force of a link at the elongation x (m) without its dashpot (N), and its z, 0 for none."""
+def link_force(a: int, x: float, x_rate: float, run: FastRun) -> tuple[float, float, float]:
+    """Force of a link (N) without the dashpot beside it and with it, and its z, 0 for none.
+
+    At the elongation x (m) and its rate (m/s).
+    """
     links, z = run.plan.links, 0.0
     k = links.compression[a] if run.state.branch[a] < 0 else links.extension[a]
     force = k * (x - links.offset[a])
@@ -99,7 +102,7 @@ def link_force(a: int, x: float, run: FastRun) -> tuple[float, float]:
     if h >= 0:
         z = hysteretic_variable(h, x, run.plan.hysteresis, run.state)
         force += pull_per_z(a, run.series.memory) * z
-    return force, z
+    return force, force + links.law.damping[a] * x_rate, z
 
 
 @compiled

@@ -13,7 +13,7 @@ import numpy as np
 from eventpound.contact.cascade import is_fleeting, is_over
 from eventpound.contact.event_rows import end_cascade, events_wanted
 from eventpound.contact.state import Now
-from eventpound.mechanics.elements import pull_per_z
+from eventpound.mechanics.elements import drag, pull_per_z
 from eventpound.mechanics.followers import is_support, own_mass
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.monitored import copy_extremes
@@ -145,7 +145,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
     """Add all work of a step (J) to the ledger; overwrites `observed`."""
     plan, state, observed = run.plan, run.state, run.observed
-    links, law, memory = plan.links, plan.links.law, run.series.memory
+    links, memory = plan.links, run.series.memory
     for i in range(NODES.size):
         at = 0.5 * tau * (1.0 + NODES[i])
         weight = 0.5 * tau * WEIGHTS[i]
@@ -162,7 +162,7 @@ def add_work(tau: float, order: int, piece: CurrentPiece, run: FastRun) -> None:
             first, second = links.ends[a, 0], links.ends[a, 1]
             x_rate = observed.v[second] if second >= 0 else 0.0
             x_rate -= observed.v[first] if first >= 0 else 0.0
-            state.ledger[1] += weight * law.damping[a] * x_rate * x_rate
+            state.ledger[1] += weight * drag(a, links.law, x_rate) * x_rate
             h = links.z_of_link[a]
             if h >= 0:
                 state.ledger[2] += weight * pull_per_z(a, memory) * observed.z[h] * x_rate

@@ -28,7 +28,7 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from eventpound.mechanics.elements import link_force, pull_per_z, z_slopes
+from eventpound.mechanics.elements import pull_per_z, z_slopes
 from eventpound.mechanics.followers import place_points
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
@@ -174,7 +174,7 @@ def end_of_step(h: float, stepping: Stepping) -> None:
             z, z_x = z_after(link, law.memory, state.z[place], change, bound)
             trial.z[place] = z
             slope += pull_per_z(link, law.memory) * z_x
-        force = link_force(link, law.memory, k, 0.0, 0.0, x, rate, z)
+        force = k * x + pull_per_z(link, law.memory) * z
         # Springs are listed without their dashpots.
         trial.link[link], equations.slope[link] = force, slope
         force += law.damping[link] * rate
