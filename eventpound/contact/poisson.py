@@ -25,7 +25,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel
-from eventpound.numerics.coulomb import NO_ANSWER, SEVERAL, Rubbing, solve_rubbing
+from eventpound.numerics.coulomb import ANSWERED, NO_ANSWER, SEVERAL, Rubbing, solve_rubbing
 
 
 @deferred_kernel
@@ -55,30 +55,54 @@ def compress_and_expand(
     given = restitution * x[:k]
     if compressed in (NO_ANSWER, SEVERAL) or not given.any():
         return compressed
-    rubs = np.flatnonzero(given * problem.friction)
-    n = k + rubs.size
-    force, rate, states = np.zeros(2 * n), np.zeros(2 * n), np.zeros(n, np.int64)
-    expanded = solve_rubbing(_expansion(problem, given, rubs, w), force, rate, states)
-    x[:k] += given + force[:k]
-    x[k:] += force[n : n + k]
-    x[k + rubs] += force[n + k :]
-    w[:k], w[k:] = rate[:k], rate[n : n + k]
+    expanded = _expand(np.arange(k), given, problem, x, w)
+    if expanded == NO_ANSWER:
+        # Lemke's method may end without an answer. Mostly none is pressed together again.
+        expanded = _expand(np.flatnonzero(given == 0.0), given, problem, x, w)
+        expanded = max(expanded, ANSWERED)
     return max(compressed, expanded)
 
 
 @kernel
-def _expansion(problem: Rubbing, given: Floats, rubs: Ints, w: Floats) -> Rubbing:
-    """The problem of what expands beyond what is `given` back (k,), rates w (2k,) before it.
+def _expand(own: Ints, given: Floats, problem: Rubbing, x: Floats, w: Floats) -> int:
+    """Expand from impulses x and rates w (2k,), which are changed; ends as `solve_rubbing`.
 
-    Behind the k contacts are those whose forces are given, of the contacts `rubs`.
+    own: contacts that may be pressed by more than is `given` back (k,).
     """
-    k, every = given.size, np.concatenate((np.arange(given.size), rubs))
+    k, rubs = given.size, np.flatnonzero(given * problem.friction)
+    m, n = own.size, own.size + rubs.size
+    force, rate, states = np.zeros(2 * n), np.zeros(2 * n), np.zeros(n, np.int64)
+    found = solve_rubbing(_expansion(own, rubs, given, problem, w), force, rate, states)
+    if found in (NO_ANSWER, SEVERAL):
+        return found
+    back, after = np.concatenate((given, np.zeros(k))), w.copy()
+    back[own] += force[:m]
+    back[k + own] += force[n : n + m]
+    back[k + rubs] += force[n + m :]
+    for a in range(2 * k):
+        for b in range(2 * k):
+            after[a] += problem.G[a, b] * back[b]
+    after[own], after[k + own], after[k + rubs] = rate[:m], rate[n : n + m], rate[n + m :]
+    if m < k and (after[:k] < -problem.noise[:k]).any():
+        return NO_ANSWER
+    x += back
+    w[:] = after
+    return found
+
+
+@kernel
+def _expansion(own: Ints, rubs: Ints, given: Floats, problem: Rubbing, w: Floats) -> Rubbing:
+    """The problem of what some contacts expand beyond what is `given` back (k,), from rates w.
+
+    Behind these, its `own`, are those whose forces are given, of the contacts `rubs`.
+    """
+    k, m, every = given.size, own.size, np.concatenate((own, rubs))
     n = every.size
     G, q, noise = np.zeros((2 * n, 2 * n)), np.zeros(2 * n), np.zeros(2 * n)
     # Which row of the problem each one is; none of a force that is given.
     rows = np.concatenate((every, k + every))
     for a in range(2 * n):
-        if k <= a < n:
+        if m <= a < n:
             G[a, a] = problem.G[rows[a], rows[a]]
             q[a] = -G[a, a] * given[rows[a]]
             continue
@@ -86,6 +110,6 @@ def _expansion(problem: Rubbing, given: Floats, rubs: Ints, w: Floats) -> Rubbin
         for i in range(k):
             q[a] += problem.G[rows[a], i] * given[i]
         for b in range(2 * n):
-            if not k <= b < n:
+            if not m <= b < n:
                 G[a, b] = problem.G[rows[a], rows[b]]
     return Rubbing(G, q, problem.friction[every], np.zeros(n, np.int64), noise)

@@ -18,7 +18,7 @@ from eventpound.scene import BARRIER, Contact, Deck, Scene
 from eventpound.scene.deck import DeckStart
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
-from tests.oracle.plan import Plan, states
+from tests.oracle.plan import Plan, plan_of, states
 from tests.solvers.friction_scenes import MASS, block, corner_contacts, expanded_corner
 from tests.solvers.test_friction import rubbing_plan, states_of
 
@@ -61,6 +61,26 @@ def test_beside_enumeration_and_without_a_gain(k: int, problems: int) -> None:
         pressed += (w[:k] < 1e-12).sum()
     # Where ε differs, one contact presses another together again.
     assert pressed > 0 or k == 1
+
+
+def test_three_contacts_two_of_which_share_friction() -> None:
+    """More than are gone through, and for some of these Lemke's method ends without an answer."""
+    scene, joints, _ = rubbing_plan(88)
+    plan = plan_of(replace(scene, impact_law="poisson"), joints)
+    shut, speed = [2, 3, 5], 1.0 / np.sqrt(plan.mass / plan.mass.min())
+    plan.gap[:], plan.gap[shut] = 1.0, 0.0
+    rows, rng = np.vstack((plan.W[shut], plan.T[shut])), np.random.default_rng(1)
+    struck = 0
+    for _ in range(200):
+        v = rng.normal(size=speed.size) * speed
+        if (rows[:3] @ v < 0.0).all():
+            struck += 1
+            G = rows / plan.mass @ rows.T
+            x, w = _struck(G, rows @ v, plan.friction[shut], plan.restitution[shut])
+            expected = rows @ plan.impacts(np.zeros(v.size), v)
+            np.testing.assert_allclose(w, expected, atol=1e-10 * np.abs(w).max())
+            assert x @ rows @ v + 0.5 * x @ G @ x < 0.0
+    assert struck > 10
 
 
 def test_a_double_pendulum_gains_energy_by_newtons_law_and_loses_some_by_poissons() -> None:
