@@ -99,7 +99,10 @@ def read_excitation(table: Table, directory: Path) -> Excitation | None:
     Excitation or None
         None where there are problems; they are noted.
     """
-    excitation = _read(table, directory)
+    kind = table.choice("kind", _KINDS)
+    if not kind:
+        return None
+    excitation = _read(table, kind, directory)
     if excitation is not None:
         excitation = _in_plan(table, excitation, directory)
     table.close()
@@ -112,13 +115,15 @@ def read_component(table: Table, directory: Path, follows: bool = False) -> Exci
     `follows` says that its records are scaled as those of the first component. Otherwise as
     `read_excitation`.
     """
-    found = _read(table, directory, follows)
+    kind = table.choice("kind", _KINDS)
+    if not kind:
+        return None
+    found = _read(table, kind, directory, follows)
     table.close()
     return found
 
 
-def _read(table: Table, directory: Path, follows: bool = False) -> Excitation | None:
-    kind = table.choice("kind", _KINDS)
+def _read(table: Table, kind: str, directory: Path, follows: bool = False) -> Excitation | None:
     with table.noting(""):
         match kind:
             case "none":
@@ -126,8 +131,7 @@ def _read(table: Table, directory: Path, follows: bool = False) -> Excitation | 
             case "record":
                 found = _read_record(table, directory, follows)
                 return None if found is None else replace(found, follows=follows)
-            case _ if kind:
-                return _read_formula(table, kind)
+        return _read_formula(table, kind)
     return None
 
 
