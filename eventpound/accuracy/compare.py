@@ -212,6 +212,8 @@ def judge_entries(
     check_case(case)
     if not asked and not against:
         raise InputError("compare: found nothing to judge; accepted: a solver, or a history")
+    if columns and not against:
+        raise InputError("columns: found without against; accepted: beside a history alone")
     warn_left_out(case.run, Way.COMPARE)
     _check_restitution(case, restitution)
     for entry in asked:

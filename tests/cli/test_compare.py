@@ -203,6 +203,10 @@ def test_rests_and_detachments_are_matched(tmp_path, capsys):
         (["--rtol", "1e-15"], "rtol: found 1e-15; accepted: a number from 1e-14 to 0.01"),
         (["--against", "nowhere.csv"], "nowhere.csv: cannot be read"),
         (["--columns", "t"], "--columns: found t; accepted: u.deck=disp1,t=time"),
+        (
+            ["--columns", "t=time"],
+            "columns: found without against; accepted: beside a history alone",
+        ),
     ],
 )
 def test_refused(case, capsys, words, message):
