@@ -79,7 +79,6 @@ class Excitation:
     """Whether it is a second component that is scaled as the first."""
     attack: float = 0.0
     """Angle from x to the first component (rad)."""
-
     across: GroundMotion = field(default_factory=NoMotion)
     """Motion of the second component; none where that is of a suite."""
 

@@ -10,14 +10,21 @@ import pytest
 
 from eventpound import score
 from eventpound.cli import main
+from eventpound.contact.event import EventKind
 from eventpound.problems.collection import read_collection
 from eventpound.problems.files import problem_json, score_file
 from eventpound.results.jsontext import canonical
-from eventpound.score.levels import UNIT_OF_TIME
+from eventpound.score.levels import EVENTS, UNIT_OF_TIME, UNJUDGED
 from tests.models import CASES
 
 SET = read_collection(CASES / "problems")
 HIT = "19-graze-hit-1e-03"
+
+
+def test_every_kind_that_a_history_lists_is_known():
+    """The yardstick stands alone, so it tells them again."""
+    kinds = ["impact", *(kind for words in EVENTS.values() for kind in words), *UNJUDGED]
+    assert sorted(kinds) == sorted(kind.value for kind in EventKind)
 
 
 def exact(problem, late=0.0, restitution=0.5, rows=81):
