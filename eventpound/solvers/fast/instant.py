@@ -21,6 +21,7 @@ from eventpound.mechanics.oblique import are_tied, slips_of, with_slips
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
+from eventpound.numerics.by_address import whole
 from eventpound.numerics.compiled import deferred_kernel, kernel
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred, compiled_noinline
 from eventpound.solvers.fast.followed import find_branches, follows, put_on_branches
@@ -160,7 +161,8 @@ def instant_of(run: FastRun) -> Instant:
         weights=contacts.weights,
         compliance=run.series.free,
         ends=links.ends,
-        law=links.law,
+        # As the event loop has it, so that what an instant demands is compiled once for both.
+        law=whole(links.law),
         compression=links.compression,
         extension=links.extension,
         offset=links.offset,
