@@ -38,10 +38,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from eventpound.case import Case
+    from eventpound.report.design_report import Told
     from eventpound.report.html import Section
     from eventpound.report.sheets import Sheet
     from eventpound.results.tables import Row
-    from eventpound.study.design import DesignRuns
     from eventpound.study.reading import StudyCase
 
 _Made: TypeAlias = "tuple[str, pd.DataFrame, dict[str, bytes]]"
@@ -85,18 +85,8 @@ def _one(options: Options, out: Path) -> str:
     from eventpound.results.tables import table_csv
     from eventpound.study.design import DESIGN_TABLE
 
-    def of_case(make: Callable[[Case, Path], DesignRuns], case: Case) -> _Made:
-        made = make(case, out)
-        print("\n".join(_lines(case, made)))
-        return case.title, made.table, {} if options.no_pages else _pages_of(made, options, out)
-
-    title, table, pages = arguments.by_kind(
-        options.case,
-        partial(of_case, _of_run),
-        lambda study: _of_study(study, options, out),
-        partial(of_case, _of_suite),
-        records=options.suite,
-    )
+    make = (partial(of, options, out) for of in (_of_run, _of_study, _of_suite))
+    title, table, pages = arguments.by_kind(options.case, *make, records=options.suite)
     files = {DESIGN_TABLE: table_csv(table)} if len(table) else {}
     arguments.write_and_print(out, files | pages)
     return title
@@ -118,75 +108,73 @@ def _pages(
     return files | ({WORKBOOK: workbook(tables)} if tables else {})
 
 
-def _pages_of(made: DesignRuns, options: Options, out: Path) -> dict[str, bytes]:
+def _pages_of(
+    case: Case, table: pd.DataFrame, appendix: Sequence[Section], tell: Callable[[], Told]
+) -> dict[str, bytes]:
     """The report of a run or a suite, and a page of the motion under what governs."""
     from eventpound.report import design_report as report
     from eventpound.report.view import View
     from eventpound.report.zoom import ZOOM_PAGE, zoom_page
     from eventpound.results import gather
 
-    case, response, record = made.case, made.response, ""
-    assert case is not None
-    appendix = _appendix(made, options, out)
     tell_step("draw the report")
-    if made.table.empty:
+    if table.empty:
         return _pages(case.title, [], appendix, {})
-    if response is None:
-        record = report.governing_record(case.scene, made.table)
-        response = report.motion_under(case, record)
-    told = report.Told(case, made.table, made.runs, response, record)
+    told = tell()
     sections = [report.all_numbers(told), *appendix]
     tables = report.sheets_of_workbook(told)
     files = _pages(case.title, report.design_sheets(told), sections, tables)
-    title = ": ".join(filter(None, [case.title, report.what_governs(told)]))
-    view = View(gather(response, case), response.scene)
+    title = ": ".join(filter(None, [case.title, told.governs]))
+    view = View(gather(told.response, case), told.response.scene)
     return files | {ZOOM_PAGE: zoom_page(view, title, told.trade)}
 
 
-def _appendix(made: DesignRuns, options: Options, out: Path) -> list[Section]:
-    """What stands behind the sheets of a run or a suite."""
-    from eventpound.report.many_appendix import suite_sections
-    from eventpound.report.run_appendix import run_sections
-    from eventpound.results import read
-    from eventpound.study.table import read_suite
-
-    assert made.case is not None
-    if made.runs is not None:
-        return suite_sections(made.case, *read_suite(out))
-    directory = options.results if options.out is None else out
-    return run_sections(made.case, read(out), directory, options.case / "comparison")
-
-
-def _of_run(case: Case, out: Path) -> DesignRuns:
-    """Run a case, and what its design numbers need."""
+def _of_run(options: Options, out: Path, case: Case) -> _Made:
+    """Run a case, and what its design numbers need, and make its report."""
     from eventpound import results
+    from eventpound.report.design_report import Told
+    from eventpound.report.run_appendix import run_sections
     from eventpound.study.design import made_of_run
 
     arguments.check_solver_of(case)
     results.check_writable(out)
     with Progress(case) as progress, Watch(None, progress) as watch:
-        made = made_of_run(case, watch, lambda: progress.begins("again, without contacts"))
-    assert made.response is not None
-    results.write(made.response, out, case=case)
-    return made
+        again = partial(progress.begins, "again, without contacts")
+        table, response = made_of_run(case, watch, again)
+    results.write(response, out, case=case)
+    print("\n".join(_lines(case, table, {})))
+    if options.no_pages:
+        return case.title, table, {}
+    directory = options.results if options.out is None else out
+    appendix = run_sections(case, results.read(out), directory, options.case / "comparison")
+    tell = partial(Told, case, table, response)
+    return case.title, table, _pages_of(case, table, appendix, tell)
 
 
-def _of_suite(case: Case, out: Path) -> DesignRuns:
-    """Run a case under every record; those that failed are named."""
+def _of_suite(options: Options, out: Path, case: Case) -> _Made:
+    """Run a case under every record, and make its report; records that failed are named."""
+    from eventpound.report.design_report import told_of_suite
+    from eventpound.report.many_appendix import suite_sections
+    from eventpound.report.record_tables import record_names
     from eventpound.study.design import made_of_suite
+    from eventpound.study.table import read_suite
 
     plan = arguments.checked_suite(case)
     with going_on(), Counter("records") as progress:
-        made = made_of_suite(case, out, progress)
-    assert made.runs is not None
+        case, table, runs = made_of_suite(case, out, progress)
     arguments.complain_of_scales(plan.bases)
-    for record, why in zip(made.runs["record"], made.runs["failed"], strict=True):
+    for record, why in zip(runs["record"], runs["failed"], strict=True):
         if why:
             complain(f"{record} failed, and is left out: {why}")
-    return made
+    print("\n".join(_lines(case, table, record_names(runs))))
+    if options.no_pages:
+        return case.title, table, {}
+    appendix = suite_sections(case, *read_suite(out))
+    tell = partial(told_of_suite, case, table, runs)
+    return case.title, table, _pages_of(case, table, appendix, tell)
 
 
-def _of_study(case: StudyCase, options: Options, out: Path) -> _Made:
+def _of_study(options: Options, out: Path, case: StudyCase) -> _Made:
     """Make the runs of a study, and its report."""
     from eventpound.report.design_study import study_cells, study_sheets, study_workbook
     from eventpound.report.design_tables import capacity_words
@@ -201,33 +189,30 @@ def _of_study(case: StudyCase, options: Options, out: Path) -> _Made:
     # Where nothing is asked for beyond it, the table of the study is taken.
     runs = options.results if plan == case.study else out
     with going_on(), Counter("runs") as progress:
-        made = made_of_study(plan, runs, progress)
-    assert made.runs is not None
+        table, made = made_of_study(plan, runs, progress)
     arguments.complain_of_scales(plan.bases)
-    if failed := int((~made.runs["success"]).sum()):
-        complain(f"{failed} of {len(made.runs)} runs failed, and are left out")
+    if failed := int((~made["success"]).sum()):
+        complain(f"{failed} of {len(made)} runs failed, and are left out")
     first = case.study.bases[0].at_first().case
     trade = trade_of(first.scene, first.run.stated)
-    if len(made.table):
-        print("\n".join(capacity_words(made.table, first.run.stated.fractile)))
-        print("\n".join(lines_of(study_cells(plan, made.table, trade))))
+    if len(table):
+        print("\n".join(capacity_words(table, first.run.stated.fractile)))
+        print("\n".join(lines_of(study_cells(plan, table, trade))))
     if options.no_pages:
-        return plan.title, made.table, {}
-    sheets = study_sheets(plan, made.table, trade, case.warnings) if len(made.table) else []
-    sections = study_sections(case, made.runs, manifest_there(runs) or {})
-    tables = study_workbook(made.table, trade)
-    return plan.title, made.table, _pages(plan.title, sheets, sections, tables)
+        return plan.title, table, {}
+    sheets = study_sheets(plan, table, trade, case.warnings) if len(table) else []
+    sections = study_sections(case, made, manifest_there(runs) or {})
+    return plan.title, table, _pages(plan.title, sheets, sections, study_workbook(table, trade))
 
 
-def _lines(case: Case, made: DesignRuns) -> Iterator[str]:
+def _lines(case: Case, table: pd.DataFrame, names: Mapping[str, str]) -> Iterator[str]:
     """What an engineer asks, to be read: a table a part, in units of the trade."""
     from eventpound.report.design_tables import capacity_words, screen_tables
-    from eventpound.report.record_tables import record_names, scaling_words
+    from eventpound.report.record_tables import scaling_words
     from eventpound.results.tables import lines_of
     from eventpound.results.trade import trade_of
 
-    trade, table = trade_of(case.scene, case.run.stated), made.table
-    names = {} if made.runs is None else record_names(made.runs)
+    trade = trade_of(case.scene, case.run.stated)
     if scaling := scaling_words(case, trade):
         yield f"scaling   {scaling}"
     yield from capacity_words(table, case.run.stated.fractile)

@@ -5,7 +5,7 @@ In units of the trade with three digits, so that it can be handed on as it is.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -95,7 +95,7 @@ _FEW = 7
 
 @dataclass(frozen=True)
 class Told:
-    """What a report is made of.
+    """What the report of a run is made of.
 
     Parameters
     ----------
@@ -103,19 +103,13 @@ class Told:
         As it was run.
     design : DataFrame
         Its design numbers.
-    runs : DataFrame, optional
-        Table of a suite.
-    response : Response or None
-        The run, of a suite that under the governing record; None of a study.
-    record : str
-        Which that is; empty of a single run.
+    response : Response
+        The motion that is drawn.
     """
 
     case: Case
     design: pd.DataFrame
-    runs: pd.DataFrame | None
-    response: Response | None
-    record: str
+    response: Response
 
     @property
     def scene(self) -> Scene:
@@ -130,7 +124,139 @@ class Told:
     @property
     def names(self) -> Mapping[str, str]:
         """What the records are called."""
-        return {} if self.runs is None else record_names(self.runs)
+        return {}
+
+    @property
+    def drawn(self) -> str:
+        """The record under which the motion that is drawn was."""
+        return ""
+
+    @property
+    def governs(self) -> str:
+        """That record, with its factor or those of its shocks."""
+        return ""
+
+    def under(self) -> str:
+        """Under which motion."""
+        motion, record = self.scene.motion, self.case.record
+        if isinstance(motion, Record):
+            said = (record.event, record.date, record.station, record.component) if record else ()
+            name = ", ".join(text for text in said if text) or "a record"
+            peak = self.trade.words(motion.peak, Dimension.ACCELERATION.unit)
+            return f"{name}, times {three_digits(abs(motion.factor))}, peak {peak}"
+        scales = motion.scales()
+        if scales is None:
+            return "no ground motion" if motion.kind == "none" else f"a motion, {motion.kind}"
+        peak = self.trade.words(scales.a_g, Dimension.ACCELERATION.unit)
+        return f"a pulse, {motion.kind}, {peak}, period {three_digits(scales.period)} s"
+
+    def numbers(self, cells: Sequence[Cells]) -> Sequence[Block]:
+        """Its tables of numbers on a sheet; those of a run are narrow, and stand side by side."""
+        return [Columns(tuple((table,) for table in cells))]
+
+    def records(self) -> list[Block]:
+        """What is told of the records."""
+        return []
+
+    def all_records(self) -> dict[str, list[Row]]:
+        """The records, as a sheet of a workbook."""
+        return {}
+
+    def limits(self) -> Iterator[str]:
+        """What the records do not tell."""
+        yield from ()
+
+    def hashes(self) -> dict[str, str]:
+        """Of the records."""
+        return {} if self.case.record is None else {"record": self.case.record.sha256}
+
+
+@dataclass(frozen=True)
+class ToldOfSuite(Told):
+    """What the report of a suite is made of.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        Its table.
+    record : str
+        That which governs, under which the motion was.
+    """
+
+    runs: pd.DataFrame
+    record: str
+
+    @property
+    def names(self) -> Mapping[str, str]:
+        """What the records are called."""
+        return record_names(self.runs)
+
+    @property
+    def drawn(self) -> str:
+        """The record under which the motion that is drawn was."""
+        return self.names[self.record]
+
+    @property
+    def governs(self) -> str:
+        """That record, with its factor or those of its shocks."""
+        (factor,) = self.runs.loc[self.runs["record"] == self.record, "scale"]
+        each = [f for _, f in getattr(self.response.scene.motion, "shocks", ())] or [factor]
+        return f"record {self.drawn}, which governs, times {', '.join(f'{f:.3g}' for f in each)}"
+
+    def under(self) -> str:
+        """Under how many records, of which size."""
+        scaling = scaling_words(self.case, self.trade).partition(" (")[0] or "every record as it is"
+        done = int((self.runs[FAILED] == "").sum())
+        failed = f" of {len(self.runs)}" if done < len(self.runs) else ""
+        return f"{done}{failed} records; {scaling}"
+
+    def numbers(self, cells: Sequence[Cells]) -> Sequence[Block]:
+        """Its tables of numbers on a sheet."""
+        return cells
+
+    def records(self) -> list[Block]:
+        """Demands over the records, and the records."""
+        panels, (low, high) = _panels(self), FRACTILES
+        figure = demand_figure(self.scene, self.runs, panels, self.trade, _sizes(self))
+        lines = f"Dotted lines: {low:g} %, dashed: {high:g} % of them, of several the largest."
+        tables = record_cells(self.case, self.runs, self.trade)
+        return [
+            Head("Demand over the records"),
+            Picture(figure, _DEMAND),
+            Words((f"Numbers of records as below. {lines}",)),
+            Head("Records"),
+            Columns(tuple((table,) for table in tables)),
+        ]
+
+    def all_records(self) -> dict[str, list[Row]]:
+        """The records, as a sheet of a workbook."""
+        parts = record_cells(self.case, self.runs, self.trade, len(self.runs))
+        rows = [[n, *map(_value, v)] for part in parts for n, *v in part.rows]
+        return {"Records": [parts[0].headings, *rows]}
+
+    def limits(self) -> Iterator[str]:
+        """What the records do not tell: few are done, large factors, why some failed."""
+        failed = self.runs[self.runs[FAILED] != ""]
+        done = len(self.runs) - len(failed)
+        if done < _FEW:
+            last = f"{FRACTILES[1]:g} % fractile"
+            yield f"{done} records are few: the {last} depends on the largest one or two."
+        if large := large_scales_of([suite_base(self.case)]):
+            yield f"{large}."
+        for row in failed.head(_MOST_WARNINGS).to_dict("records"):
+            yield f"Left out, because it failed: {row['record']}: {row[FAILED]}."
+
+    def hashes(self) -> dict[str, str]:
+        """Of all records."""
+        return {"all records": sha256("".join(map(str, self.runs["sha256"])).encode())}
+
+
+def told_of_suite(case: Case, design: pd.DataFrame, runs: pd.DataFrame) -> ToldOfSuite:
+    """What the report of a suite is made of; the governing record is run again, for its history."""
+    record = governing_record(case.scene, design)
+    member = member_of(case, record)
+    response = response_of(member_case(case, member, member.read()))
+    return ToldOfSuite(case, design, response, runs, record)
 
 
 def governing_record(scene: Scene, design: pd.DataFrame) -> str:
@@ -144,18 +270,12 @@ def governing_record(scene: Scene, design: pd.DataFrame) -> str:
     return str(peaks.loc[peaks["largest"].idxmax(), "under"])
 
 
-def motion_under(case: Case, record: str) -> Response:
-    """The response to one record of a suite, with its history."""
-    member = member_of(case, record)
-    return response_of(member_case(case, member, member.read()))
-
-
 def all_numbers(told: Told) -> Section:
     """All design numbers, as a section of the appendix: a table for each kind of elements."""
     tables = kind_tables(told.scene, told.design, told.names, told.trade)
     parts = [table_of(table.cells) for table in tables]
-    if told.response is not None and (shocks := told.response.shock_rows):
-        under = f"Under {told.names[told.record]}, " if told.record else ""
+    if shocks := told.response.shock_rows:
+        under = f"Under {told.drawn}, " if told.drawn else ""
         parts += [text_part(f"{under}by shock:"), table_of(_by_shock(told, shocks))]
     return "Design numbers", parts
 
@@ -168,17 +288,13 @@ def sheets_of_workbook(told: Told) -> dict[str, list[Row]]:
     """All design numbers and the records, as sheets of a workbook in the units of the report."""
     tables = kind_tables(told.scene, told.design, told.names, told.trade)
     found: dict[str, list[Row]] = {t.name: [t.headings, *t.rows] for t in tables}
-    if told.response is not None and (shocks := told.response.shock_rows):
+    if shocks := told.response.shock_rows:
         cells = _by_shock(told, shocks)
         found["Shocks"] = [
             cells.headings,
             *([a, b, c, *map(_value, v)] for a, b, c, *v in cells.rows),
         ]
-    if told.runs is not None:
-        records = record_cells(told.case, told.runs, told.trade, len(told.runs))
-        rows = [row for part in records for row in part.rows]
-        found["Records"] = [records[0].headings, *([n, *map(_value, v)] for n, *v in rows)]
-    return found
+    return found | told.all_records()
 
 
 def _value(text: str) -> str | float:
@@ -191,13 +307,13 @@ def _value(text: str) -> str | float:
 
 def design_sheets(told: Told) -> list[Sheet]:
     """The two sheets of a report, or three where one cannot hold the numbers and the model."""
-    sketch, second = _sketch(told), list(_second(told))
+    sketch, second = _sketch(told.case), list(_second(told))
     for most, parts, structures in _ROOM:
-        first = [*_first(told, most), *_model(told, sketch, parts, structures)]
+        first = [*_first(told, most), *_model(told.case, sketch, parts, structures)]
         if share_of(first) >= _LEAST:
             return [first, second]
     for parts in _PARTS:
-        model = list(model_blocks(told, _ALONE, parts))
+        model = list(model_blocks(told.case, _ALONE, parts))
         if share_of(model) >= _LEAST:
             break
     return [list(_first(told, _ROOM[0][0])), model, second]
@@ -208,27 +324,26 @@ def _first(told: Told, most: int) -> Iterator[Block]:
     yield Head(told.case.title, title=True)
     yield Words(tuple(_asked(told)))
     yield Head("Design numbers")
-    numbers = page_cells(told.scene, told.design, told.names, told.trade, most)
-    # Of a run they are narrow.
-    beside = Columns(tuple((table,) for table in numbers))
-    yield from (beside,) if told.runs is None else numbers
+    yield from told.numbers(page_cells(told.scene, told.design, told.names, told.trade, most))
 
 
-def _sketch(told: Told, high: float = _HIGH) -> Picture:
-    figure = model_figure(told.scene, trade=told.trade, within=(WIDTH / 25.4, high))
+def _sketch(case: Case, high: float = _HIGH) -> Picture:
+    trade = trade_of(case.scene, case.run.stated)
+    figure = model_figure(case.scene, trade=trade, within=(WIDTH / 25.4, high))
     return Picture(figure, high * 25.4)
 
 
-def model_blocks(told: Told, high: float = _HIGH, parts: int = _PARTS[-1]) -> Iterator[Block]:
+def model_blocks(case: Case, high: float = _HIGH, parts: int = _PARTS[-1]) -> Iterator[Block]:
     """The sketch, so high at most (in), and the tables of the parts, with so many rows at most."""
-    yield from _model(told, _sketch(told, high), parts, _ROOM[0][2])
+    yield from _model(case, _sketch(case, high), parts, _ROOM[0][2])
 
 
-def _model(told: Told, sketch: Picture, parts: int, structures: int) -> Iterator[Block]:
+def _model(case: Case, sketch: Picture, parts: int, structures: int) -> Iterator[Block]:
     """The sketch and the tables of the parts; a tall sketch stands beside tables."""
     yield Head("Model")
-    given = input_tables(_inputs(told.case, structures), told.trade.chosen)
-    nothing = min(told.trade.nothing(dimension.unit) for dimension in TOLD)
+    trade = trade_of(case.scene, case.run.stated)
+    given = input_tables(_inputs(case, structures), trade.chosen)
+    nothing = min(trade.nothing(dimension.unit) for dimension in TOLD)
     tables = [_short(table, nothing, parts) for table in given]
     narrow = [table for table in tables if len(table.headings) <= _WIDE]
     wide, high = sketch.figure.get_size_inches()
@@ -256,23 +371,12 @@ def _inputs(case: Case, most: int) -> dict[str, Any]:
     return inputs | ({"dashpots": []} if structures else {})
 
 
-def what_governs(told: Told) -> str:
-    """The record of a suite whose motion is drawn, with its factor or those of its shocks."""
-    if told.runs is None or told.response is None:
-        return ""
-    (factor,) = told.runs.loc[told.runs["record"] == told.record, "scale"]
-    each = [f for _, f in getattr(told.response.scene.motion, "shocks", ())] or [factor]
-    times = ", ".join(f"{f:.3g}" for f in each)
-    return f"record {told.names[told.record]}, which governs, times {times}"
-
-
 def _second(told: Told) -> Iterator[Block]:
     """Under what, when, and how sure."""
-    assert told.response is not None
     scene, peaks = told.scene, told.response.peaks["abs_max"]
     worst = scene.contacts[lacking_contacts(scene, told.design)[0]] if scene.contacts else None
     view = View(gather(told.response, told.case), told.response.scene)
-    yield Head(" under ".join(filter(None, ["Motion", what_governs(told)])))
+    yield Head(" under ".join(filter(None, ["Motion", told.governs])))
     motion = governing_figure(view, worst, str(peaks.idxmax()), told.trade)
     yield Picture(motion, _MOTION)
     if (plan := worst_plan_figure(view)) is not None:
@@ -281,59 +385,28 @@ def _second(told: Told) -> Iterator[Block]:
     if shocks := told.response.shock_rows:
         yield Head("Demands by shock")
         yield shock_cells(shocks, told.design, told.trade, most=_MOST_OF_SHOCKS)
-    if told.runs is not None:
-        yield Head("Demand over the records")
-        panels, (low, high) = _panels(told), FRACTILES
-        figure = demand_figure(scene, told.runs, panels, told.trade, _sizes(told))
-        yield Picture(figure, _DEMAND)
-        lines = f"Dotted lines: {low:g} %, dashed: {high:g} % of them, of several the largest."
-        yield Words((f"Numbers of records as below. {lines}",))
-        yield Head("Records")
-        yield Columns(tuple((table,) for table in record_cells(told.case, told.runs, told.trade)))
+    yield from told.records()
     yield Head("Limits and warnings")
-    yield Words(tuple(f"• {text}" for text in limits(told)))
+    yield Words(tuple(f"• {text}" for text in limits(told.case, told.case.warnings, told.limits())))
     yield Head("Origin")
     yield Words(tuple(_origin(told)))
 
 
-def _sizes(told: Told) -> tuple[str, float] | None:
+def _sizes(told: ToldOfSuite) -> tuple[str, float] | None:
     """What Sa of the records is called, and what it was to be; None where it is not known."""
-    runs = told.runs
-    if runs is None or SA not in runs or runs[SA].isna().all():
+    if SA not in told.runs or told.runs[SA].isna().all():
         return None
     period, _ = sa_of_suite(told.case)
     return f"Sa({period:.3g} s)", told.case.size.wanted(period)
 
 
 def _asked(told: Told) -> Iterator[str]:
-    """Under how many records of which size, or under which motion, and what pounds."""
-    runs, design = told.runs, told.design
-    if runs is None:
-        yield f"Under {_motion(told)}."
-    else:
-        scaling = scaling_words(told.case, told.trade).partition(" (")[0] or "every record as it is"
-        done = int((runs[FAILED] == "").sum())
-        failed = f" of {len(runs)}" if done < len(runs) else ""
-        yield f"Under {done}{failed} records; {scaling}."
-    for i in lacking_contacts(told.scene, design)[:_MOST_LISTED]:
+    """Under what, and what pounds."""
+    yield f"Under {told.under()}."
+    for i in lacking_contacts(told.scene, told.design)[:_MOST_LISTED]:
         contact = told.scene.contacts[i]
-        yield f"Contact {contact_words(contact, design, told.trade)}."
-    yield from capacity_words(design, told.case.run.stated.fractile)
-
-
-def _motion(told: Told) -> str:
-    """The motion of a single run."""
-    motion, record = told.scene.motion, told.case.record
-    if isinstance(motion, Record):
-        said = (record.event, record.date, record.station, record.component) if record else ()
-        name = ", ".join(text for text in said if text) or "a record"
-        peak = told.trade.words(motion.peak, Dimension.ACCELERATION.unit)
-        return f"{name}, times {three_digits(abs(motion.factor))}, peak {peak}"
-    scales = motion.scales()
-    if scales is None:
-        return "no ground motion" if motion.kind == "none" else f"a motion, {motion.kind}"
-    peak = told.trade.words(scales.a_g, Dimension.ACCELERATION.unit)
-    return f"a pulse, {motion.kind}, {peak}, period {three_digits(scales.period)} s"
+        yield f"Contact {contact_words(contact, told.design, told.trade)}."
+    yield from capacity_words(told.design, told.case.run.stated.fractile)
 
 
 def _short(table: Cells, nothing: float, most: int) -> Cells:
@@ -363,25 +436,16 @@ def _panels(told: Told) -> list[list[Named]]:
     return [group for group in groups if group][:_MOST_PANELS]
 
 
-def limits(told: Told, warnings: Sequence[str] = ()) -> Iterator[str]:
+def limits(case: Case, warnings: Sequence[str], of_records: Iterable[str] = ()) -> Iterator[str]:
     """What is not in the numbers, and what the case was warned of, those that matter first."""
     yield from LIMITS
-    laws = {type(spring.law) for spring in told.scene.springs}
+    laws = {type(spring.law) for spring in case.scene.springs}
     yield from (text for law, text in _OF_LAWS.items() if law in laws)
-    resting = told_at_rest(told.scene, told.case.run.start_time)
+    resting = told_at_rest(case.scene, case.run.start_time)
     if resting["not"] or resting["at_kink"] or resting["at_yield"]:
         yield f"At rest: {rest_words(resting)}."
-    if told.runs is not None:
-        failed = told.runs[told.runs[FAILED] != ""]
-        done = len(told.runs) - len(failed)
-        if done < _FEW:
-            last = f"{FRACTILES[1]:g} % fractile"
-            yield f"{done} records are few: the {last} depends on the largest one or two."
-        if large := large_scales_of([suite_base(told.case)]):
-            yield f"{large}."
-        for row in failed.head(_MOST_WARNINGS).to_dict("records"):
-            yield f"Left out, because it failed: {row['record']}: {row[FAILED]}."
-    yield from _warnings(warnings or told.case.warnings)
+    yield from of_records
+    yield from _warnings(warnings or case.warnings)
 
 
 def _warnings(given: Sequence[str]) -> Iterator[str]:
@@ -402,11 +466,7 @@ def _warnings(given: Sequence[str]) -> Iterator[str]:
 
 def _origin(told: Told) -> Iterator[str]:
     """What computed it, and the hashes that say of what."""
-    solver, record = told.case.solver, told.case.record
+    solver = told.case.solver
     yield solved_by(solver.name, solver.rtol)
-    hashes: dict[str, Any] = {"case": case_in_manifest(told.case)["case_sha256"]}
-    if told.runs is not None:
-        hashes["all records"] = sha256("".join(map(str, told.runs["sha256"])).encode())
-    elif record is not None:
-        hashes["record"] = record.sha256
+    hashes: dict[str, Any] = {"case": case_in_manifest(told.case)["case_sha256"]} | told.hashes()
     yield f"SHA-256: {', '.join(f'{name} {value[:16]}' for name, value in hashes.items())}."

@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from eventpound.report import style
-from eventpound.report.design_report import Told, limits, model_blocks
+from eventpound.report.design_report import limits, model_blocks
 from eventpound.report.design_tables import NUMBERS, capacity_words
 from eventpound.report.sheets import Block, Head, Picture, Sheet, Words
 from eventpound.report.symbols import axis_label, display_unit, value_label
@@ -121,14 +121,14 @@ def _first(study: Plan, design: pd.DataFrame, trade: Trade) -> Iterator[Block]:
 
 def _second(study: Plan, design: pd.DataFrame, warnings: Sequence[str]) -> Iterator[Block]:
     base = study.bases[0]
-    told = Told(base.at_first().case, design, None, None, "")
+    case = base.at_first().case
     yield Words(("The model is that of the first run.",))
-    yield from model_blocks(told)
+    yield from model_blocks(case)
     if base.records:
         yield Head("Records")
         yield Words((f"{len(base.records)}: {', '.join(r.name for r in base.records)}.",))
     yield Head("Limits and warnings")
-    yield Words(tuple(f"• {text}" for text in limits(told, warnings)))
+    yield Words(tuple(f"• {text}" for text in limits(case, warnings)))
     yield Head("Origin")
     yield Words((solved_by(study.solver, study.rtol), f"SHA-256: study {study.digest[:16]}."))
 

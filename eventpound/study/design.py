@@ -9,7 +9,7 @@ stands for each combination of its axes.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -114,66 +114,46 @@ def design_numbers(
         out = Path(scratch if folder is None else folder)
         if isinstance(case, Study):
             warn_of_scales(case.plan.bases)
-            return made_of_study(case.plan, out, progress).table
+            return made_of_study(case.plan, out, progress)[0]
         own = case_of(case)
         if not own.members:
-            return made_of_run(own).table
+            return made_of_run(own)[0]
         if not own.scene.bodies:
             file = own.directory / CASE_FILE
             raise InputError(f"{file}: [[body]]: missing; design numbers are of bodies that move")
         warn_of_scales([suite_base(own)])
-        return made_of_suite(own, out, progress, workers).table
-
-
-@dataclass(frozen=True)
-class DesignRuns:
-    """Design numbers, with what they come from.
-
-    Parameters
-    ----------
-    table : DataFrame
-        A row a demand.
-    case : Case or None
-        As it was run; None of a study.
-    response : Response or None
-        Of a run.
-    runs : DataFrame or None
-        The table of all runs, of a suite or a study.
-    """
-
-    table: pd.DataFrame
-    case: Case | None = None
-    response: Response | None = None
-    runs: pd.DataFrame | None = None
+        return made_of_suite(own, out, progress, workers)[1]
 
 
 def made_of_run(
     case: Case, progress: Reached | None = None, again: Callable[[], None] | None = None
-) -> DesignRuns:
-    """Run a case once, then what its design numbers need; `again` is called in between."""
+) -> tuple[pd.DataFrame, Response]:
+    """Design numbers of a run, which is made, and the run; `again` is called in between."""
     response = response_of(asking(case), progress=progress)
     if again is not None:
         again()
-    return DesignRuns(design_of_run(response), case, response)
+    return design_of_run(response), response
 
 
 def made_of_suite(
     case: Case, out: Path, progress: Counted | None = None, workers: int | None = None
-) -> DesignRuns:
-    """Run a case under every record, with what its design numbers need."""
+) -> tuple[Case, pd.DataFrame, pd.DataFrame]:
+    """The case of a suite as it is run, its design numbers, and the table of its runs."""
     own = asking(case)
     plan = suite_plan(own, intensities=True)
     run_suite(plan, own, out, progress, workers=workers)
     runs = read_table(out, SUITE_TABLE)
-    return DesignRuns(design_of_suite(runs, own), own, runs=runs)
+    return own, design_of_suite(runs, own), runs
 
 
-def made_of_study(plan: Plan, out: Path, progress: Counted | None = None) -> DesignRuns:
-    """Make the runs of a study, with what its design numbers need."""
+def made_of_study(
+    plan: Plan, out: Path, progress: Counted | None = None
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Design numbers of a study, which is made, and the table of its runs."""
     plan = plan_asking(plan)
     run_study(plan, out, engine_of(plan.solver, None), progress)
     runs = read_table(out)
-    return DesignRuns(design_of_study(runs, plan), runs=runs)
+    return design_of_study(runs, plan), runs
 
 
 def design_of_run(response: Response) -> pd.DataFrame:

@@ -15,7 +15,7 @@ from eventpound import Body, Contact, InputError, Linear, Scene, Spring, load_ca
 from eventpound.case import read_case
 from eventpound.case.case import case_of, member_case
 from eventpound.cli import main
-from eventpound.report.design_report import Told, model_blocks
+from eventpound.report.design_report import model_blocks
 from eventpound.report.model_layout import layout_of
 from eventpound.report.record_tables import scaling_words
 from eventpound.report.sheets import Columns
@@ -165,10 +165,9 @@ def test_a_long_row_fills_the_sheet_of_its_model():
         [Spring(name, ("ground", name), Linear("9 MN/m")) for name in names],
         contacts=[Contact(b, a, b, "8 cm", 0.6) for a, b in pairwise(names)],
     )
-    told = Told(case_of(scene), pd.DataFrame(), None, None, "")
     shown = []
     for parts in (21, 40):
-        (beside,) = [b for b in model_blocks(told, parts=parts) if isinstance(b, Columns)]
+        (beside,) = [b for b in model_blocks(case_of(scene), parts=parts) if isinstance(b, Columns)]
         shown.append([[len(t.rows) for t in column if isinstance(t, Cells)]
                       for column in beside.columns])  # fmt: skip
     assert shown == [[[21, 21], [21]], [[30, 29], [30]]]

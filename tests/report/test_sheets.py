@@ -12,7 +12,7 @@ from tests.report.test_design_report import pages, printed
 def told(case: Case) -> Told:
     """The report of a single run."""
     response = simulate(case, error_estimate=False)
-    return Told(case, design_numbers(case), None, response, "")
+    return Told(case, design_numbers(case), response)
 
 
 @pytest.mark.parametrize("name", ["adjacent-buildings", "pair", "floor-to-column"])

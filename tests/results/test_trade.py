@@ -66,7 +66,7 @@ def test_a_yield_force_that_is_small_in_its_unit_is_told(tmp_path):
     )
     case = load_case(tmp_path)
     response = simulate(case, error_estimate=False)
-    sheets = design_sheets(Told(case, design_numbers(case), None, response, ""))
+    sheets = design_sheets(Told(case, design_numbers(case), response))
     # F_y = Q / (1 - alpha), of 1 / (1 - 4.93 / 54.9).
     assert ">0.000000549<" in as_html("", sheets).decode()
 
