@@ -8,8 +8,6 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from eventpound.basics.told import Reached
 from eventpound.case.case import Case, case_of
 from eventpound.case.run_options import RunOptions, Stated, with_given
@@ -23,7 +21,6 @@ from eventpound.case.solver_options import (
 )
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
-from eventpound.numerics.arrays import Floats
 from eventpound.quantities.lookup import asked, needs_energy
 from eventpound.response import Response
 from eventpound.scene.check import check_scene
@@ -311,14 +308,8 @@ def task_with(
         run_options.start_time + run_options.duration,
         options.rtol,
         options.atol,
-        output_times(run_options),
+        run_options.output_times,
         run_options.energy or needs_energy(run_options.stated.quantities),
         options.settings,
         progress,
     )
-
-
-def output_times(options: RunOptions) -> Floats:
-    """Times of the history; the last is the end of the run."""
-    count = int(np.floor(options.duration / options.output_step * (1.0 + 1e-12)))
-    return options.start_time + options.output_step * np.arange(count + 1, dtype=np.float64)

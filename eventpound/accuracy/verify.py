@@ -174,7 +174,7 @@ def _reported(task: Task, runs: Sequence[RouteRun | RouteFailure]) -> tuple[Rout
 
 def _task(case: Case, duration: float | str | None) -> Task:
     run, options = options_of(case, duration=duration, energy=False)
-    run = replace(run, output_step=run.duration / SAMPLES)
+    run = run.lasting(run.duration, run.duration / SAMPLES)
     return task_with(case.scene, run, replace(options, name="cvode", settings={}, atol={}), None)
 
 

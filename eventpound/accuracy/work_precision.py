@@ -82,7 +82,7 @@ class SolverChoice:
         run = case.run
         if self.time_step is not None:
             stride = math.ceil(run.duration / (self.time_step * MOST_ROWS))
-            run = replace(run, output_step=self.time_step * stride)
+            run = run.lasting(run.duration, self.time_step * stride)
         return task_with(case.scene, replace(run, energy=False), self.options, None)
 
 

@@ -101,15 +101,15 @@ class Case:
         """How large every record of its suite is made."""
         return RecordScaling() if self.suite is None else self.suite.options.size
 
-    def records_at(self, name: str = "", delay: float | None = None) -> dict[str, object]:
-        """What records of a suite do to the ground, or to a support or the second component.
+    def records_at(self, name: str = "") -> dict[str, object]:
+        """What is told of the records of a suite for the ground, or a support or component.
 
         Nothing of a case of one run.
         """
         if self.suite is None:
             return {}
         suite, at = self.suite, self.directory
-        return suite.told_at(name, delay, at) if name else suite.told(at)
+        return suite.told_at(name, at) if name else suite.told(at)
 
     def refuse_suite(self) -> None:
         """Raise an `InputError` for a case of many records where one run is meant."""

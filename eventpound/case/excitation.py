@@ -62,25 +62,29 @@ class Excitation:
         What was read from a file.
     suite : Suite, optional
         The records of a suite; the motion is then none.
-    largest_scale : float
-        Factor on a record beyond which is warned.
+    options : RecordOptions, optional
+        How its records are read and scaled.
+    second : Excitation, optional
+        The second component.
+    attack : float
+        Angle from x to the first component (rad).
+    across : GroundMotion
+        Motion of the second component; none where that is of a suite.
     """
 
     motion: GroundMotion
     table: Mapping[str, object]
     record: RecordData | None = None
     suite: Suite | None = None
-    largest_scale: float = LARGEST_SCALE
     options: RecordOptions | None = None
-    """How the records of a sequence are scaled, each for itself."""
     second: Excitation | None = None
-    """The second component."""
-    follows: bool = False
-    """Whether it is a second component that is scaled as the first."""
     attack: float = 0.0
-    """Angle from x to the first component (rad)."""
     across: GroundMotion = field(default_factory=NoMotion)
-    """Motion of the second component; none where that is of a suite."""
+
+    @property
+    def largest_scale(self) -> float:
+        """Factor on a record beyond which is warned."""
+        return LARGEST_SCALE if self.options is None else self.options.size.largest
 
 
 def read_excitation(table: Table, directory: Path) -> Excitation | None:
@@ -128,8 +132,7 @@ def _read(table: Table, kind: str, directory: Path, follows: bool = False) -> Ex
             case "none":
                 return Excitation(NoMotion(), {"kind": kind})
             case "record":
-                found = _read_record(table, directory, follows)
-                return None if found is None else replace(found, follows=follows)
+                return _read_record(table, directory, follows)
         return _read_formula(table, kind)
     return None
 
@@ -190,8 +193,9 @@ def _with_across(excitation: Excitation) -> Excitation:
     second, first = excitation.second, excitation.motion
     if second is None:
         return excitation
-    own = second.motion
-    if second.follows and isinstance(own, Record) and isinstance(first, Record):
+    own, options = second.motion, second.options
+    follows = options is not None and options.follows
+    if follows and isinstance(own, Record) and isinstance(first, Record):
         with told_of(where_beside(SECOND)):
             own = scaled_as(first, own)
     return replace(excitation, across=own)
@@ -205,15 +209,13 @@ def for_scene(excitation: Excitation, scene: Scene) -> Excitation:
     InputError
         Where the scene has no such period.
     """
-    suite, motion, each = excitation.suite, excitation.motion, excitation.options
-    if each is not None and each.size.psa_at and excitation.record is not None:
-        own = replace(each, size=each.size.for_scene(scene))
-        own_motion = own.motion(excitation.record)
-        return _with_across(replace(excitation, motion=own_motion, options=own))
-    if suite is not None and suite.options.size.psa_at:
-        size = suite.options.size.for_scene(scene)
-        scaled = replace(suite, options=replace(suite.options, size=size))
-        return replace(excitation, suite=scaled)
+    suite, motion, options = excitation.suite, excitation.motion, excitation.options
+    if options is not None and options.size.psa_at and (suite or options.size.each):
+        own = replace(options, size=options.size.for_scene(scene))
+        if suite is not None:
+            return replace(excitation, suite=replace(suite, options=own), options=own)
+        assert excitation.record is not None
+        return _with_across(replace(excitation, motion=own.motion(excitation.record), options=own))
     if isinstance(motion, Record) and motion.psa_at:
         period = period_called(scene, motion.psa_at)
         return _with_across(replace(excitation, motion=motion.like(psa_period=period)))
@@ -259,15 +261,14 @@ def _read_formula(table: Table, kind: str) -> Excitation | None:
 def _read_record(table: Table, directory: Path, follows: bool) -> Excitation | None:
     """A record from a file beside the case or in an installed package, or a suite of them."""
     options = read_record_options(table, directory)
-    options = None if options is None else replace(options, follows=follows)
+    options = options and replace(options, follows=follows)
     if table.has("suite") or table.has("synthetic"):
         suite = read_suite_keys(table, options)
         if suite is None:
             return None
         # What matches nothing is wrong with the case, and found before anything runs.
         suite.members(directory)
-        said, largest = understood_suite(suite), suite.options.size.largest
-        return Excitation(NoMotion(), said, None, suite, largest)
+        return Excitation(NoMotion(), understood_suite(suite), None, suite, options)
     if isinstance(table.data.get("file"), list):
         return _read_sequence(table, directory, options)
     file = table.text("file", "the file of a record")
@@ -286,10 +287,9 @@ def _read_sequence(
     if not files or options is None or not rest > 0.0:
         return None
     data = in_sequence([options.read(find_record(file, directory)) for file in files], rest)
-    said = {"file": list(files), "rest": rest, **options.said(), **options.understood()}
-    largest, each = options.size.largest, options if options.size.each else None
-    table_said = {"kind": "record", **said}
-    return Excitation(options.motion(data), table_said, data, None, largest, each)
+    given = {"kind": "record", "file": list(files), "rest": rest}
+    said = {**given, **options.said(), **options.understood()}
+    return Excitation(options.motion(data), said, data, None, options)
 
 
 def record_excitation(file: str, path: Path, options: RecordOptions) -> Excitation:
@@ -310,5 +310,4 @@ def record_excitation(file: str, path: Path, options: RecordOptions) -> Excitati
         Where it cannot be read or used.
     """
     data = options.read(path)
-    said, largest = options.of_file(file, data), options.size.largest
-    return Excitation(options.motion(data), said, data, None, largest)
+    return Excitation(options.motion(data), options.of_file(file, data), data, None, options)

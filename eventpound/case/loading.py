@@ -19,7 +19,7 @@ from eventpound.case.figure import Figure, one_or_several, read_figure
 from eventpound.case.pi import PLACEHOLDER, read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.record_scaling import large_scales
-from eventpound.case.run_options import RunOptions, read_run, to_be_placed
+from eventpound.case.run_options import RunOptions, read_run, stated_numbers, to_be_placed
 from eventpound.case.scene_tables import SceneRead, at_start, read_scene, start_time
 from eventpound.case.solver_options import default_solver, read_solver
 from eventpound.case.suite import Suite, with_suite
@@ -223,23 +223,18 @@ def _doubts(
     """What of a sound case is hardly meant so, or unlike earthquakes and structures."""
     kinds = ("dashpot", "rayleigh", "modal_damping")
     ratios = given_ratios([each for kind in kinds for each in top.tables(kind)])
-    step = options.output_step if top.table("run").has("output_step") else None
-    yield from doubts(scene, step, ratios, bare_accelerations(document), options.start_time)
-    yield from unusual(scene, _given(top, options, ratios))
+    run = stated_numbers(top.table("run"), options)
+    yield from doubts(scene, run, ratios, bare_accelerations(document), options.start_time)
+    yield from unusual(scene, _given(top, run, ratios))
 
 
 def _given(
-    top: Table, options: RunOptions, ratios: Sequence[tuple[str, float]]
+    top: Table, run: Mapping[str, float], ratios: Sequence[tuple[str, float]]
 ) -> dict[str, tuple[str, float]]:
     """Numbers of a sound case that its scene has not, by rows of `USUAL`: where, and in SI."""
-    found = {
-        "run.start_time": ("run", options.start_time),
-        "run.threshold_speed": ("run", options.stated.threshold_speed),
-    }
+    found = {f"run.{key}": ("run", value) for key, value in run.items()}
     small = [each for each in ratios if 0.0 < each[1] < SMALLEST_RATIO]
     found |= {"damping.ratio": small[0]} if small else {}
-    if top.table("run").has("duration"):
-        found["run.duration"] = "run", options.duration
     excitation = top.table("excitation")
     for key, dimension in (("rest", Dimension.TIME), ("psa_damping", Dimension.NUMBER)):
         if excitation.has(key):

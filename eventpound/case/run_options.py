@@ -13,6 +13,8 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
+import numpy as np
+
 from eventpound.basics.told import OptionWarning, warn_caller
 from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.keys import (
@@ -29,6 +31,7 @@ from eventpound.case.keys import (
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.motion.base import LARGEST, SMALLEST
+from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import LawName
 from eventpound.units import TOLD, USUAL, Dimension
@@ -152,6 +155,11 @@ class Stated:
     capacity_dimensions: tuple[tuple[str, Dimension], ...] = field(default=(), compare=False)
     fractile: float = 84.0
 
+    @property
+    def faster(self) -> str:
+        """From which closing speed on impacts count as faster, in words."""
+        return f"faster than {100.0 * self.threshold_speed:.4g} cm/s"
+
     def named(self) -> Iterator[tuple[str, str]]:
         """Names and paths of all quantities that are wanted, each after the option that says so."""
         for option, (key, usual) in keys_of(Stated).items():
@@ -227,6 +235,30 @@ class RunOptions:
         ),
     )
 
+    @property
+    def times(self) -> dict[str, float]:
+        """Its times (s), without those that each record of a suite sets for itself."""
+        times = {
+            "start": self.start_time,
+            "duration": self.duration,
+            "output_step": self.output_step,
+        }
+        return {key: value for key, value in times.items() if value == value}
+
+    @property
+    def output_times(self) -> Floats:
+        """Times of the rows of the history (s), without the end of a run that ends between two."""
+        count = int(np.floor(self.duration / self.output_step * (1.0 + 1e-12)))
+        return self.start_time + self.output_step * np.arange(count + 1, dtype=np.float64)
+
+    def lasting(self, length: float, step: float = math.nan) -> RunOptions:
+        """The same over a length (s), with rows at such steps (s), else at both ends alone.
+
+        NaN for a length that each motion sets.
+        """
+        step = length if math.isnan(step) else step
+        return replace(self, duration=length, output_step=step)
+
     def completed(self, scene: Scene) -> RunOptions:
         """The same with the times that follow from a scene and its motion where none are given.
 
@@ -264,6 +296,16 @@ def options() -> Iterator[tuple[str, Key]]:
     """Every option by its key, in the order of the page."""
     for made in (RunOptions, Stated):
         yield from ((key.name or name, key) for name, (key, _) in keys_of(made).items())
+
+
+def stated_numbers(table: Table, options: RunOptions) -> dict[str, float]:
+    """Numbers that ``[run]`` states, by their keys (SI)."""
+    return {
+        name: getattr(owner, name)
+        for made, owner in ((RunOptions, options), (Stated, options.stated))
+        for name, (key, _) in keys_of(made).items()
+        if key.dimension is not None and table.has(name)
+    }
 
 
 def to_be_placed(run: object) -> bool:

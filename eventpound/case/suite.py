@@ -220,12 +220,10 @@ class Suite:
         scaling = self.options.size.words()
         return {"suite": len(self.members(directory)), **({"scaling": scaling} if scaling else {})}
 
-    def told_at(self, name: str, delay: float | None, directory: Path) -> dict[str, object]:
-        """What its records do to a support or the second component; nothing where none go there."""
+    def told_at(self, name: str, directory: Path) -> dict[str, object]:
+        """What is told of the records of a support or the second component, where it has some."""
         own = dict(self.beside).get(name)
-        if own is not None:
-            return {"suite": len(own.members(directory))}
-        return {} if delay is None else {"delay": delay}
+        return {} if own is None else {"suite": len(own.members(directory))}
 
     def _own_members(self, directory: Path) -> list[Member]:
         """The motions of the ground."""

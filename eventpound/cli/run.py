@@ -209,9 +209,8 @@ def _summary(response: Response) -> Iterator[str]:
         resting = float(sum(recording.resting_time))
         # Some solvers do not know it.
         rested = "" if math.isnan(resting) else f"; resting {resting:.4f} s in all contacts"
-        speed = 100.0 * response.stated.threshold_speed
         faster = response.runs.contact_numbers.impacts_faster.sum()
-        counted = f"{response.impacts}, {faster:.0f} faster than {speed:.4g} cm/s"
+        counted = f"{response.impacts}, {faster:.0f} {response.stated.faster}"
         yield f"impacts   {counted}{rested}"
     yield from _demands(response)
     x = recording.displacement

@@ -119,8 +119,7 @@ def _summary(case: Case, table: pd.DataFrame) -> Iterator[str]:
     if case.scene.contacts:
         struck = int((done["impacts"] > 0).sum())
         faster = sum(done[f"contacts.{c.name}.impacts_faster"].sum() for c in case.scene.contacts)
-        speed = f"{100.0 * case.run.stated.threshold_speed:.4g} cm/s"
-        counted = f"{int(done['impacts'].sum())}, {int(faster)} faster than {speed}"
+        counted = f"{int(done['impacts'].sum())}, {int(faster)} {case.run.stated.faster}"
         yield f"impacts   {counted}, under {struck} of {len(done)} records"
     if "error_estimate" in done:
         yield f"error     {done['error_estimate'].max():.1e} of the peaks, estimated, at most"

@@ -34,9 +34,8 @@ from eventpound.problems.collection import (
 )
 from eventpound.problems.page import problem_page, set_page
 from eventpound.problems.plan import plan_conventions, plan_numbers, plan_rows
-from eventpound.results.export import arrays_of, sampled_signals
+from eventpound.results.export import arrays_of, refuse_other_laws, sampled_signals
 from eventpound.results.jsontext import canonical
-from eventpound.scene.contact_law import NEWTON
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BoucWen, Hysteretic, Spring
@@ -155,8 +154,7 @@ def problem_json(collection: Collection, problem: ProblemFolder) -> dict[str, ob
             f"{problem.folder}: has supports, forces or contacts with a law, for which the files "
             "of a problem have no place; `eventpound run CASE --export DIR` writes such a case"
         )
-    if scene.impact_law != NEWTON:
-        raise InputError(f"{problem.folder}: impact_law = {scene.impact_law!r}; accepted: {NEWTON}")
+    refuse_other_laws(scene, str(problem.folder))
     start, end = run.start_time, run.start_time + run.duration
     return {
         "set": f"{collection.name} {collection.version}",

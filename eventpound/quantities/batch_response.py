@@ -202,7 +202,7 @@ def keep_rows(many: BatchResponse, low: int, rows: VariantArrays, kept: Kept) ->
     _keep_extremes(many, at, found)
     if many.struck is not None:
         largest = np.maximum(extremes_of("contact_force", table, places).maximum, 0.0)
-        threshold = many.stated.threshold_speed
+        threshold = many.threshold
         numbers = numbers_of_contacts(_impacts(kept.log), largest, kept.unique, threshold)
         for column, values in zip(many.struck, numbers, strict=True):
             column[at] = values[own]
@@ -237,7 +237,7 @@ def keep_recording(many: BatchResponse, i: int, recording: Recording) -> None:
         if event.kind in STRIKES:
             many.impacts[i, event.contact] += event.count
     if many.struck is not None:
-        numbers = of_recordings([recording], many.stated.threshold_speed)
+        numbers = of_recordings([recording], many.threshold)
         for column, own in zip(many.struck, numbers, strict=True):
             column[i] = own[0]
     _keep_extremes(many, i, lambda kind: getattr(recording, kind))

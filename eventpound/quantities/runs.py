@@ -182,11 +182,16 @@ class Runs:
         """Values of a quantity by its name, shape (n,), which the list of quantities gives."""
         raise NotImplementedError
 
+    @property
+    def threshold(self) -> float:
+        """Closing speed from which on an impact counts as faster (m/s)."""
+        return self.stated.threshold_speed
+
     @cached_property
     def contact_numbers(self) -> ContactNumbers:
         """Numbers of the contacts; NaN where impacts were not kept."""
         if self.struck is not None:
             return self.struck
         if self.recordings:
-            return of_recordings(self.recordings, self.stated.threshold_speed)
+            return of_recordings(self.recordings, self.threshold)
         return blank_numbers(self.t.size, len(self.scene.contacts))

@@ -111,8 +111,7 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
         follow another law than Newton's.
     """
     case.refuse_suite()
-    if (law := case.scene.impact_law) != NEWTON:
-        raise InputError(f"export: found impact_law = {law!r}; accepted: {NEWTON}")
+    refuse_other_laws(case.scene, "export")
     warn_left_out(case.run, Way.EXPORT)
     start, end = case.run.start_time, case.run.start_time + case.run.duration
     scene_json = {"title": case.title, "start": start, "end": end} | _scene(case.scene, start)
@@ -123,6 +122,12 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
         directory,
         {"motion.csv": f"{','.join(columns)}\n{lines}".encode(), "scene.json": to_json(scene_json)},
     )
+
+
+def refuse_other_laws(scene: Scene, where: str) -> None:
+    """Refuse impacts by another law than Newton's; a message begins with where that is."""
+    if scene.impact_law != NEWTON:
+        raise InputError(f"{where}: found impact_law = {scene.impact_law!r}; accepted: {NEWTON}")
 
 
 def _motion_columns(scene: Scene, start: float, end: float) -> dict[str, Floats]:

@@ -16,7 +16,6 @@ import numpy as np
 
 from eventpound.case.case import Case
 from eventpound.case.decks import is_of_deck
-from eventpound.case.run_options import RunOptions
 from eventpound.case.suite import SECOND
 from eventpound.case.understood import contact_law_keys, sources_of
 from eventpound.errors import InputError
@@ -91,7 +90,7 @@ def inputs_of(case: Case) -> dict[str, Any]:
         "structures": [_structure(resting, group) for group in structures_of(scene)],
         "motion": _motion(case),
         **_second(case),
-        "run": _run(case.run),
+        "run": case.run.times,
         "solver": {"name": case.solver.name, "rtol": case.solver.rtol, **case.solver.settings},
         "pi": pi_terms(scene) if scene.bodies else {},
         "pi_number": number_of_terms(scene),
@@ -135,17 +134,17 @@ def _driven(case: Case) -> dict[str, list[Row]]:
     """Supports and forces, a row each; nothing of a scene that has none."""
     scene, found = case.scene, dict[str, list[Row]]()
     if scene.supports:
-        end = case.run.start_time + case.run.duration
+        end, shaken = case.run.start_time + case.run.duration, case.records_at()
         rows = []
         for support in scene.supports:
             row: Row = {"name": support.name, "kind": support.moved_by(scene.motion).kind}
             rows.append(row)
-            if told := case.records_at(support.name, support.delay):
-                row |= {"kind": "record", **told}
+            own = case.records_at(support.name)
+            row |= own if support.delay is None else {"delay": support.delay}
+            if own or (shaken and support.delay is not None):
+                row["kind"] = "record"
                 continue
-            if support.delay is not None:
-                row["delay"] = support.delay
-            elif (motion := support.motion) is not None and moves(motion):
+            if (motion := support.motion) is not None and moves(motion):
                 scales = motion.scales()
                 row |= {"a_g": peak_of(motion)}
                 row |= {} if scales is None else {"period": scales.period}
@@ -165,16 +164,6 @@ def _driven(case: Case) -> dict[str, list[Row]]:
             for force in scene.forces
         ]
     return found
-
-
-def _run(options: RunOptions) -> Row:
-    """Options; what each record of a suite sets for itself is left out."""
-    times = {
-        "start": options.start_time,
-        "duration": options.duration,
-        "output_step": options.output_step,
-    }
-    return {key: value for key, value in times.items() if value == value}
 
 
 def _mass_on(case: Case, spring: Spring) -> float | None:

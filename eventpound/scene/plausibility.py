@@ -48,7 +48,7 @@ Doubt = tuple[str, str]
 
 def doubts(
     scene: Scene,
-    output_step: float | None = None,
+    run: Mapping[str, float] | None = None,
     ratios: Sequence[tuple[str, float]] = (),
     bare: Sequence[tuple[str, float]] = (),
     start: float = 0.0,
@@ -59,8 +59,8 @@ def doubts(
     ----------
     scene : Scene
         Without problems.
-    output_step : float, optional
-        Distance of the rows of the history (s), where somebody chose it.
+    run : mapping of str to float, optional
+        Numbers that somebody chose for ``[run]``, by their keys (SI).
     ratios : sequence of tuple of str and float
         Damping ratios that were given, and what each stands in.
     bare : sequence of tuple of str and float
@@ -86,7 +86,7 @@ def doubts(
         *_load_doubts(scene),
         *(_ratio_doubts(ratios) or _damping_doubts(standing)),
         *_isolation_doubts(scene),
-        *_period_doubts(standing, output_step),
+        *_period_doubts(standing, (run or {}).get("output_step")),
         *_gap_doubts(scene),
     )
     for kind, text in found:
@@ -262,7 +262,7 @@ def _isolation_doubts(scene: Scene) -> Iterator[Doubt]:
         )
 
 
-def _period_doubts(scene: Scene, output_step: float | None) -> Iterator[Doubt]:
+def _period_doubts(scene: Scene, step: float | None) -> Iterator[Doubt]:
     frames = of_frames(scene)
     shortest = {name: T for name, T in local_periods(scene).items() if name not in frames}
     for name, period in shortest.items():
@@ -279,10 +279,10 @@ def _period_doubts(scene: Scene, output_step: float | None) -> Iterator[Doubt]:
         if longest is not None and longest > PERIOD.most:
             yield "long period", PERIOD.doubt(longest)
     least = min(shortest.values(), default=0.0)
-    if output_step is not None and output_step > least / ROWS_A_PERIOD:
+    if step is not None and step > least / ROWS_A_PERIOD:
         yield (
             "output step",
-            f"run: an output_step of {output_step:.3g} s leaves fewer than {ROWS_A_PERIOD:g} rows "
+            f"run: an output_step of {step:.3g} s leaves fewer than {ROWS_A_PERIOD:g} rows "
             f"of the history to the shortest period, {least:.3g} s (peaks and events are exact "
             "all the same)",
         )

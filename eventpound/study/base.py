@@ -125,7 +125,7 @@ def base_of(
     case = case_of(given)
     run, own = case.run, not math.isnan(length)
     if own:
-        run = replace(run, duration=length, output_step=length)
+        run = run.lasting(length)
     sets_length = not math.isnan(run.duration)
     if not records:
         case.refuse_suite()

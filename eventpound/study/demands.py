@@ -206,7 +206,7 @@ def words_of(scene: Scene, demand: Demand, stated: Stated) -> dict[str, object]:
     named, quantity = demand.named, demand.named.quantity
     called = quantity.called
     if quantity.path == _FASTER:
-        called = f"impacts faster than {100.0 * stated.threshold_speed:.4g} cm/s"
+        called = f"impacts {stated.faster}"
     return {
         "kind": demand.kind.name,
         "quantity": named.name,

@@ -160,14 +160,7 @@ def _run(solver: str, scene: Scene, energy: bool = False, events: str | None = N
     # What cannot be computed has been compiled all the same.
     with contextlib.suppress(ComputationError):
         response_of(
-            scene,
-            solver,
-            1e-6,
-            duration=3.0,
-            output_step=0.05,
-            energy=energy,
-            settings=settings,
-            max_steps=most,
+            scene, solver, 1e-6, duration=3.0, energy=energy, settings=settings, max_steps=most
         )
 
 

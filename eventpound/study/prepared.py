@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from eventpound.basics.given import checked
 from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions, Way, refuse_options
@@ -16,7 +14,7 @@ from eventpound.response import Response
 from eventpound.scene.check import motion_problems
 from eventpound.scene.parameters import motion_with, number_places
 from eventpound.scene.scene import Scene
-from eventpound.simulation import ReadyScene, check_case, made_ready, options_of, output_times
+from eventpound.simulation import ReadyScene, check_case, made_ready, options_of
 from eventpound.solvers.base import Solver, Task
 from eventpound.study.axes import given_axes
 from eventpound.study.base import Base, base_of
@@ -85,9 +83,7 @@ def prepare(
     run, options = options_of(case, duration=duration, output_step=output_step, energy=energy)
     length = float("nan") if duration is None else run.duration
     step = float("nan") if output_step is None else run.output_step
-    if output_step is None:
-        run = replace(run, output_step=run.duration)
-    ready = made_ready(case, run, options, solver, rtol, settings)
+    ready = made_ready(case, run.lasting(run.duration, step), options, solver, rtol, settings)
     base = base_of(case, (), (), SolverOptions(), length)
     return Prepared(base, ready, replace(run, output_step=step))
 
@@ -179,6 +175,5 @@ class Prepared:
         """The task with another length (s)."""
         if length == task.end - task.start:
             return task
-        step = length if np.isnan(self._run.output_step) else self._run.output_step
-        run = replace(self._run, duration=length, output_step=step)
-        return replace(task, end=task.start + length, output_times=output_times(run))
+        run = self._run.lasting(length, self._run.output_step)
+        return replace(task, end=task.start + length, output_times=run.output_times)

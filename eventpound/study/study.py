@@ -99,7 +99,7 @@ class Study:
         if records:
             # Each of these sets its own.
             case = case_of(case)
-            case = replace(case, run=replace(case.run, duration=math.nan, output_step=math.nan))
+            case = replace(case, run=case.run.lasting(math.nan))
         check_case(case)
         base = described(base_of(case, varied, members, options, length))
         columns = (*([RECORD] if base.records else []), *axes)

@@ -18,7 +18,6 @@ import numpy as np
 
 from eventpound.basics.told import Counted
 from eventpound.case.case import Case
-from eventpound.case.defaults import default_output_step
 from eventpound.case.solver_options import FAST
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.base import GroundMotion
@@ -37,7 +36,7 @@ from eventpound.response import Response
 from eventpound.scene.check import check_scene, motion_problems
 from eventpound.scene.parameters import Place, motion_with, number_places, with_values
 from eventpound.scene.spring import LawName
-from eventpound.simulation import ReadyScene, options_of, output_times, task_with
+from eventpound.simulation import ReadyScene, options_of, task_with
 from eventpound.solvers import solver_named
 from eventpound.study.checked_numbers import variants_to_check
 from eventpound.study.variants import Rows, complete
@@ -213,18 +212,11 @@ class Sweep:
         """The task of the scene with the motion, the length and the rows of one row."""
         task, run, lengths = self.variants.task, self.rows.case.run, self.rows.lengths
         assert lengths is not None
-        motion = self.variants.motions[self.variants.motion_of[i]]
-        length = step = float(lengths[i])
-        if self.wanted.keep is not None:
-            step = run.output_step
-            if np.isnan(step):
-                step = default_output_step(motion, length)
-        return replace(
-            task,
-            scene=replace(task.scene, motion=motion),
-            end=task.start + length,
-            output_times=output_times(replace(run, duration=length, output_step=step)),
-        )
+        scene = replace(task.scene, motion=self.variants.motions[self.variants.motion_of[i]])
+        length = float(lengths[i])
+        all_rows = self.wanted.keep is not None
+        run = replace(run, duration=length).completed(scene) if all_rows else run.lasting(length)
+        return replace(task, scene=scene, end=task.start + length, output_times=run.output_times)
 
 
 def variants_of(rows: Rows, wanted: WantedRuns) -> tuple[Rows, Variants]:
@@ -281,7 +273,8 @@ def _motions_of(rows: Rows, shaking: Mapping[Place, Floats]) -> tuple[list[Groun
 
 def _task(case: Case, wanted: WantedRuns, length: float) -> Task:
     energy = needs_energy(wanted.quantities) or None
-    run, options = options_of(case, duration=length, output_step=length, energy=energy)
+    case = replace(case, run=case.run.lasting(length))
+    run, options = options_of(case, energy=energy)
     options = replace(options, name=wanted.solver, rtol=wanted.rtol)
     return task_with(case.scene, run, options, None)
 

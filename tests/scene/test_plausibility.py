@@ -44,7 +44,7 @@ def record(time_step: float) -> Record:
 
 
 def test_a_usual_scene_is_silent():
-    assert doubts(USUAL, 0.005, [("[[dashpot]] 1", 0.3)]) == []
+    assert doubts(USUAL, {"output_step": 0.005}, [("[[dashpot]] 1", 0.3)]) == []
     assert doubts(replace(USUAL, motion=record(0.01))) == []
     assert doubts(replace(USUAL, motion=Record(np.array([0.0, 1.0, -2.0, 0.0]), 0.1))) == []
 
@@ -92,7 +92,7 @@ def test_a_deck_on_sliders_that_do_not_carry_it(force, silent):
 
 
 def test_a_chosen_step_that_is_too_coarse():
-    (text,) = doubts(USUAL, 0.5)
+    (text,) = doubts(USUAL, {"output_step": 0.5})
     assert text.startswith("run: an output_step of 0.5 s leaves fewer than 10 rows")
 
 
