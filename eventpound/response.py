@@ -11,32 +11,28 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eventpound.basics.given import checked, number, positive
+from eventpound.basics.when_asked import made_when_asked
 from eventpound.case.run_options import DEFAULTS, Stated
 from eventpound.contact.event import STRIKES
 from eventpound.errors import EventpoundError, InputError
-from eventpound.mechanics.supported import components
-from eventpound.motion.base import GroundMotion
-from eventpound.motion.record import Record
 from eventpound.motion.scaling import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.apart import avoiding_gaps
-from eventpound.quantities.base import SIX, TakenFrom, pi_unit
+from eventpound.quantities.base import TakenFrom
 from eventpound.quantities.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.quantities.between import Between
-from eventpound.quantities.decks import translates, turned_far
+from eventpound.quantities.decks import turned_far
+from eventpound.quantities.history import event_table, history_at, history_table
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_of
-from eventpound.quantities.owners import owners_of
-from eventpound.quantities.rows import rows_at, settled, shocks_of, warn_unsettled
-from eventpound.quantities.spring_events import SpringEvent, spring_events
+from eventpound.quantities.rows import shock_at, shocks_of
+from eventpound.quantities.spring_events import spring_event_table
+from eventpound.quantities.tables import parts_table, peaks_table, pi_numbers
 from eventpound.scene.continuation import FinalState, continued, state_of
 from eventpound.scene.pi_columns import ScaleColumns
-from eventpound.scene.pi_terms import pi_terms
-from eventpound.scene.plan_point import ACROSS
 from eventpound.scene.scene import Scene
 from eventpound.solvers import lists_springs, solver_named
-from eventpound.solvers.base import Energy, Event, EventKind, Recording, Task, Work
-from eventpound.solvers.supported import ground_accelerations
+from eventpound.solvers.base import Energy, EventKind, Recording, Task, Work
 from eventpound.units import Dimension
 
 if TYPE_CHECKING:
@@ -44,6 +40,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@made_when_asked("task", "recording")
 @dataclass(frozen=True, eq=False)
 class Response:
     """The motion of a scene, as tables; equal to nothing but itself.
@@ -122,7 +119,7 @@ class Response:
             recordings=(self.recording,),
             scales=None if scales is None else ScaleColumns(scales.a_g, scales.omega_g),
             stated=self.stated,
-            free=self._free,
+            free=lambda name: values_of(self.without_contact.runs, name),
             between=lambda: self._motion_between,
             apart=self._avoiding_gaps,
         )
@@ -141,9 +138,8 @@ class Response:
 
     def numbers(self) -> dict[str, float | int | bool | None]:
         """What `summary` holds, as a dictionary."""
-        runs = self.runs
         beside = [q for q in LISTED if not q.tabled and q.source is TakenFrom.EXTREMES]
-        known = (*tabled(runs), *all_of(self.scene, beside))
+        known = (*tabled(runs := self.runs), *all_of(self.scene, beside))
         return {named.name: named.of_one(runs) for named in known} | dict(self.named)
 
     @checked
@@ -174,10 +170,10 @@ class Response:
 
     @cached_property
     def named(self) -> Mapping[str, float | None]:
-        """Quantities that the case names, and base shears of supports, by their names."""
+        """Quantities that the case names, and shears of supports, which cost a few short runs."""
         names = asked([(self.scene, self.stated)])
         if self.success and self.scene.supports:
-            names += chosen(self.scene, [SHEAR_OF_SUPPORTS])
+            names += chosen(self.scene, ["supports.<support>.*_shear"])
         return {name: self.quantity(name) for name in dict.fromkeys(names)}
 
     @property
@@ -198,7 +194,7 @@ class Response:
         rows: list[dict[str, Any]] = []
         for task, state in shocks_of(self.task, self._rerun):
             row: dict[str, Any] = {"shock": len(rows) + 1, "start": task.start, "end": task.end}
-            row |= _shock_at(self.scene.motion, task.start)
+            row |= shock_at(self.scene.motion, task.start)
             try:
                 scene = self.scene if state is None else continued(self.scene, state, task.start)
                 own = replace(self, in_equilibrium=self.in_equilibrium and state is None)
@@ -242,9 +238,6 @@ class Response:
     def _motion_between(self) -> Between:
         return Between(self.task, self._rerun)
 
-    def _free(self, name: str) -> Floats | None:
-        return values_of(self.without_contact.runs, name)
-
     def _rerun(self, task: Task) -> Recording:
         return solver_named(self.solver).solve(task)
 
@@ -282,30 +275,13 @@ class Response:
         ComputationError
             Where the run fails.
         """
-        names = [each.name for each in self.scene.bodies]
-        wanted = [body] if isinstance(body, str) else list(body)
-        # A deck that turns shakes no oscillator on a line.
-        known = [each.name for i, each in enumerate(self.scene.bodies) if translates(self.scene, i)]
-        if unknown := [name for name in wanted if name not in known] or (not wanted and ["none"]):
-            raise InputError(f"body: found {', '.join(unknown)}; accepted: {', '.join(known)}")
         several = [damping] if isinstance(damping, float | int | str) else damping
-        ratios = [read_damping(each) for each in several]
-        period = read_periods(periods)
+        ratios, period = [read_damping(each) for each in several], read_periods(periods)
         # Brings Numba, which `check` does without.
-        from eventpound.quantities.floor import floor_table, largest_responses
+        from eventpound.quantities.floor import floor_table
 
-        places = [names.index(name) for name in wanted]
-
-        def numbers(recording: Recording) -> dict[str, tuple[Floats, Floats]]:
-            found = largest_responses(recording.history, self.scene, places, period, ratios)
-            return {"floor spectrum": (found, found)}
-
-        found, apart = settled(self.task, self._rerun, numbers)
-        warn_unsettled("floor spectrum", apart["floor spectrum"])
-        table = floor_table(found["floor spectrum"][0], wanted, period, ratios)
-        units = {"body": "", "damping": "", "period": "s", "SD": "m", "PSV": "m/s"}
-        table.attrs["units"] = units | {"PSA": "m/s^2", "PSA_g": "g", "SA": "m/s^2"}
-        return table
+        names = [body] if isinstance(body, str) else list(body)
+        return floor_table(self.task, self._rerun, names, period, ratios)
 
     @property
     def peaks(self) -> pd.DataFrame:
@@ -314,28 +290,17 @@ class Response:
         Columns max, t_max, min, t_min, abs_max, t_abs_max (m, s): first
         attainments over the whole run, located exactly.
         """
-        import pandas as pd
-
-        runs = self.runs
-        table = pd.DataFrame(
-            {
-                word: [float(pick(runs.displacement, i)[0]) for i in range(runs.u.shape[1])]
-                for word, (_, pick) in SIX.items()
-            },
-            index=pd.Index([body.name for body in self.scene.bodies], name="body"),
-        )
-        table.attrs["units"] = {word: "s" if word.startswith("t_") else "m" for word in SIX}
-        return table
+        return peaks_table(self.runs)
 
     @property
     def springs(self) -> pd.DataFrame:
         """Quantities of the springs, one row a spring, and those that the case names (SI)."""
-        return self._table("springs", "spring")
+        return parts_table(self.scene, self.summary, "spring")
 
     @property
     def contacts(self) -> pd.DataFrame:
         """Quantities of the contacts, one row a contact, and those that the case names (SI)."""
-        return self._table("contacts", "contact")
+        return parts_table(self.scene, self.summary, "contact")
 
     @property
     def pi(self) -> pd.Series[float]:
@@ -345,33 +310,7 @@ class Response:
         """
         import pandas as pd
 
-        found: dict[str, float] = dict(pi_terms(self.scene))
-        scales, mass = self.scene.motion.scales(), self.scene.bodies[0].mass
-        runs = self.runs
-        for named in tabled(runs) if scales is not None else ():
-            unit = pi_unit(named.quantity.dimension, scales, mass) if scales else 1.0
-            if named.quantity.dimension.unit:
-                found[named.name] = float(named.of(runs)[0]) / unit
-        return pd.Series(found, name="pi")
-
-    def _table(self, kind: str, owner: str) -> pd.DataFrame:
-        """Quantities of one kind of parts, a row each, with units in ``attrs``."""
-        import pandas as pd
-
-        rows: dict[str, dict[str, object]] = {}
-        units: dict[str, str] = {}
-        values = self.summary
-        for named in all_of(self.scene):
-            path = named.quantity.path
-            if path.startswith(f"{kind}.<{owner}>.") and named.name in values:
-                column = path.rpartition(">.")[2]
-                name = owners_of(self.scene, owner)[named.i]
-                rows.setdefault(name, {})[column] = values[named.name]
-                units[column] = named.quantity.dimension.unit
-        table = pd.DataFrame.from_dict(rows, orient="index")
-        table.index.name = owner
-        table.attrs["units"] = units
-        return table
+        return pd.Series(pi_numbers(self.runs), name="pi")
 
     @property
     def events(self) -> pd.DataFrame:
@@ -379,9 +318,7 @@ class Response:
 
         One row a contact, columns as in ``events.csv``; contacts are named.
         """
-        import pandas as pd
-
-        return pd.DataFrame(self.event_rows(), columns=list(EVENT_COLUMNS))
+        return event_table(self.scene, self.recording)
 
     @property
     def spring_events(self) -> pd.DataFrame:
@@ -392,24 +329,9 @@ class Response:
         InputError
             Where the solver does not tell.
         """
-        import pandas as pd
-
         if not lists_springs(solver_named(self.solver), self.scene):
             raise InputError(f"spring_events: {self.solver} does not list events of springs")
-        found = spring_events(self.scene, self.recording)
-        table = pd.DataFrame(found, columns=list(SpringEvent._fields))
-        # Of an empty table, too.
-        numbers = {"time_s": float, "direction": int, "elongation_m": float, "force_N": float}
-        kinds = [event.kind.value for event in found]
-        return table.assign(kind=kinds).astype(numbers | {"spring": str, "kind": str})
-
-    def event_rows(self) -> list[tuple[Any, ...]]:
-        """Rows of `events`."""
-        names = [contact.name for contact in self.scene.contacts]
-        listed: Sequence[Event] = self.recording.events
-        if self.recording.slides:
-            listed = sorted((*listed, *self.recording.slides), key=lambda e: e.t)
-        return [(e.t, e.kind.value, e.group, names[e.contact], *e[4:]) for e in listed]
+        return spring_event_table(self.scene, self.recording)
 
     @property
     def history(self) -> pd.DataFrame:
@@ -430,15 +352,8 @@ class Response:
             Whether an event has two rows, before and after; without, times increase and an
             event has the row after it, as interpolators and transforms want it.
         """
-        import pandas as pd
-
-        table = pd.DataFrame(self.history_columns())
-        if not jumps:
-            table = table.drop_duplicates("t", keep="last", ignore_index=True)
-        table.attrs["units"] = {
-            name: HISTORY_UNITS.get(name.partition(".")[0], "") for name in table
-        }
-        return table
+        table = history_table(self.scene, self.recording)
+        return table if jumps else table.drop_duplicates("t", keep="last", ignore_index=True)
 
     @checked
     def at(
@@ -477,47 +392,7 @@ class Response:
         """
         times = np.array([number("t", x, Dimension.TIME) for x in np.atleast_1d(t).tolist()])
         interval = positive("logger", logger, Dimension.TIME)
-        earlier = np.empty(0) if interval is None else np.maximum(times - interval, self.task.start)
-        both = np.concatenate([times, earlier])
-        recording, places = rows_at(self.task, self._rerun, both, side)
-        rows = replace(self, recording=recording).rows().iloc[places].reset_index(drop=True)
-        table = rows[: times.size].assign(t=times)
-        for body in self.scene.bodies if earlier.size else ():
-            speed = rows[f"v.{body.name}"].to_numpy(copy=True)
-            for signal, part in components(self.scene, body.direction):
-                speed += part * signal.velocity(both)
-            gained = speed.reshape(2, -1)
-            taken, smooth = times - earlier, table[f"a.{body.name}"].to_numpy(copy=True)
-            logged = np.divide(gained[0] - gained[1], taken, out=smooth, where=taken > 0.0)
-            table[f"logged.{body.name}"] = logged
-            table.attrs["units"][f"logged.{body.name}"] = HISTORY_UNITS["a"]
-        return table
-
-    def history_columns(self) -> dict[str, Floats]:
-        """Columns of `history`, by their names."""
-        h = self.recording.history
-        columns = {"t": h.t, "a_g": h.ground}
-        if self.scene.in_plan:
-            columns["a_across"] = ground_accelerations(self.scene, ACROSS, h)
-        springs = [i for i, spring in enumerate(self.scene.springs) if spring.frame is None]
-        for prefix, values, names in (
-            ("u", h.u, [b.name for b in self.scene.bodies]),
-            ("v", h.v, [b.name for b in self.scene.bodies]),
-            ("a", h.a, [b.name for b in self.scene.bodies]),
-            *((name, h.z[:, [i]], [s]) for i, (s, name) in enumerate(self.scene.memory)),
-            ("force", h.force[:, springs], [self.scene.springs[i].name for i in springs]),
-            ("gap", h.gap, [c.name for c in self.scene.contacts]),
-            ("lambda", h.contact_force, [c.name for c in self.scene.contacts]),
-        ):
-            for column, name in enumerate(names):
-                columns[f"{prefix}.{name}"] = values[:, column]
-        supports = self.recording.supports
-        if supports is not None:
-            for column, support in enumerate(self.scene.supports):
-                columns[f"s.{support.name}"] = supports.s[:, column]
-                columns[f"sv.{support.name}"] = supports.sv[:, column]
-                columns[f"sf.{support.name}"] = supports.force[:, column]
-        return columns
+        return history_at(self.task, self._rerun, times, side, interval)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the displacements of the bodies, with circles at impacts.
@@ -556,8 +431,8 @@ class Response:
         peaks = self.peaks["abs_max"]
         largest = f"largest |u| {peaks.max():.6g} m ({peaks.idxmax()})"
         impacts = f"{self.impacts} impact{'s' * (self.impacts != 1)}"
-        run = f"{self.task.start:g} to {self.recording.t:g} s, {impacts}"
-        return f"<Response by {self.solver}, rtol {self.task.rtol:g}: {run}, {largest}{ended}>"
+        run = f"{self.task.start:g} to {self.recording.t:g} s, {impacts}, {largest}{ended}"
+        return f"<Response by {self.solver}, rtol {self.task.rtol:g}: {run}>"
 
     def _repr_html_(self) -> str:
         tables = [self.peaks, *([self.contacts] if self.scene.contacts else [])]
@@ -573,53 +448,3 @@ class Response:
     def impacts(self) -> int:
         """Number of impacts, those that accumulations stand for included."""
         return sum(e.count for e in self.recording.events if e.kind in STRIKES)
-
-
-def _shock_at(motion: GroundMotion, t: float) -> dict[str, Any]:
-    """Name and factor of the record of a sequence that is going on at a time (s)."""
-    if not isinstance(motion, Record) or not motion.shocks:
-        return {}
-    number = max(int(np.searchsorted(motion.begins, t, "right")) - 1, 0)
-    name, factor = motion.shocks[number]
-    return {"record": name, "scale": factor}
-
-
-class _MadeWhenAsked:
-    """A field of a frozen dataclass that may be given as a function, which is called once."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-
-    def __get__(self, owner: object, kind: type | None = None) -> Any:
-        if owner is None:
-            return self
-        value = owner.__dict__[self._name]
-        if callable(value):
-            value = owner.__dict__[self._name] = value()
-        return value
-
-    def __set__(self, owner: object, value: object) -> None:
-        owner.__dict__[self._name] = value
-
-
-# Once the class is made, for which these would be defaults of the fields.
-for _field in ("task", "recording"):
-    setattr(Response, _field, _MadeWhenAsked(_field))
-HISTORY_UNITS = {
-    "t": "s",
-    "a_g": "m/s^2",
-    "a_across": "m/s^2",
-    "u": "m",
-    "v": "m/s",
-    "a": "m/s^2",
-    "force": "N",
-    "gap": "m",
-    "lambda": "N",
-    "s": "m",
-    "sv": "m/s",
-    "sf": "N",
-}
-"""Of the columns of a history, by what stands before the name; a memory's have none."""
-SHEAR_OF_SUPPORTS = "supports.<support>.*_shear"
-"""Stands in every summary; beside the motion it costs a few short runs."""
-EVENT_COLUMNS = Event._fields

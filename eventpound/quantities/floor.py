@@ -24,20 +24,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eventpound.mechanics.supported import components
+from eventpound.errors import InputError
 from eventpound.motion.scaling import spectrum_columns
 from eventpound.motion.swing import largest_swings
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities.decks import translates
+from eventpound.quantities.rows import Rerun, settled, warn_unsettled
 from eventpound.scene.scene import Scene
-from eventpound.solvers.base import History
+from eventpound.solvers.base import History, Recording, Task
+from eventpound.solvers.supported import of_ground
 
 if TYPE_CHECKING:
     import pandas as pd
+
+_NAME = "floor spectrum"
+"""What a warning calls it."""
 
 
 def largest_responses(
@@ -64,10 +69,9 @@ def largest_responses(
     h[h < np.finfo(float).tiny] = 0.0
     found = np.zeros((len(bodies), len(ratios), periods.size, 2))
     for i, b in enumerate(bodies):
-        place, rate = np.zeros(t.size), np.zeros(t.size)
-        for signal, part in components(scene, scene.bodies[b].direction):
-            place, rate = place + part * signal.displacement(t), rate + part * signal.velocity(t)
-        u, v, a = history.u[:, b] + place, history.v[:, b] + rate, history.a[:, b]
+        way = scene.bodies[b].direction
+        u = history.u[:, b] + of_ground(scene, way, "displacement", t)
+        v, a = history.v[:, b] + of_ground(scene, way, "velocity", t), history.a[:, b]
         push = _quintic_push(u, v, a, h)
         for j, ratio in enumerate(ratios):
             largest_swings(h, push, np.diff(v), 2.0 * math.pi / periods, ratio, found[i, j])
@@ -85,24 +89,61 @@ def _quintic_push(u: Floats, v: Floats, a: Floats, h: Floats) -> Floats:
 
 
 def floor_table(
-    found: Floats, bodies: Sequence[str], periods: Floats, ratios: Sequence[float]
+    task: Task, rerun: Rerun, names: Sequence[str], periods: Floats, ratios: Sequence[float]
 ) -> pd.DataFrame:
-    """Floor spectra from `largest_responses`.
+    """Floor spectra over a run, made again with rows close together.
+
+    Parameters
+    ----------
+    task : Task
+        What was asked.
+    rerun : callable
+        Runs a task.
+    names : sequence of str
+        Of the bodies.
+    periods : ndarray, shape (k,)
+        T (s).
+    ratios : sequence of float
+        Ratios of critical damping, each below 1.
 
     Returns
     -------
     DataFrame
         Columns body, damping, period (s), SD (m), PSV (m/s), PSA (m/s^2), PSA_g (g) and
         SA (m/s^2).
+
+    Raises
+    ------
+    InputError
+        Where a body is not known.
+    ComputationError
+        Where the run fails.
     """
     import pandas as pd
 
+    scene = task.scene
+    every = [body.name for body in scene.bodies]
+    # A deck that turns shakes no oscillator on a line.
+    known = [name for i, name in enumerate(every) if translates(scene, i)]
+    if unknown := [name for name in names if name not in known] or (not names and ["none"]):
+        raise InputError(f"body: found {', '.join(unknown)}; accepted: {', '.join(known)}")
+    places = [every.index(name) for name in names]
+
+    def numbers(recording: Recording) -> dict[str, tuple[Floats, Floats]]:
+        found = largest_responses(recording.history, scene, places, periods, ratios)
+        return {_NAME: (found, found)}
+
+    found, apart = settled(task, rerun, numbers)
+    warn_unsettled(_NAME, apart[_NAME])
+    largest, _ = found[_NAME]
     parts = []
-    for (body, ratio), largest in zip(
-        product(bodies, ratios), found.reshape(-1, *found.shape[2:]), strict=True
-    ):
-        table = pd.DataFrame(spectrum_columns(periods, largest[:, 0]))
-        table.insert(0, "damping", ratio)
-        table.insert(0, "body", body)
-        parts.append(table.assign(SA=largest[:, 1]))
-    return pd.concat(parts, ignore_index=True)
+    for i, body in enumerate(names):
+        for j, ratio in enumerate(ratios):
+            table = pd.DataFrame(spectrum_columns(periods, largest[i, j, :, 0]))
+            table.insert(0, "damping", ratio)
+            table.insert(0, "body", body)
+            parts.append(table.assign(SA=largest[i, j, :, 1]))
+    whole = pd.concat(parts, ignore_index=True)
+    units = {"body": "", "damping": "", "period": "s", "SD": "m", "PSV": "m/s"}
+    whole.attrs["units"] = units | {"PSA": "m/s^2", "PSA_g": "g", "SA": "m/s^2"}
+    return whole

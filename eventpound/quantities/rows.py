@@ -205,3 +205,12 @@ def shocks_of(task: Task, rerun: Rerun) -> list[tuple[Task, FinalState | None]]:
     ends = pairwise([task.start, *begins.tolist(), task.end])
     parts = [replace(task, start=a, end=b, output_times=np.empty(0)) for a, b in ends]
     return list(zip(parts, states, strict=True))
+
+
+def shock_at(motion: GroundMotion, t: float) -> dict[str, object]:
+    """Name and factor of the record of a sequence that is going on at a time (s)."""
+    if not isinstance(motion, Record) or not motion.shocks:
+        return {}
+    number = max(int(np.searchsorted(motion.begins, t, "right")) - 1, 0)
+    name, factor = motion.shocks[number]
+    return {"record": name, "scale": factor}

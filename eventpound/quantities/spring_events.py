@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from enum import StrEnum
 from itertools import pairwise
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Hysteretic, LawName
 from eventpound.solvers.base import Recording
 from eventpound.tolerances import OF_ROWS, SAME_INSTANT
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class SpringEventKind(StrEnum):
@@ -145,3 +148,15 @@ def _sides(first: Ints, last: Ints, z: Floats, rate: Floats, still: float) -> li
         sign = next((int(np.sign(value)) for value, noise in told if abs(value) > noise), 0)
         found.append(sign or (found[-1] if found else 0))
     return found
+
+
+def spring_event_table(scene: Scene, recording: Recording) -> pd.DataFrame:
+    """Events of springs, a row each; units in the columns."""
+    import pandas as pd
+
+    found = spring_events(scene, recording)
+    table = pd.DataFrame(found, columns=list(SpringEvent._fields))
+    # Of an empty table, too.
+    numbers = {"time_s": float, "direction": int, "elongation_m": float, "force_N": float}
+    kinds = [event.kind.value for event in found]
+    return table.assign(kind=kinds).astype(numbers | {"spring": str, "kind": str})

@@ -37,9 +37,10 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import parts_of
 from eventpound.quantities.batch_response import BatchResponse
+from eventpound.quantities.history import EVENT_COLUMNS, event_rows, history_columns
 from eventpound.quantities.lookup import FREE, Named, find, tabled
 from eventpound.quantities.spring_events import SpringEvent, spring_events
-from eventpound.response import EVENT_COLUMNS, Response
+from eventpound.response import Response
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import read_json, to_json
 from eventpound.results.manifest import FORMAT, describe_run, describe_scene, sha256
@@ -175,11 +176,11 @@ def write(
     InputError
         Where the directory cannot be written to.
     """
-    history = response.history_columns()
+    history = history_columns(response.scene, response.recording)
     rows = zip(*(column.tolist() for column in history.values()), strict=True)
     contents = {
         HISTORY: rows_csv([history, *rows]),
-        EVENTS: rows_csv([EVENT_COLUMNS, *response.event_rows()]),
+        EVENTS: rows_csv([EVENT_COLUMNS, *event_rows(response.scene, response.recording)]),
         SUMMARY: to_json(summarise(response, error_estimate)),
     }
     if response.success and response.shock_rows:
@@ -250,8 +251,8 @@ def gather(
     """
     return StoredResults(
         summary=summarise(response, error_estimate),
-        history_columns=response.history_columns(),
-        event_columns=_in_columns(response.event_rows()),
+        history_columns=history_columns(response.scene, response.recording),
+        event_columns=_in_columns(event_rows(response.scene, response.recording)),
         manifest=describe_run(response, case, started),
     )
 

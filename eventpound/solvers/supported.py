@@ -120,9 +120,26 @@ def ground_accelerations(scene: Scene, direction: str, history: History) -> Floa
     """The ground's in a direction of bodies (m/s²) at the rows, shape (n,)."""
     if not scene.in_plan:
         return history.ground
-    found = np.zeros(history.t.size)
+    return of_ground(scene, direction, "acceleration", history.t)
+
+
+def of_ground(scene: Scene, direction: str, what: str, t: Floats) -> Floats:
+    """The displacement, velocity or acceleration of the ground in a direction of bodies, (n,).
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose ground it is.
+    direction : str
+        As a body has it.
+    what : str
+        ``"displacement"`` (m), ``"velocity"`` (m/s) or ``"acceleration"`` (m/s²).
+    t : ndarray, shape (n,)
+        Times (s).
+    """
+    found = np.zeros(t.size)
     for signal, part in components(scene, direction):
-        found += part * signal.acceleration(history.t)
+        found += part * getattr(signal, what)(t)
     return found
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eventpound.response import EVENT_COLUMNS
+from eventpound.quantities.history import EVENT_COLUMNS
 from eventpound.results import StoredResults
 from eventpound.results.manifest import describe_scene
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Scene, Spring
