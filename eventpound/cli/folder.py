@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from eventpound.cli.progress import Counter
 from eventpound.cli.talk import complain
 from eventpound.errors import ComputationError, EventpoundError, InputError, InterruptionError
 
 if TYPE_CHECKING:
-    from eventpound.report.gallery import GalleryEntry
-
+    from eventpound.case.figure import Figure
+    from eventpound.study.figure import FigurePlan
 
 T = TypeVar("T")
+_Drawn: TypeAlias = "tuple[str, int, list[Path], Sequence[Figure | FigurePlan]]"
+"""Title, number of runs, files and figures of a case."""
 
 
 def of_each(
@@ -54,19 +56,26 @@ def worst_code(left_out: dict[str, EventpoundError]) -> int:
 
 def plot_folder(folder: Path, out: Path) -> int:
     """Make the runs and figures of every case with a figure, and an index page; the exit code."""
-    from eventpound.report.gallery import index_page
+    from eventpound.report.gallery import GalleryEntry, about_case, index_page
     from eventpound.results.files import check_writable, write_together
+    from eventpound.study.kinds import kind_of
 
     check_writable(out)
 
     def one(directory: Path) -> GalleryEntry | None:
         started = time.monotonic()
-        make = _maker(directory)
-        entry = make and make(directory, out)
-        if entry is not None:
-            seconds = time.monotonic() - started
-            print(f"{entry.name:<22} {entry.runs:>7} runs {seconds:>7.1f} s", flush=True)
-        return entry
+        kind, document = kind_of(directory)
+        if not document.keys() & {"figure", "intensity"}:
+            return None
+        make = kind.choose(run=_of_suite, suite=_of_suite, study=_of_study, folder=_of_suite)
+        title, runs, files, figures = make(directory, out / directory.name)
+        command = kind.choose(run="run", suite="run", study="study", folder="plot")
+        shown = [file.relative_to(out) for file in files]
+        claims = [figure.claim for figure in figures if figure.claim]
+        about = about_case(directory)
+        seconds = time.monotonic() - started
+        print(f"{directory.name:<22} {runs:>7} runs {seconds:>7.1f} s", flush=True)
+        return GalleryEntry(directory.name, command, title, about, runs, shown, claims)
 
     entries, left_out = of_each(folder, one)
     if not entries and not left_out:
@@ -77,38 +86,21 @@ def plot_folder(folder: Path, out: Path) -> int:
     return worst_code(left_out)
 
 
-def _maker(directory: Path) -> Callable[[Path, Path], GalleryEntry] | None:
-    """What makes the figures of a case; None where it has none."""
-    from eventpound.study.kinds import kind_of
-
-    kind, document = kind_of(directory)
-    of_suite = _suite_entry if "figure" in document else None
-    of_study = _study_entry if {"figure", "intensity"} & set(document) else None
-    return kind.choose(run=of_suite, suite=of_suite, study=of_study, folder=None)
-
-
-def _suite_entry(directory: Path, out: Path) -> GalleryEntry:
+def _of_suite(directory: Path, results: Path) -> _Drawn:
     """Run one suite and draw it."""
     from eventpound.case import load_case
-    from eventpound.report.gallery import GalleryEntry, about_case
     from eventpound.report.suite_plot import plot_suite
     from eventpound.study.forms import SUITE_TABLE
     from eventpound.study.suite import simulate_suite
 
     case = load_case(directory)
-    results = out / directory.name
     table = simulate_suite(case, folder=results)
     files = [results / SUITE_TABLE, *plot_suite(case, table, results)]
-    claims = [figure.claim for figure in case.figures if figure.claim]
-    return GalleryEntry(
-        directory.name, "run", case.title, about_case(directory), len(table),
-        [file.relative_to(out) for file in files], claims,
-    )  # fmt: skip
+    return case.title, len(table), files, case.figures
 
 
-def _study_entry(directory: Path, out: Path) -> GalleryEntry:
+def _of_study(directory: Path, results: Path) -> _Drawn:
     """Make one study and draw it."""
-    from eventpound.report.gallery import GalleryEntry, about_case
     from eventpound.report.study_files import draw
     from eventpound.study.engine import engine_of
     from eventpound.study.forms import TABLE
@@ -116,12 +108,6 @@ def _study_entry(directory: Path, out: Path) -> GalleryEntry:
     from eventpound.study.running import run_study
 
     case = load_study(directory)
-    results = out / directory.name
     with Counter("runs") as progress:
         run_study(case.study, results, engine_of(case.study.solver), progress)
-    files = [results / TABLE, *draw(case, results)]
-    return GalleryEntry(
-        directory.name, "study", case.study.title, about_case(directory), case.study.size,
-        [file.relative_to(out) for file in files],
-        [plan.claim for plan in case.figures if plan.claim],
-    )  # fmt: skip
+    return case.study.title, case.study.size, [results / TABLE, *draw(case, results)], case.figures

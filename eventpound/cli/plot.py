@@ -13,7 +13,7 @@ Examples
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -47,20 +47,20 @@ def add_plot(commands: Commands) -> None:
 
 
 def _plot(options: Options) -> int:
-    from eventpound.study.kinds import kind_of_results
+    from eventpound.study.kinds import Holds, kind_of_results
 
     out = options.results
     kind, document = kind_of_results(out, options.case)
-    run = partial(_plot_run, "pi" in document)
-    draw = kind.choose(run=run, suite=_plot_suite, study=_plot_study, folder=None)
-    if draw is None:
+    if kind is Holds.FOLDER:
         options.refuse_others("--out", "is for a single case, and this is a folder of cases")
         return plot_folder(options.case, options.out or Path("figures"))
     paper = options.paper()
+    run: Callable[..., Sequence[Path]] = partial(_plot_run, "pi" in document)
+    draw = kind.choose(run=run, suite=_plot_suite, study=_plot_study, folder=run)
     if options.model:
         options.refuse_others("--model --out" + arguments.PAPER, "is not for --model")
         draw = _plot_model
-    elif draw is not run:
+    elif kind is not Holds.RUN:
         why = f"is for a single run, and these are the results of a {kind}"
         options.refuse_others("--out" + arguments.PAPER, why)
     for path in draw(options, out, paper):
