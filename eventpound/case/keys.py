@@ -91,12 +91,12 @@ def number_key(
     def read(table: Table, name: str) -> Any:
         return table.quantity(name, dimension)
 
-    return _declared(usual, Key(says, read, default, dimension, bound, **more))
+    return _field(usual, Key(says, read, default, dimension, bound, **more))
 
 
 def flag_key(says: str, usual: bool | None = False, default: str = "`false`", **more: Any) -> Any:
     """Declare what is true or false; `usual` where it is not given."""
-    return _declared(usual, Key(says, Table.flag, default, **more))
+    return _field(usual, Key(says, Table.flag, default, **more))
 
 
 def texts_key(says: str, accepted: str, bound: Bound | None = None, **more: Any) -> Any:
@@ -107,15 +107,27 @@ def texts_key(says: str, accepted: str, bound: Bound | None = None, **more: Any)
         return found if bound else tuple(dict.fromkeys(found))
 
     default = more.pop("default", "none")
-    return _declared((), Key(says, read, default, None, bound, **more))
+    return _field((), Key(says, read, default, None, bound, **more))
 
 
 def read_elsewhere(says: str, usual: Any, default: str, **more: Any) -> Any:
     """Declare what more than its own value decides, and other code reads."""
-    return _declared(usual, Key(says, lambda table, name: usual, default, **more))
+    return _field(usual, Key(says, lambda table, name: usual, default, **more))
 
 
-def _declared(usual: Any, key: Key) -> Any:
+def text_key(accepted: str, says: str) -> Any:
+    """Declare a text, empty where it is not given."""
+    return declared(says, lambda table, name: table.text(name, accepted), "")
+
+
+def declared(
+    says: str, read: Callable[[Table, str], Any], usual: Any = (), *, name: str = ""
+) -> Any:
+    """Declare what a function reads; `usual` where it is not given."""
+    return _field(usual, Key(says, read, "", name=name))
+
+
+def _field(usual: Any, key: Key) -> Any:
     return field(default=usual, metadata={_DECLARED: key})
 
 

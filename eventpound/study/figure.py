@@ -19,93 +19,103 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
-from eventpound.case.figure import OF_STUDIES, FigureKind, common_words, one_or_several, read_kind
+from eventpound.case.figure import OF_STUDIES, FigureKind, one_or_several, read_kind
+from eventpound.case.keys import declared, flag_key, number_key, read_keys, text_key
 from eventpound.case.table import Table
 from eventpound.study.plan import Plan
 from eventpound.units import Dimension
 
 _SCALES = ("linear", "logarithmic")
-_TEXTS = ("curves", "rows", "columns", "pages", "grey", "nested")
+
+
+def _columns(table: Table, key: str) -> tuple[str, ...]:
+    """One text or a list of them."""
+    if table.has(key) and isinstance(table.data[key], list):
+        return table.texts(key, "a list of texts")
+    text = table.text(key, "a column of the table")
+    return (text,) if text else ()
+
+
+def _map(table: Table, key: str) -> bool:
+    wanted = read_kind(table, OF_STUDIES, "a [study]") is FigureKind.MAP
+    others = [key for key in ("grey", "regions", "nested", "largest") if table.has(key)]
+    accepted = "a figure with curves, the second axis, and without grey, regions, nested, largest"
+    table.require(key, not wanted or (table.has("curves") and not others), accepted)
+    return wanted
+
+
+def _line(table: Table, key: str) -> tuple[tuple[float, float], ...]:
+    """Points of a line on a map."""
+    given: Any = table.data[key]
+    good = isinstance(given, list) and all(
+        isinstance(p, list) and len(p) == 2 and all(type(v) in (int, float) for v in p)
+        for p in given
+    )
+    of_map = not given or table.data.get("kind") == FigureKind.MAP
+    if not (good and of_map):
+        table.reject(key, 'points [[x, y], ...] as numbers in SI, of a figure of kind "map"')
+        return ()
+    return tuple((float(x), float(y)) for x, y in given)
+
+
+def _gain(table: Table, key: str) -> bool:
+    table.require(key, table.has("regions") or table.data[key] is False, "a figure's regions")
+    return table.flag(key)
+
+
+_text, _number = partial(text_key, "some text"), partial(number_key, usual=None)
+_numbers = partial(declared, read=lambda table, key: table.numbers(key, "a list of numbers"))
+_scale = partial(declared, read=lambda table, key: table.choice(key, _SCALES), usual="linear")
 
 
 @dataclass(frozen=True)
 class FigurePlan:
-    """One figure of a study.
+    """One figure of a study: columns `x` and `y` of its table, a column of panels for each pair.
 
-    Parameters
-    ----------
-    name : str
-        Of its file, without the ending.
-    title : str
-        Above it; empty for none.
-    x, y : tuple of str
-        Columns of the table; a column of panels for each pair. An empty `x` is
-        the last axis of the part that a panel shows.
-    curves, rows, columns, pages : str
-        Columns of the table whose values make curves, rows and columns of
-        panels, and files; empty for none.
-    grey : str
-        Column drawn in grey, once a panel; empty for none.
-    regions : float or None
-        Value of `curves` whose amplification is marked.
-    map : bool
-        Whether `y` is drawn in colours, over `x` and the values of `curves`.
-    gain : bool
-        Whether that amplification is drawn in a strip below each panel.
-    x_scale, y_scale : str
-        ``"linear"`` or ``"logarithmic"``.
-    y_max : float or None
-        End of the vertical axis.
-    x_labels, y_labels : tuple of str
-        What stands at the axes instead of the symbols of the columns; may be empty.
-    marks : tuple of float
-        Where vertical lines are drawn.
-    nested : str
-        Column of `y` whose curves fall on each other: one is drawn within the other.
-    column_titles : tuple of str
-        What the columns of panels are called, from the left; may be empty.
-    largest : float or None
-        Value of `x` from which on a marker stands where each curve is largest.
-    levels : tuple of float
-        Where horizontal lines are drawn.
-    line : tuple of tuple of float
-        Points x and y of a map that a dashed line joins; may be empty.
-    model : bool
-        Whether the scene is drawn, too, with the laws of its springs, in a file of its own.
-    claim : str
-        What the figure is held against, for the page of all figures.
-    note : str
-        A line below the figure.
+    An empty `x` is the last axis of the part that a panel shows.
     """
 
-    name: str
-    title: str
     x: tuple[str, ...]
     y: tuple[str, ...]
-    curves: str
-    rows: str
-    columns: str
-    pages: str
-    grey: str
-    regions: float | None
-    map: bool
-    gain: bool
-    x_scale: str
-    y_scale: str
-    y_max: float | None
-    x_labels: tuple[str, ...]
-    y_labels: tuple[str, ...]
-    marks: tuple[float, ...]
-    nested: str
-    column_titles: tuple[str, ...]
-    largest: float | None
-    levels: tuple[float, ...]
-    line: tuple[tuple[float, float], ...]
-    model: bool
-    claim: str
-    note: str
+    regions: float | None = _number(
+        "value of `curves` whose amplification is marked", Dimension.NUMBER
+    )
+    title: str = _text("above it")
+    claim: str = _text("what the figure is held against, for the page of all figures")
+    note: str = _text("a line below the figure")
+    curves: str = _text("column of the table whose values make curves")
+    rows: str = _text("that whose values make rows of panels")
+    columns: str = _text("columns of panels")
+    pages: str = _text("files")
+    grey: str = _text("column drawn in grey, once a panel")
+    nested: str = _text("column of `y` whose curves fall on each other: one is drawn in the other")
+    y_max: float | None = _number("end of the vertical axis", Dimension.NUMBER)
+    largest: float | None = _number(
+        "value of `x` from which on a marker stands where each curve is largest", Dimension.NUMBER
+    )
+    marks: tuple[float, ...] = _numbers("where vertical lines are drawn")
+    levels: tuple[float, ...] = _numbers("where horizontal lines are drawn")
+    x_scale: str = _scale("`linear` or `logarithmic`")
+    y_scale: str = _scale("`linear` or `logarithmic`")
+    name: str = declared(
+        "of its file, without the ending", lambda table, key: table.file_name(key, ""), "study"
+    )
+    map: bool = declared(
+        "whether `y` is drawn in colours, over `x` and `curves`", _map, False, name="kind"
+    )
+    gain: bool = declared("whether the amplification is in a strip below each panel", _gain, False)
+    x_labels: tuple[str, ...] = declared(
+        "what stands at the axes instead of symbols of columns", _columns, name="x_label"
+    )
+    y_labels: tuple[str, ...] = declared("of the vertical axes", _columns, name="y_label")
+    column_titles: tuple[str, ...] = declared("of the columns of panels, from the left", _columns)
+    line: tuple[tuple[float, float], ...] = declared(
+        "points x and y of a map that a dashed line joins", _line
+    )
+    model: bool = flag_key("whether the scene is drawn, too, with its laws, in a file of its own")
 
     def problems(self, study: Plan) -> Iterator[str]:
         """Columns of the figure that the table does not have, axes that a map does not show."""
@@ -150,75 +160,10 @@ def read_figures(top: Table) -> tuple[FigurePlan, ...]:
 
 
 def _read_figure(table: Table) -> FigurePlan:
-    x, y = _columns(table, "x", ("",)), _columns(table, "y")
+    x = _columns(table, "x") if table.has("x") else ("",)
+    y = _columns(table, "y")
     if len(x) != len(y) and y:
         table.reject("y", f"as many columns as x has ({len(x)})")
-    regions = table.optional_quantity("regions", Dimension.NUMBER)
-    further: dict[str, Any] = {
-        **common_words(table),
-        **{key: table.text(key, "some text") if table.has(key) else "" for key in _TEXTS},
-        **{key: table.optional_quantity(key, Dimension.NUMBER) for key in ("y_max", "largest")},
-        **{
-            key: table.numbers(key, "a list of numbers") if table.has(key) else ()
-            for key in ("marks", "levels")
-        },
-        **{
-            k: table.choice(k, _SCALES) if table.has(k) else "linear"
-            for k in ("x_scale", "y_scale")
-        },
-    }
-    figure = FigurePlan(
-        name=table.file_name("name", "study"),
-        x=x,
-        y=y,
-        regions=regions,
-        map=_map(table),
-        gain=_gain(table, regions),
-        x_labels=_columns(table, "x_label", ()),
-        y_labels=_columns(table, "y_label", ()),
-        column_titles=_columns(table, "column_titles", ()),
-        line=_line(table),
-        model=table.flag("model"),
-        **further,
-    )
+    figure = FigurePlan(x, y, **read_keys(table, FigurePlan))
     table.close()
     return figure
-
-
-def _map(table: Table) -> bool:
-    wanted = read_kind(table, OF_STUDIES, "a [study]") is FigureKind.MAP
-    others = [key for key in ("grey", "regions", "nested", "largest") if table.has(key)]
-    accepted = "a figure with curves, the second axis, and without grey, regions, nested, largest"
-    table.require("kind", not wanted or (table.has("curves") and not others), accepted)
-    return wanted
-
-
-def _line(table: Table) -> tuple[tuple[float, float], ...]:
-    """Points of a line on a map."""
-    given: Any = table.data["line"] if table.has("line") else []
-    good = isinstance(given, list) and all(
-        isinstance(p, list) and len(p) == 2 and all(type(v) in (int, float) for v in p)
-        for p in given
-    )
-    of_map = not given or table.data.get("kind") == FigureKind.MAP
-    if not (good and of_map):
-        table.reject("line", 'points [[x, y], ...] as numbers in SI, of a figure of kind "map"')
-        return ()
-    return tuple((float(x), float(y)) for x, y in given)
-
-
-def _gain(table: Table, regions: float | None) -> bool:
-    if not table.has("gain"):
-        return False
-    table.require("gain", regions is not None or table.data["gain"] is False, "a figure's regions")
-    return table.flag("gain")
-
-
-def _columns(table: Table, key: str, default: tuple[str, ...] | None = None) -> tuple[str, ...]:
-    """One text or a list of them."""
-    if table.has(key) and isinstance(table.data[key], list):
-        return table.texts(key, "a list of texts")
-    if default is not None and not table.has(key):
-        return default
-    text = table.text(key, "a column of the table")
-    return (text,) if text else ()
