@@ -19,8 +19,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import Any
 
+from eventpound.case.keys import read_keys, text_key
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.motion import GroundMotion, MavroeidisPapageorgiou
@@ -78,12 +78,6 @@ def one_or_several(top: Table, key: str) -> list[Table]:
     if not top.has(key):
         return []
     return top.tables(key) if isinstance(top.data[key], list) else [top.table(key)]
-
-
-def common_words(table: Table) -> dict[str, str]:
-    """Texts that every figure may have."""
-    words = ("title", "claim", "note")
-    return {key: table.text(key, "some text") if table.has(key) else "" for key in words}
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,12 +142,6 @@ class Figure:
         Of similarity contours: lines with a name.
     name : str
         Of its file, without the ending.
-    title : str
-        Above it; that of the case where it is empty.
-    claim : str
-        What the figure is held against, for the page of all figures.
-    note : str
-        A line below the figure.
     """
 
     kind: FigureKind
@@ -166,10 +154,10 @@ class Figure:
     joints: tuple[LengthRange, ...] = field(default=())
     isolators: tuple[LengthRange, ...] = field(default=())
     motions: tuple[NamedMotion, ...] = field(default=())
+    title: str = text_key("some text", "above it; that of the case where it is empty")
+    claim: str = text_key("some text", "what it is held against, for the page of all figures")
+    note: str = text_key("some text", "a line below it")
     name: str = ""
-    title: str = ""
-    claim: str = ""
-    note: str = ""
 
 
 def read_figure(table: Table, bodies: Sequence[str]) -> Figure | None:
@@ -191,7 +179,7 @@ def read_figure(table: Table, bodies: Sequence[str]) -> Figure | None:
     if kind is None:
         return None
     figure: Figure | None = Figure(kind)
-    words: dict[str, Any] = common_words(table) | {"name": table.file_name("name", kind.value)}
+    words, name = read_keys(table, Figure), table.file_name("name", kind.value)
     match kind:
         case FigureKind.RECORD_SCALES:
             figure = _read_scales(table, kind)
@@ -200,7 +188,7 @@ def read_figure(table: Table, bodies: Sequence[str]) -> Figure | None:
         case FigureKind.SUITE_SPECTRUM:
             figure = _read_spectrum(table, kind, bodies)
     table.close()
-    return figure and replace(figure, **words)
+    return figure and replace(figure, name=name, **words)
 
 
 def _read_spectrum(table: Table, kind: FigureKind, bodies: Sequence[str]) -> Figure | None:

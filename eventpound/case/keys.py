@@ -115,9 +115,9 @@ def read_elsewhere(says: str, usual: Any, default: str, **more: Any) -> Any:
     return _field(usual, Key(says, lambda table, name: usual, default, **more))
 
 
-def text_key(accepted: str, says: str) -> Any:
-    """Declare a text, empty where it is not given."""
-    return declared(says, lambda table, name: table.text(name, accepted), "")
+def text_key(accepted: str, says: str, usual: str | None = "") -> Any:
+    """Declare a text; `usual` where it is not given."""
+    return declared(says, lambda table, name: table.text(name, accepted), usual)
 
 
 def declared(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from eventpound.case.keys import Bound, flag_key, number_key, read_keys, text_key
 from eventpound.case.record_file import find_record
 from eventpound.case.record_scaling import RecordScaling, read_scaling
 from eventpound.case.table import Table
@@ -22,20 +23,8 @@ class RecordOptions:
 
     Parameters
     ----------
-    format, units : str or None
-        Of the file, where it does not say.
-    time_step : float or None
-        Of the file, where it does not say (s).
-    start : float
-        Time of the first sample (s).
-    reverse : bool
-        Whether the motion is turned round.
-    component : str or None
-        Which of several in the file.
-    response : str or None
-        File with the sensitivity of the instrument, for counts, as a case names it.
     response_path : Path or None
-        Where that is.
+        Where the file `response` is.
     processing : Processing
         What is done to the samples before they are scaled.
     size : RecordScaling
@@ -44,13 +33,20 @@ class RecordOptions:
         Whether that is by the factor on the first component instead.
     """
 
-    format: str | None = None
-    units: str | None = None
-    time_step: float | None = None
-    start: float = 0.0
-    reverse: bool = False
-    component: str | None = None
-    response: str | None = None
+    time_step: float | None = number_key(
+        "of the file, where it does not say (s)",
+        Dimension.TIME,
+        None,
+        Bound("a positive number", lambda step: step > 0.0),
+    )
+    start: float = number_key("time of the first sample (s)", Dimension.TIME, 0.0)
+    reverse: bool = flag_key("whether the motion is turned round")
+    format: str | None = text_key("the format of the file", "where the file does not say", None)
+    units: str | None = text_key("the units of the file", "where the file does not say", None)
+    component: str | None = text_key("the component of the file", "which of several", None)
+    response: str | None = text_key(
+        "the response of the file", "file with the sensitivity of the instrument, for counts", None
+    )
     response_path: Path | None = None
     processing: Processing = field(default_factory=Processing)
     size: RecordScaling = field(default_factory=RecordScaling)
@@ -117,23 +113,15 @@ def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
         None where there are problems; they are noted.
     """
     size = read_scaling(table, directory)
-    time_step = table.optional_quantity("time_step", Dimension.TIME, "a positive number")
-    start = table.quantity("start", Dimension.TIME, 0.0)
-    reverse = table.flag("reverse")
-    texts: dict[str, Any] = {
-        key: table.text(key, f"the {key} of the file") if table.has(key) else None
-        for key in ("format", "units", "component", "response")
-    }
-    if math.isnan(start) or (time_step is not None and math.isnan(time_step)):
-        return None
-    if "" in texts.values():
+    found = read_keys(table, RecordOptions)
+    if any(value == "" or value != value for value in found.values()):
         return None
     processing = _read_processing(table.table("processing"))
     if processing is None or size is None:
         return None
-    path = None if texts["response"] is None else find_record(texts["response"], directory)
-    numbers: Any = {"time_step": time_step, "start": start, "reverse": reverse}
-    return RecordOptions(**texts, **numbers, response_path=path, processing=processing, size=size)
+    response = found.get("response")
+    path = None if response is None else find_record(response, directory)
+    return RecordOptions(**found, response_path=path, processing=processing, size=size)
 
 
 def _read_processing(table: Table) -> Processing | None:
