@@ -25,11 +25,12 @@ from eventpound.case.understood import SOURCED
 from eventpound.errors import InputError
 from eventpound.motion.free import NoMotion
 from eventpound.scene.at_rest import at_rest
-from eventpound.scene.check import Problem, scene_problems, scene_warnings
+from eventpound.scene.check import scene_problems, scene_warnings
 from eventpound.scene.contact_law import IMPACT_LAWS, NEWTON
 from eventpound.scene.continuation import continued
 from eventpound.scene.joint import ENDS
 from eventpound.scene.plan_point import DIRECTIONS
+from eventpound.scene.problem import Problem
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Linear
 from eventpound.units import Dimension, quantity

@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from numbers import Real
-from typing import Any
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from eventpound.basics.given import accepted_numbers, numbers_of
+from eventpound.basics.given import numbers_of
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.scene.at_rest import stiffness_of
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import BY_WORD, IMPACT_LAWS, NEWTON, ContactLaw, Element
-from eventpound.scene.ends import End, opening, weights_of
+from eventpound.scene.end_check import end_problems, plan_problems
+from eventpound.scene.ends import opening
 from eventpound.scene.grounded import grounded
 from eventpound.scene.linkage import starts_of_supports
 from eventpound.scene.periods import joined
-from eventpound.scene.plan_check import place_problems, plan_problems
 from eventpound.scene.plan_point import PlanPoint
-from eventpound.scene.point import WHOLE
+from eventpound.scene.problem import Part, Problem, some_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import (
     GROUND,
@@ -37,70 +35,7 @@ from eventpound.scene.spring import (
 from eventpound.scene.stability import unstable
 from eventpound.tolerances import EPS, PENETRATED
 
-_KEYS = {word: f"initial.{word}" for word in ("displacement", "velocity")}
-"""What a case calls numbers that it does not call by their fields."""
 _SEPARATORS = frozenset(',;"')
-# To ask for a float, which nearly all are, takes less time.
-_NUMBER = float, Real
-_Condition = Callable[[float], bool]
-
-
-@dataclass(frozen=True, slots=True)
-class _Element:
-    """What is being checked; where it has no name, that is empty."""
-
-    kind: str
-    position: int
-    name: str
-
-    def problem(self, key: str, found: object, accepted: str) -> Problem:
-        return Problem(self.kind, self.position, self.name, key, found, accepted)
-
-    def number(
-        self, key: str, value: object, accepted: str, condition: _Condition
-    ) -> Iterator[Problem]:
-        if not (isinstance(value, _NUMBER) and math.isfinite(value) and condition(float(value))):
-            yield self.problem(key, value, accepted)
-
-    def numbers(self, owner: Any, prefix: str = "") -> Iterator[Problem]:
-        """Those of its numbers that are not what their fields say they may be."""
-        for key, (accepted, fits) in accepted_numbers(owner.__class__):
-            value = getattr(owner, key)
-            if value is not None and not (math.isfinite(value) and fits(owner, value)):
-                yield self.problem(prefix + _KEYS.get(key, key), value, accepted)
-
-
-@dataclass(frozen=True, slots=True)
-class Problem(_Element):
-    """One thing that is wrong with a scene.
-
-    Parameters
-    ----------
-    kind : str
-        ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"``, ``"excitation"``,
-        ``"support"``, ``"force"``, ``"seat"`` or ``"deck"``; ``"scene"`` of what is one for all.
-    position : int
-        Which of its kind, from 1.
-    name : str
-        Its name; empty where it has none.
-    key : str
-        Which of its values.
-    found : object
-        The value (SI).
-    accepted : str
-        What would be right.
-    """
-
-    key: str
-    found: object
-    accepted: str
-
-    def __str__(self) -> str:
-        named = f" ({self.name})" if self.name else ""
-        return (
-            f"{self.kind} {self.position}{named}: {self.key}: "
-            f"found {self.found!r}; accepted: {self.accepted}"
-        )
 
 
 def check_scene(scene: Scene, start: float | None = 0.0) -> None:
@@ -158,7 +93,7 @@ TOGETHER = ("exponent", "beta", "gamma", "initial_z", "gap", "initial_gap")
 """Numbers of a spring that are accepted only beside its others: z in its bound, wider gaps."""
 
 
-def _name_problems(elements: Iterable[_Element]) -> Iterator[Problem]:
+def _name_problems(elements: Iterable[Part]) -> Iterator[Problem]:
     positions: dict[str, int] = {}
     for element in elements:
         name = element.name
@@ -174,7 +109,7 @@ def _name_problems(elements: Iterable[_Element]) -> Iterator[Problem]:
 
 
 def _body_problems(scene: Scene) -> Iterator[Problem]:
-    elements = [_Element("body", i, body.name) for i, body in enumerate(scene.bodies, 1)]
+    elements = [Part("body", i, body.name) for i, body in enumerate(scene.bodies, 1)]
     if not elements:
         yield Problem("body", 1, "", "name", None, "at least one body")
     yield from _name_problems(elements)
@@ -183,90 +118,25 @@ def _body_problems(scene: Scene) -> Iterator[Problem]:
 
 
 def _deck_problems(scene: Scene) -> Iterator[Problem]:
-    elements = [_Element("deck", i, deck.name) for i, deck in enumerate(scene.decks, 1)]
+    elements = [Part("deck", i, deck.name) for i, deck in enumerate(scene.decks, 1)]
     yield from _name_problems(elements)
     for element, deck in zip(elements, scene.decks, strict=True):
         yield from element.numbers(deck)
-    yield from (Problem(*wrong) for wrong in plan_problems(scene))
-
-
-def _some(names: Sequence[str], others: Sequence[str] = ()) -> str:
-    """Names as a message lists them: the first ones, and all others."""
-    return ", ".join([*names[:8], *["..."] * (len(names) > 8), *others])
-
-
-def _end_problems(
-    element: _Element, sides: tuple[End, End], scene: Scene, fixed: str
-) -> Iterator[Problem]:
-    """What is wrong with two ends; `fixed` is what the ground is called there."""
-    if all(isinstance(end, str) for end in sides):
-        yield from _name_end_problems(element, tuple(map(str, sides)), scene, fixed)
-    else:
-        yield from _point_problems(element, sides, scene, fixed)
-
-
-def _name_end_problems(
-    element: _Element, between: Sequence[str], scene: Scene, fixed: str
-) -> Iterator[Problem]:
-    """Two different ends, each a body or one that is fixed, not both of those."""
-    names = [body.name for body in scene.bodies]
-    held = [fixed, *(support.name for support in scene.supports)]
-    choices = _some(names, held)
-    for end in between:
-        if end not in held and end not in names:
-            yield element.problem("between", end, f"two different ones of {choices}")
-    if between[0] == between[1]:
-        yield element.problem("between", list(between), f"two different ones of {choices}")
-    elif set(between) <= set(held):
-        yield element.problem("between", list(between), "a body at one end at least")
-
-
-def _point_problems(
-    element: _Element, sides: tuple[End, End], scene: Scene, fixed: str
-) -> Iterator[Problem]:
-    """Ends of which one is a point between bodies."""
-    known, held = {b.name for b in scene.bodies}, [support.name for support in scene.supports]
-    names = [body.name for body in scene.bodies]
-    for end in sides:
-        if isinstance(end, str):
-            if end not in (known | {fixed, *held}):
-                some = _some(names, [fixed, *held])
-                yield element.problem("between", end, f"one of {some}, or a point")
-            continue
-        if isinstance(end, PlanPoint):
-            for found, accepted in place_problems(end, scene):
-                yield element.problem("between", found, accepted)
-            continue
-        for name, weight in end.weights:
-            if name not in (known | {GROUND, *held}):
-                some = _some(names, [GROUND, *held])
-                accepted = f"points between bodies and the ground: {some}"
-                yield element.problem("between", name, accepted)
-            elif not 0.0 < weight <= 1.0 + WHOLE:
-                accepted = "positive weights, 1 in sum"
-                yield element.problem("between", f"{name} = {weight!r}", accepted)
-        if not abs(end.total - 1.0) <= WHOLE:
-            yield element.problem("between", end.total, "weights of a point that are 1 in sum")
-    ends = [name for end in sides for name, _ in weights_of(end)]
-    twice = sorted(name for name in known if ends.count(name) > 1)
-    if twice:
-        yield element.problem("between", twice[0], "no body at both ends, or twice at one")
-    elif not known & {*ends}:
-        yield element.problem("between", ends, "a body at one end at least")
+    yield from plan_problems(scene)
 
 
 def _spring_problems(scene: Scene) -> Iterator[Problem]:
-    elements = [_Element("spring", i, spring.name) for i, spring in enumerate(scene.springs, 1)]
+    elements = [Part("spring", i, spring.name) for i, spring in enumerate(scene.springs, 1)]
     yield from _name_problems(elements)
     for element, spring in zip(elements, scene.springs, strict=True):
-        yield from _end_problems(element, spring.sides, scene, GROUND)
+        yield from end_problems(element, spring.sides, scene, GROUND)
         yield from _law_problems(element, spring.law)
         yield from element.numbers(spring)
         if spring.weight is not None:
             yield from _weight_problems(element, spring)
 
 
-def _weight_problems(element: _Element, spring: Spring) -> Iterator[Problem]:
+def _weight_problems(element: Part, spring: Spring) -> Iterator[Problem]:
     """What P-Delta needs beside a weight."""
     if spring.height is None:
         yield element.problem("height", None, "the height of a storey (m), beside its weight")
@@ -281,7 +151,7 @@ def _stability_problems(scene: Scene, start: float) -> Iterator[Problem]:
     if gives is None:
         return
     spring = scene.springs[gives.spring]
-    element = _Element("spring", gives.spring + 1, spring.name)
+    element = Part("spring", gives.spring + 1, spring.name)
     if spring.weight is None:
         found = stiffness_of(spring)
         accepted = f"stiffnesses with which the structure stands at rest; {gives.moves}"
@@ -296,13 +166,13 @@ def _stability_problems(scene: Scene, start: float) -> Iterator[Problem]:
 
 
 def _seat_problems(scene: Scene) -> Iterator[Problem]:
-    elements = [_Element("seat", i, seat.name) for i, seat in enumerate(scene.seats, 1)]
+    elements = [Part("seat", i, seat.name) for i, seat in enumerate(scene.seats, 1)]
     yield from _name_problems(elements)
     for element, seat in zip(elements, scene.seats, strict=True):
-        yield from _end_problems(element, seat.between, scene, GROUND)
+        yield from end_problems(element, seat.between, scene, GROUND)
 
 
-def _law_problems(element: _Element, law: Law) -> Iterator[Problem]:
+def _law_problems(element: Part, law: Law) -> Iterator[Problem]:
     if isinstance(law, Series):
         if not law.parts:
             yield element.problem("parts", [], "at least one part")
@@ -327,8 +197,8 @@ def _law_problems(element: _Element, law: Law) -> Iterator[Problem]:
 def _dashpot_problems(scene: Scene) -> Iterator[Problem]:
     found = list[Problem]()
     for position, dashpot in enumerate(scene.dashpots, 1):
-        element = _Element("dashpot", position, "")
-        found += _end_problems(element, dashpot.sides, scene, GROUND)
+        element = Part("dashpot", position, "")
+        found += end_problems(element, dashpot.sides, scene, GROUND)
         found += element.numbers(dashpot)
     yield from found
     negative = [i for i, d in enumerate(scene.dashpots) if d.coefficient < 0.0]
@@ -338,7 +208,7 @@ def _dashpot_problems(scene: Scene) -> Iterator[Problem]:
             "drive a motion"
         )
         first = scene.dashpots[negative[0]].coefficient
-        yield _Element("dashpot", negative[0] + 1, "").problem("coefficient", first, accepted)
+        yield Part("dashpot", negative[0] + 1, "").problem("coefficient", first, accepted)
 
 
 def _dissipates(scene: Scene) -> bool:
@@ -350,7 +220,7 @@ def _dissipates(scene: Scene) -> bool:
 
 
 def _support_problems(scene: Scene) -> Iterator[Problem]:
-    elements = [_Element("support", i, s.name) for i, s in enumerate(scene.supports, 1)]
+    elements = [Part("support", i, s.name) for i, s in enumerate(scene.supports, 1)]
     yield from _name_problems(elements)
     bodies = {body.name for body in scene.bodies}
     for element, support in zip(elements, scene.supports, strict=True):
@@ -368,9 +238,9 @@ def _support_problems(scene: Scene) -> Iterator[Problem]:
 def _force_problems(scene: Scene) -> Iterator[Problem]:
     names = [body.name for body in scene.bodies]
     for position, force in enumerate(scene.forces, 1):
-        element = _Element("force", position, force.body)
+        element = Part("force", position, force.body)
         if force.body not in names:
-            yield element.problem("body", force.body, f"one of {_some(names)}")
+            yield element.problem("body", force.body, f"one of {some_of(names)}")
         for problem in motion_problems(force.history):
             yield element.problem("value", problem.found, problem.accepted)
 
@@ -398,11 +268,11 @@ def _scale_of_motions(scene: Scene) -> float:
 
 
 def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
-    elements = [_Element("contact", i, c.name) for i, c in enumerate(scene.contacts, 1)]
+    elements = [Part("contact", i, c.name) for i, c in enumerate(scene.contacts, 1)]
     yield from _name_problems(elements)
     penetrated = {} if start is None else _overlaps(scene, start)
     for i, (element, contact) in enumerate(zip(elements, scene.contacts, strict=True)):
-        yield from _end_problems(element, contact.sides, scene, BARRIER)
+        yield from end_problems(element, contact.sides, scene, BARRIER)
         if contact.at_point and contact.law is not None:
             accepted = f"{NEWTON} alone for a contact at a point between bodies"
             yield element.problem("law", contact.law.kind, accepted)
@@ -421,7 +291,7 @@ def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
             yield element.problem("gap", contact.gap, accepted)
 
 
-def _friction_problems(element: _Element, contact: Contact, scene: Scene) -> Iterator[Problem]:
+def _friction_problems(element: Part, contact: Contact, scene: Scene) -> Iterator[Problem]:
     """What friction at a contact asks for."""
     if not all(isinstance(end, PlanPoint) or end == BARRIER for end in contact.sides):
         accepted = "0 but between places of decks in plan: nothing else slides along a contact"
@@ -437,22 +307,20 @@ def _friction_problems(element: _Element, contact: Contact, scene: Scene) -> Ite
 
 
 def _impact_law_problems(scene: Scene) -> Iterator[Problem]:
-    element, law = _Element("scene", 1, ""), scene.impact_law
+    element, law = Part("scene", 1, ""), scene.impact_law
     if law not in IMPACT_LAWS:
         yield element.problem("impact_law", law, f"one of {', '.join(IMPACT_LAWS)}")
     elif law != NEWTON and scene.contacts and not scene.rubbing:
         yield element.problem("impact_law", law, f"{NEWTON} where no contact has friction")
 
 
-def _restitution(element: _Element, contact: Contact) -> Iterator[Problem]:
+def _restitution(element: Part, contact: Contact) -> Iterator[Problem]:
     return element.number(
         "restitution", contact.restitution, "a number from 0 to 1", lambda e: 0.0 <= e <= 1.0
     )
 
 
-def _contact_law_problems(
-    element: _Element, contact: Contact, law: ContactLaw
-) -> Iterator[Problem]:
+def _contact_law_problems(element: Part, contact: Contact, law: ContactLaw) -> Iterator[Problem]:
     """What is wrong with a contact element."""
     kind = BY_WORD.get(law.kind)
     if kind is None:
