@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.mechanics.supported import influence
-from eventpound.results.export import IN_PLAN, WITH_FRICTION
+from eventpound.results.export import conventions_added
 from eventpound.scene.deck import CORNERS, Deck
 from eventpound.scene.ends import End
 from eventpound.scene.plan_point import PlanPoint
@@ -27,12 +27,12 @@ _AT_CORNER = 1e-9
 
 def plan_conventions(scene: Scene) -> dict[str, str]:
     """What equations and files say in plan, and of friction; nothing of a scene on a line."""
-    found: dict[str, str] = {}
-    if scene.in_plan:
+    added, found = conventions_added(scene), dict[str, str]()
+    if "in plan" in added:
         across = "; motion_across is a_across, told as motion is; W and B hold weights"
-        found["plan"] = IN_PLAN["in plan"] + across
+        found["plan"] = added["in plan"] + across
         found["places"] = "x and y from the centre of a deck, then the direction that counts"
-    return found | (WITH_FRICTION if scene.rubbing else {})
+    return found | {key: said for key, said in added.items() if key == "friction"}
 
 
 def plan_numbers(scene: Scene) -> dict[str, object]:

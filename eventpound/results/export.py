@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from itertools import pairwise
 from typing import get_args
@@ -30,7 +30,6 @@ from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import describe_scene
 from eventpound.scene.body import Body
-from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import NEWTON
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
@@ -55,43 +54,49 @@ CONVENTIONS = {
         " after a jump; zero before its first and after its last row"
     ),
 }
-WITH_SUPPORTS = {
-    "supports": (
-        "motion.csv has their displacement s, velocity sv = s' and acceleration sa = s'' relative"
-        " to the ground; sa is linear between rows. C_s has a column a support, B_s and W_s a row:"
-        " M u'' + C u' + C_s s' + sum_s B[:,s] F_s - W lambda = -M 1 a_g(t),"
-        " x = B^T u + B_s^T s, g = delta + W^T u + W_s^T s, gap rates W^T v + W_s^T s'"
-    )
-}
-WITH_LAWS = {
+ADDED: dict[str, tuple[Callable[[Scene], object], str]] = {
     "contact laws": (
+        lambda scene: any(contact.law for contact in scene.contacts),
         "a contact with a law has no impact; its lambda is, while d = -g > 0, k d (linear),"
         " k d + 2 damping sqrt(k m) d' (kelvin-voigt; where tension is false not below 0),"
         " k d^1.5 (hertz), k d^1.5 (1 + damping d'/d0') with d0' the d' as it closed (hertz-damp),"
         " k d^1.5 + 2 damping sqrt(k sqrt(d) m) d' while d' > 0 and then k d^1.5 (jankowski);"
-        " k is its stiffness, m = 1/sum_i W_i^2/M_i"
-    )
-}
-WITH_WEIGHTS = {
-    "weight": "a spring with a weight P and a height h pulls with F - (P/h) x (P-Delta)"
-}
-WITH_FORCES = {
-    "forces": "motion.csv has the force p.<body> (N) on bodies, to be added to -M 1 a_g(t)"
-}
-IN_PLAN = {
+        " k is its stiffness, m = 1/sum_i W_i^2/M_i",
+    ),
+    "weight": (
+        lambda scene: any(spring.weight for spring in scene.springs),
+        "a spring with a weight P and a height h pulls with F - (P/h) x (P-Delta)",
+    ),
+    "supports": (
+        lambda scene: scene.supports,
+        "motion.csv has their displacement s, velocity sv = s' and acceleration sa = s'' relative"
+        " to the ground; sa is linear between rows. C_s has a column a support, B_s and W_s a row:"
+        " M u'' + C u' + C_s s' + sum_s B[:,s] F_s - W lambda = -M 1 a_g(t),"
+        " x = B^T u + B_s^T s, g = delta + W^T u + W_s^T s, gap rates W^T v + W_s^T s'",
+    ),
+    "forces": (
+        lambda scene: scene.forces,
+        "motion.csv has the force p.<body> (N) on bodies, to be added to -M 1 a_g(t)",
+    ),
     "in plan": (
+        lambda scene: scene.in_plan,
         "iota has a row a body: -M (iota[:,0] a_g + iota[:,1] a_across) stands in the place of"
-        " -M 1 a_g. A deck is three bodies: x, y and r theta, r the radius at its contacts"
-    )
-}
-WITH_FRICTION = {
+        " -M 1 a_g. A deck is three bodies: x, y and r theta, r the radius at its contacts",
+    ),
     "friction": (
+        lambda scene: scene.rubbing,
         "W_T has a column a contact: W_T^T v is how fast it slides, W_T lambda_T stands beside"
         " W lambda; while it is closed -frictions lambda <= lambda_T <= frictions lambda, and"
         " lambda_T = -frictions lambda sign(W_T^T v) while it slides; in an impact W_T L_T stands"
-        " beside W L, with L_T of L and of W_T^T v+ likewise"
-    )
+        " beside W L, with L_T of L and of W_T^T v+ likewise",
+    ),
 }
+"""Conventions of what not every scene has, and whether one has it."""
+
+
+def conventions_added(scene: Scene) -> dict[str, str]:
+    """Conventions of what a scene has beside bodies, springs and contacts under Newton's law."""
+    return {key: said for key, (there, said) in ADDED.items() if there(scene)}
 
 
 def export(case: Case, directory: str | os.PathLike[str]) -> None:
@@ -151,32 +156,13 @@ def _motion_columns(scene: Scene, start: float, end: float) -> dict[str, Floats]
     return columns
 
 
-def sampled_motion(motion: GroundMotion, start: float, end: float) -> tuple[Floats, Floats]:
-    """Acceleration of a motion over a run, with both values at every jump.
-
-    A record gives its own samples; a formula is sampled a thousand times a
-    period 2 pi / omega_g, and at the ends of its pieces.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        What moves the ground.
-    start, end : float
-        The run (s).
-
-    Returns
-    -------
-    t, a_g : ndarray, shape (n,)
-        Not decreasing times (s) and accelerations (m/s^2).
-    """
-    t, (a_g,) = sampled_signals([motion], start, end)
-    return t, a_g
-
-
 def sampled_signals(
     motions: Sequence[GroundMotion], start: float, end: float
 ) -> tuple[Floats, Floats]:
-    """The same of several motions at the times of all of them.
+    """Accelerations of motions over a run, with both values at every jump of any of them.
+
+    A record gives its own samples; a formula is sampled a thousand times a
+    period 2 pi / omega_g, and at the ends of its pieces.
 
     Parameters
     ----------
@@ -242,28 +228,22 @@ def _sample_times(piece: Piece) -> Floats:
 
 
 def _scene(scene: Scene, start: float) -> dict[str, object]:
-    told = replace(scene, contacts=tuple(_with_damping(contact) for contact in scene.contacts))
-    described = describe_scene(told)
-    springs = zip(described["springs"], scene.springs, strict=True)
+    # The law of a contact has its constant, where a restitution gives it, too.
+    laws = (c.law and replace(c.law, damping=c.damping) for c in scene.contacts)
+    contacts = (replace(c, law=law) for c, law in zip(scene.contacts, laws, strict=True))
+    described = describe_scene(replace(scene, contacts=tuple(contacts)))
+    # Parts in series amount to a law of two pieces.
+    condensed = (
+        {"condensed": asdict(reduced(spring.law))} if isinstance(spring.law, Series) else {}
+        for spring in scene.springs
+    )
     parts = [influence(scene, body.direction) for body in scene.bodies]
     return described | {
-        "conventions": CONVENTIONS
-        | (WITH_LAWS if any(contact.law for contact in scene.contacts) else {})
-        | (WITH_WEIGHTS if any(spring.weight for spring in scene.springs) else {})
-        | (WITH_SUPPORTS if scene.supports else {})
-        | (WITH_FORCES if scene.forces else {})
-        | (IN_PLAN if scene.in_plan else {})
-        | (WITH_FRICTION if scene.rubbing else {}),
-        "springs": [row | _condensed(spring.law) for row, spring in springs],
+        "conventions": CONVENTIONS | conventions_added(scene),
+        "springs": [row | own for row, own in zip(described["springs"], condensed, strict=True)],
         **arrays_of(scene, start),
         **({"iota": parts} if scene.in_plan else {}),
     }
-
-
-def _with_damping(contact: Contact) -> Contact:
-    """A contact whose law has its constant, where a restitution gives it."""
-    law = contact.law
-    return replace(contact, law=replace(law, damping=contact.damping)) if law else contact
 
 
 def arrays_of(scene: Scene, start: float = 0.0) -> dict[str, object]:
@@ -295,8 +275,3 @@ def arrays_of(scene: Scene, start: float = 0.0) -> dict[str, object]:
             "z": model.z0,
         },
     }
-
-
-def _condensed(law: Law) -> dict[str, object]:
-    """The piecewise-linear law that parts in series amount to."""
-    return {"condensed": asdict(reduced(law))} if isinstance(law, Series) else {}

@@ -234,26 +234,15 @@ class StoredResults:
         return pd.DataFrame(self.event_columns)
 
 
-def gather(
-    response: Response,
-    case: Case | None = None,
-    started: datetime | None = None,
-    error_estimate: Mapping[str, object] | None = None,
-) -> StoredResults:
-    """Results of a response as they would be stored, without a file.
-
-    Parameters
-    ----------
-    response : Response
-        What a run returned.
-    case, started, error_estimate : optional
-        As for `eventpound.results.read`.
-    """
+def gather(response: Response, case: Case | None = None) -> StoredResults:
+    """Results of a response as they would be stored, without a file."""
+    rows = event_rows(response.scene, response.recording)
+    columns = {name: [row[i] for row in rows] for i, name in enumerate(EVENT_COLUMNS)}
     return StoredResults(
-        summary=summarise(response, error_estimate),
+        summary=summarise(response),
         history_columns=history_columns(response.scene, response.recording),
-        event_columns=_in_columns(event_rows(response.scene, response.recording)),
-        manifest=describe_run(response, case, started),
+        event_columns={name: _typed(name, cells) for name, cells in columns.items()},
+        manifest=describe_run(response, case),
     )
 
 
@@ -286,11 +275,6 @@ def read(directory: str | os.PathLike[str]) -> StoredResults:
         event_columns=read_events(folder / EVENTS),
         manifest=manifest,
     )
-
-
-def _in_columns(rows: list[tuple[Any, ...]]) -> dict[str, Any]:
-    columns = {name: [row[i] for row in rows] for i, name in enumerate(EVENT_COLUMNS)}
-    return {name: _typed(name, cells) for name, cells in columns.items()}
 
 
 def _typed(name: str, cells: Any) -> Any:

@@ -19,7 +19,7 @@ from eventpound.case.suite import Suite
 from eventpound.motion import Cosine, Family, NoMotion, Piece, Record, Scales, Sine
 from eventpound.motion.constant import PhasedSine
 from eventpound.results import export
-from eventpound.results.export import sampled_motion
+from eventpound.results.export import sampled_signals
 from eventpound.scene import (
     GROUND,
     Backfill,
@@ -108,7 +108,7 @@ def test_record_gives_its_own_samples(scene, tmp_path):
 
 
 def test_formula_is_sampled_with_both_values_at_a_jump():
-    t, a_g = sampled_motion(Step(), 0.0, 4.0)
+    t, (a_g,) = sampled_signals([Step()], 0.0, 4.0)
     assert a_g[0] == 3.0
     before, after = np.flatnonzero(t == 1.0)
     # One rounding of t before the jump: a change below eps * pi * 3.
@@ -127,7 +127,7 @@ def test_formula_is_sampled_with_both_values_at_a_jump():
 
 
 def test_free_motion_is_two_rows():
-    t, a_g = sampled_motion(NoMotion(), 1.0, 2.0)
+    t, (a_g,) = sampled_signals([NoMotion()], 1.0, 2.0)
     assert t.tolist() == [1.0, 2.0]
     assert a_g.tolist() == [0.0, 0.0]
 
