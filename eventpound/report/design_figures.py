@@ -16,6 +16,7 @@ from eventpound.report import style
 from eventpound.report.design_tables import joint_names
 from eventpound.report.markers import draw_circles, draw_ground, draw_shocks
 from eventpound.report.view import View
+from eventpound.results.tables import headed
 from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact
 from eventpound.scene.ends import End, label_of, weights_of
@@ -84,16 +85,19 @@ def demand_figure(
             for fractile, line in zip(of_largest, (":", "--"), strict=False):
                 level = np.nanpercentile(values, fractile) if np.isfinite(values).any() else np.nan
                 axes.axhline(level, color=color, linestyle=line, linewidth=0.8)
-        axes.set(xlabel="record", xlim=(0.0, len(runs) + 1.0))
-        # A point is as wide as half a millimetre.
-        axes.set_ylim(0.0, 1.05 * axes.get_ylim()[1])
-        axes.set_ylabel(f"{quantity.called} ({name})" if name else quantity.called)
+        _name_axes(axes, runs, headed(quantity.called, name))
         if len(demands) > 1:
             longest = max(len(str(label)) for label in axes.get_legend_handles_labels()[1])
             fitting = min(_NAMES["fontsize"], _ROOM / (len(panels) * longest))
-            look = _NAMES | {"fontsize": fitting}
-            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), **look)
+            style.legend_above(axes, **_NAMES | {"fontsize": fitting})
     return figure
+
+
+def _name_axes(axes: Axes, runs: pd.DataFrame, name: str) -> None:
+    """Name axes over the numbers of the records, from zero on."""
+    axes.set(xlabel="record", ylabel=name, xlim=(0.0, len(runs) + 1.0))
+    # A point is as wide as half a millimetre.
+    axes.set_ylim(0.0, 1.05 * axes.get_ylim()[1])
 
 
 def _draw_sizes(axes: Axes, runs: pd.DataFrame, size: tuple[str, float], trade: Trade) -> None:
@@ -104,9 +108,8 @@ def _draw_sizes(axes: Axes, runs: pd.DataFrame, size: tuple[str, float], trade: 
     axes.plot(np.arange(1, len(runs) + 1), values, "o", markersize=3.0, color="#444444")
     if wanted == wanted:
         axes.axhline(wanted / of, color=style.PALETTE[1], linewidth=0.8, label="wanted")
-        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), **_NAMES)
-    axes.set(xlabel="record", xlim=(0.0, len(runs) + 1.0), ylabel=f"{called} ({unit})")
-    axes.set_ylim(0.0, 1.05 * axes.get_ylim()[1])
+        style.legend_above(axes, **_NAMES)
+    _name_axes(axes, runs, headed(called, unit))
 
 
 def _largest(runs: pd.DataFrame, demands: Sequence[Named]) -> list[Named]:

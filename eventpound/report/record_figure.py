@@ -15,7 +15,7 @@ from eventpound.motion.scaling import Target
 from eventpound.numerics.arrays import Floats
 from eventpound.report import style
 from eventpound.report.style import PALETTE, literal, new_figure, styled, zero_lines
-from eventpound.results.trade import unit_by_size
+from eventpound.results.trade import Unit, unit_by_size
 from eventpound.units import STANDARD_GRAVITY, Dimension
 
 _LINE = "#444444"
@@ -122,9 +122,7 @@ def spectrum_figure(
     target : DataFrame, optional
         Columns period (s) and PSA_g (g), drawn beside it.
     """
-    figure = style.new_figure(7.5, 5.2, style.literal(title))
-    upper, lower = figure.subplots(2, 1, sharex=True)
-    unit = unit_by_size(Dimension.LENGTH, spectrum["SD"].max())
+    figure, upper, lower, unit = _two_panels(title, spectrum)
     upper.plot(spectrum["period"], spectrum["PSA_g"], color=style.PALETTE[0], label="of the motion")
     lower.plot(spectrum["period"], spectrum["SD"] / unit.size, color=style.PALETTE[0])
     if target is not None:
@@ -133,6 +131,13 @@ def spectrum_figure(
     of = f", {_percent(damping)}"
     _finish(upper, f"PSA (g){of}", lower, f"SD ({unit.name}){of}")
     return figure
+
+
+def _two_panels(title: str, spectrum: pd.DataFrame) -> tuple[Figure, Axes, Axes, Unit]:
+    """A figure with panels of PSA and, below, of SD in this unit."""
+    figure = style.new_figure(7.5, 5.2, style.literal(title))
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    return figure, upper, lower, unit_by_size(Dimension.LENGTH, spectrum["SD"].max())
 
 
 @style.styled()
@@ -148,12 +153,10 @@ def floor_figure(table: pd.DataFrame, free: pd.DataFrame | None = None, title: s
     title : str
         Above it.
     """
-    figure = style.new_figure(7.5, 5.2, style.literal(title))
-    upper, lower = figure.subplots(2, 1, sharex=True)
-    unit = unit_by_size(Dimension.LENGTH, table["SD"].max())
+    figure, upper, lower, unit = _two_panels(title, table)
     bodies, ratios = table["body"].unique(), list(table["damping"].unique())
     shades = dict(zip(bodies, style.colors(len(bodies)), strict=True))
-    looks = [(table, "", {"linewidth": 1.2})]
+    looks: list[tuple[pd.DataFrame, str, Any]] = [(table, "", {"linewidth": 1.2})]
     looks += [(free, ", no contact", {"linewidth": 0.8, "alpha": 0.45})] if free is not None else []
     for of, said, look in looks:
         for (body, ratio), curve in of.groupby(["body", "damping"], sort=False):

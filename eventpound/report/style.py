@@ -161,9 +161,10 @@ def legend_beside(axes: Axes, handles: Sequence[Artist], columns: int = 1) -> No
     axes.legend(handles=handles, ncols=columns, **place)
 
 
-def legend_above(axes: Axes, handles: Sequence[Artist]) -> None:
-    """Legend in one line above the axes."""
-    axes.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4)
+def legend_above(axes: Axes, handles: Sequence[Artist] | None = None, **look: Any) -> None:
+    """Legend above the axes, in one line where nothing else is said; of all lines by default."""
+    place: Any = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 4}
+    axes.legend(handles=handles, **place | look)
 
 
 def literal(text: str) -> str:

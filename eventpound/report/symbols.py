@@ -15,6 +15,7 @@ from eventpound.quantities.base import parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.report.style import literal
 from eventpound.results.files import plain_name
+from eventpound.results.tables import headed
 from eventpound.results.trade import Unit, unit_by_size
 from eventpound.scene.parameters import dimension_of_number
 from eventpound.units import STANDARD_GRAVITY, Dimension
@@ -155,8 +156,7 @@ def axis_label(key: str, of: Unit | None = None, at: str = "") -> str:
         return key
     name, unit = called
     unit = unit if of is None else of.name
-    name += f" at {at}" if at else ""
-    return f"{name} ({unit})" if unit else name
+    return headed(f"{name} at {at}" if at else name, unit)
 
 
 def value_label(key: str, value: object) -> str:
