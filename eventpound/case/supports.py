@@ -257,9 +257,7 @@ def read_force(path: Path) -> tuple[float, float, Floats]:
     refuse_decimal_commas(source, whole=True)
     table = numeric_rows(source, _SECONDS)
     rows, times = table.rows, table.times
-    if rows.bad:
-        raise InputError(source.unreadable(rows.bad))
-    rows.refuse_other_widths(source)
+    rows.refuse_odd(source)
     if rows.width != 2 or len(times) != 1:
         accepted = "accepted: two, a time (s) and a force (N)"
         raise source.error(rows.lines[0], f"found {rows.width} columns; {accepted}")

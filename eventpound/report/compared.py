@@ -23,7 +23,8 @@ from eventpound.case.case import Case, case_of
 from eventpound.case.solver_options import solver_word
 from eventpound.report import html
 from eventpound.report.html import PAGE
-from eventpound.report.work_precision import timed, work_precision_figure, work_precision_png
+from eventpound.report.style import png
+from eventpound.report.work_precision import timed, work_precision_figure
 from eventpound.results import check_writable, write_together
 from eventpound.results.manifest import machine, sha256, versions
 from eventpound.results.tables import Cells, cell_text
@@ -35,8 +36,6 @@ from eventpound.units import Dimension
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from eventpound.accuracy.compare import Comparison
 
 
 _MOST_QUANTITIES = 12
@@ -173,5 +172,6 @@ def compare(
 def comparison_files(comparison: Comparison) -> dict[str, bytes]:
     """The tables, the diagram and the page of a comparison, by the names of their files."""
     tables = table_files(comparison)
-    diagram = {"work-precision.png": work_precision_png(comparison)} if timed(comparison) else {}
+    drawn = timed(comparison)
+    diagram = {"work-precision.png": png(work_precision_figure(comparison))} if drawn else {}
     return diagram | tables | {PAGE: comparison_page(comparison, tables)}

@@ -22,7 +22,7 @@ from eventpound.report.html import Part, folded, table_of
 from eventpound.report.record_figure import suite_spectra_figure
 from eventpound.report.record_tables import all_records, record_names
 from eventpound.report.study_files import figures_of
-from eventpound.report.suite_plot import suite_figure
+from eventpound.report.suite_plot import suite_spectrum_figure
 from eventpound.report.symbols import dimension_of
 from eventpound.results.tables import Cells, cell_text, headed
 from eventpound.results.trade import trade_of
@@ -208,5 +208,6 @@ def _motions(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:
 
 def _response(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:
     if len(done) > 1 and case.scene.bodies:
-        figure = suite_figure(case, done, _GROUPS, most=_MOST_BODIES)
+        names = {body.name: body.name for body in case.scene.bodies[:_MOST_BODIES]}
+        figure = suite_spectrum_figure(done, names, _GROUPS, "")
         yield html.figure_of(figure, "Peak displacements over the length scale of the motions.")

@@ -14,7 +14,6 @@ from eventpound.motion.scales import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, fourie
 from eventpound.motion.scaling import Target
 from eventpound.numerics.arrays import Floats
 from eventpound.report import style
-from eventpound.report.style import PALETTE, literal, new_figure, styled, zero_lines
 from eventpound.results.trade import Unit, unit_by_size
 from eventpound.units import STANDARD_GRAVITY, Dimension
 
@@ -24,7 +23,7 @@ _DRIFT = 0.5
 """Share of the largest displacement that a record without drift does not end with."""
 
 
-@styled()
+@style.styled()
 def record_figure(record: Characteristics) -> Figure:
     """Draw a record over time and its Fourier amplitudes over frequency.
 
@@ -33,7 +32,7 @@ def record_figure(record: Characteristics) -> Figure:
     record : Characteristics
         The record.
     """
-    figure = new_figure(7.5, 8.0, literal(_title(record)))
+    figure = style.new_figure(7.5, 8.0, style.literal(_title(record)))
     *histories, spectrum = figure.subplots(4, 1, height_ratios=(1.0, 1.0, 1.0, 1.4))
     _draw_histories(histories, record)
     _draw_spectrum(spectrum, record)
@@ -75,9 +74,10 @@ def _draw_histories(axes: list[Axes], record: Characteristics) -> None:
 
 def _draw_history(axes: Axes, t: Floats, values: Floats) -> None:
     peak = int(np.argmax(np.abs(values)))
-    zero_lines(axes)
+    style.zero_lines(axes)
     axes.plot(t, values, color=_LINE, linewidth=0.7)
-    axes.plot(t[peak], values[peak], "o", color=PALETTE[1], markersize=3.5, clip_on=False, zorder=5)
+    at: Any = {"color": style.PALETTE[1], "markersize": 3.5, "clip_on": False, "zorder": 5}
+    axes.plot(t[peak], values[peak], "o", **at)
     axes.set_xlim(t[0], t[-1])
 
 
@@ -95,7 +95,7 @@ def _draw_spectrum(axes: Axes, record: Characteristics) -> None:
     axes.set_xlim(max(frequency[1], 0.02), frequency[-1])
     shown = amplitude[(frequency >= 0.1) & (frequency <= HIGHEST_FREQUENCY)]
     axes.set_ylim(1e-4 * shown.max(), 2.0 * shown.max())
-    axes.axvline(1.0 / period, color=PALETTE[1], linewidth=1.2)
+    axes.axvline(1.0 / period, color=style.PALETTE[1], linewidth=1.2)
     said = f"$T_m$ = {period:.3g} s (1/$T_m$ = {1.0 / period:.3g} Hz, line; band 0.25–20 Hz shaded)"
     axes.set_title(said, loc="left")
     axes.set_title(f"$L_e$ = {scales.length / 0.01:.3g} cm", loc="right")

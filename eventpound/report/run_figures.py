@@ -26,7 +26,7 @@ from eventpound.report.towers import Tower, towers_of
 from eventpound.report.view import Beside, View
 from eventpound.response import Response
 from eventpound.results import StoredResults, gather, read, write_together
-from eventpound.results.trade import Unit
+from eventpound.results.trade import PERCENT, Unit
 from eventpound.scene.scene import Scene
 
 Source = StoredResults | Response | str | os.PathLike[str]
@@ -147,9 +147,6 @@ def _scene(results: StoredResults) -> Scene | None:
         return None
 
 
-_PERCENT = Unit("%", 0.01)
-
-
 @style.styled()
 def profile_figure(view: View, beside: Beside | None = None) -> Figure:
     """Draw the profiles of a run, with both extremes of every number.
@@ -177,7 +174,7 @@ def profile_figure(view: View, beside: Beside | None = None) -> Figure:
         handles.append(
             Line2D([], [], color="#444444", alpha=0.45, label=style.literal(beside.name))
         )
-    drift = "drift ratio" if units[1] is _PERCENT else "drift"
+    drift = "drift ratio" if units[1] is PERCENT else "drift"
     for axes, name, unit in zip((left, right), ("displacement", drift), units, strict=True):
         style.zero_lines(axes, upright=True, level=False)
         axes.set_xlabel(f"{name} ({unit.name})")
@@ -190,7 +187,7 @@ def _units(view: View, towers: Sequence[Tower]) -> tuple[Unit, Unit]:
     """Of displacements and of drifts, which are ratios where all heights are known."""
     u, drifts = zip(*(_extremes(view, tower) for tower in towers), strict=True)
     in_percent = all(tower.heights for tower in towers)
-    of_drift = _PERCENT if in_percent else view.length_unit(style.largest_size(*drifts))
+    of_drift = PERCENT if in_percent else view.length_unit(style.largest_size(*drifts))
     return view.length_unit(style.largest_size(*u)), of_drift
 
 
@@ -215,7 +212,7 @@ def _draw_tower(
     """Both profiles of one structure."""
     u, drift = _extremes(view, tower)
     levels = np.array(tower.levels)
-    if units[1] is _PERCENT:
+    if units[1] is PERCENT:
         # Isolators have no height, and no drift ratio.
         heights = np.array(tower.heights)
         drift = np.divide(drift, heights, out=np.full(drift.shape, np.nan), where=heights > 0.0)

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 
 from eventpound.report import style
 from eventpound.report.notes import add_notes
-from eventpound.report.style import PALETTE, new_figure, show_as_written, styled
 from eventpound.report.symbols import axis_label, display_unit, symbol, value_label
 from eventpound.study.fragility import Fragility
 from eventpound.study.intensity import IntensityPlan
@@ -19,7 +18,7 @@ from eventpound.study.plan import Plan
 from eventpound.study.stated import measured_at, stated
 
 
-@styled()
+@style.styled()
 def intensity_figure(
     study: Plan, plan: IntensityPlan, table: pd.DataFrame, curves: pd.DataFrame
 ) -> Figure:
@@ -39,7 +38,7 @@ def intensity_figure(
     demand, measure = (
         display_unit(key, float(table[key].abs().max())) for key in (plan.demand, plan.measure)
     )
-    figure = new_figure(6.0, 4.4, study.title)
+    figure = style.new_figure(6.0, 4.4, study.title)
     axes = figure.subplots()
     label = f"each of {table[plan.records].nunique()} records"
     for _, record in table.groupby(plan.records):
@@ -47,7 +46,7 @@ def intensity_figure(
         x, y = line[plan.demand] / demand.size, line[plan.measure] / measure.size
         axes.plot(x, y, color="#B5B5B5", linewidth=0.6, label=label)
         label = "_"
-    for fractile, color in zip(curves.columns[2:], PALETTE, strict=False):
+    for fractile, color in zip(curves.columns[2:], style.PALETTE, strict=False):
         x, y = curves[fractile] / demand.size, curves[plan.measure] / measure.size
         look: Any = {
             "color": color,
@@ -63,7 +62,7 @@ def intensity_figure(
     axes.set_ylim(bottom=0.0)
     axes.legend(loc="lower right")
     add_notes(figure, list(stated(study, symbol)))
-    show_as_written(figure)
+    style.show_as_written(figure)
     return figure
 
 

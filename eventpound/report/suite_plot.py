@@ -13,7 +13,6 @@ import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path, PurePath
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -195,25 +194,12 @@ def _drawn(case: Case, wanted: Wanted, done: pd.DataFrame, by: tuple[str, float]
             view = View(gather(run, one), one.scene)
             drawn = bridge_response_figure(view, f"{title}: {PurePath(name).name}")
         case _:
-            drawn = suite_figure(case, done, wanted.groups, title, called=wanted.names)
+            called = {b.name: wanted.names.get(b.name, b.name) for b in case.scene.bodies}
+            drawn = suite_spectrum_figure(done, called, wanted.groups, title)
     gone = "; ".join(motion.name for motion in wanted.motions if motion.name not in named)
     left_out = f"Left out, their records cannot be read here: {gone}." if gone else ""
     add_notes(drawn, [wanted.note, left_out])
     return drawn
-
-
-def suite_figure(
-    case: Case,
-    done: pd.DataFrame,
-    groups: int,
-    title: str = "",
-    most: int | None = None,
-    called: Mapping[str, str] = MappingProxyType({}),
-) -> Figure:
-    """The peaks of the bodies of a case, or of the first of them, called as is said."""
-    bodies = [body.name for body in case.scene.bodies][:most]
-    names = {body: called.get(body, body) for body in bodies}
-    return suite_spectrum_figure(done, names, groups, title)
 
 
 def named_lengths(case: Case, wanted: Wanted) -> dict[str, float]:

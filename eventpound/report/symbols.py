@@ -16,9 +16,9 @@ from eventpound.quantities.listed import LISTED
 from eventpound.report.style import literal
 from eventpound.results.files import plain_name
 from eventpound.results.tables import headed
-from eventpound.results.trade import Unit, unit_by_size
+from eventpound.results.trade import GRAVITY, Unit, unit_by_size
 from eventpound.scene.parameters import dimension_of_number
-from eventpound.units import STANDARD_GRAVITY, Dimension
+from eventpound.units import Dimension
 
 _Called = tuple[str, Dimension]
 """What a quantity is called, and its unit."""
@@ -130,7 +130,7 @@ def display_unit(key: str, largest: float) -> Unit:
     """
     dimension = dimension_of(key)
     if dimension is Dimension.ACCELERATION and key.removeprefix(_FREE).startswith(_IN_G):
-        return Unit("g", STANDARD_GRAVITY)
+        return GRAVITY
     return unit_by_size(dimension, largest)
 
 

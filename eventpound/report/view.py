@@ -14,7 +14,7 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.quantities.loops import loop_of
 from eventpound.results import StoredResults
-from eventpound.results.trade import Unit, unit_by_size
+from eventpound.results.trade import GRAVITY, Unit, unit_by_size
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.ends import End, Joining, direction_of, point_of
@@ -22,7 +22,7 @@ from eventpound.scene.plan_point import ACROSS, ALONG, TURN, coordinate_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, LawName
 from eventpound.scene.structures import joined_groups
-from eventpound.units import STANDARD_GRAVITY, Dimension
+from eventpound.units import Dimension
 
 # A gap below this part of the largest one is closed: rounding of stored gaps.
 _CLOSED = 1e-9
@@ -128,7 +128,7 @@ class View:
     @property
     def acceleration_unit(self) -> Unit:
         """Of an axis of accelerations."""
-        return Unit("$a_g$", self.scale("a_g")) if self.pi else Unit("g", STANDARD_GRAVITY)
+        return Unit("$a_g$", self.scale("a_g")) if self.pi else GRAVITY
 
     def scale(self, name: str) -> float:
         """One of the scales of the ground motion (SI).

@@ -19,7 +19,7 @@ from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.comparison_tables import floor_of
 from eventpound.accuracy.quantities import PEAKS
 from eventpound.accuracy.work_precision import Judged
-from eventpound.report.style import Color, colors, new_figure, png, say, styled
+from eventpound.report.style import Color, colors, new_figure, say, styled
 from eventpound.score.difference import Difference
 
 _MARKERS = "osD^vP*X"
@@ -117,11 +117,6 @@ def work_precision_figure(comparison: Comparison) -> Figure:
     for axes, named in zip(panels, ends, strict=True):
         _name_ends(axes, named)
     return figure
-
-
-def work_precision_png(comparison: Comparison) -> bytes:
-    """The diagram as a PNG file."""
-    return png(work_precision_figure(comparison))
 
 
 def _looks(comparisons: Sequence[Comparison]) -> _Looks:

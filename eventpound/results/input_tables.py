@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from eventpound.results.tables import Cells, headed
-from eventpound.results.trade import HEAVY, Trade, Unit
+from eventpound.results.trade import HEAVY, PERCENT, Trade, Unit
 from eventpound.scene.point import Point
 from eventpound.units import Dimension
 
@@ -93,7 +93,10 @@ def input_tables(inputs: Mapping[str, Any], chosen: tuple[str, ...] = ()) -> Ite
     for kind, columns in _TABLES.items():
         given = inputs.get(kind, [])
         if kind == "springs":
-            columns += _own_columns(given, columns)
+            # Numbers without a unit that a law alone has, by their names.
+            known = {key for key, _, _ in columns}
+            own = dict.fromkeys(key for row in given for key in row if key not in known)
+            columns += tuple((key, key, "") for key in own)
         tables: dict[str, list[Mapping[str, Any]]] = {own: [] for own in ("", *_APART)}
         for row in given:
             tables[next((own for own in _APART if own in row), "")].append(row)
@@ -102,15 +105,6 @@ def input_tables(inputs: Mapping[str, Any], chosen: tuple[str, ...] = ()) -> Ite
     for structure in inputs["structures"]:
         if "initial" in structure:
             yield _modes(structure)
-
-
-def _own_columns(
-    rows: Sequence[Mapping[str, Any]], known: Sequence[_Column]
-) -> tuple[_Column, ...]:
-    """Columns of numbers without a unit that a law alone has, by their names."""
-    keys = {key for key, _, _ in known}
-    own = dict.fromkeys(key for row in rows for key in row if key not in keys)
-    return tuple((key, key, "") for key in own)
 
 
 def _units(trade: Trade) -> dict[str, Unit]:
@@ -137,7 +131,7 @@ def _cells(
 ) -> Cells:
     """A table without the columns that no row has."""
     there = [column for column in columns if any(row.get(column[0]) is not None for row in rows)]
-    known = {**units, "%": Unit("%", 0.01)}
+    known = {**units, "%": PERCENT}
     shown = [known.get(unit, Unit(unit, 1.0)) for _, _, unit in there]
     heads = [headed(head, unit.name) for (_, head, _), unit in zip(there, shown, strict=True)]
     cells = tuple(

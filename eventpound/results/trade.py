@@ -14,7 +14,7 @@ from typing import NamedTuple
 from eventpound.case.run_options import Stated
 from eventpound.quantities.lookup import is_whole
 from eventpound.scene.scene import Scene
-from eventpound.units import TOLD, USUAL, Dimension
+from eventpound.units import STANDARD_GRAVITY, TOLD, USUAL, Dimension
 
 HEAVY = 1e4
 """Mass (kg) from which on tables and axes are in t, tables in kN and mm."""
@@ -36,6 +36,7 @@ class Unit(NamedTuple):
         return f"{value / self.size:.4g} {self.name}".rstrip()
 
 
+PERCENT, GRAVITY = Unit("%", 0.01), Unit("g", STANDARD_GRAVITY)
 _BY_SIZE = {
     Dimension.LENGTH: ((1.0, Unit("m", 1.0)), (5e-3, Unit("cm", 1e-2)), (0.0, Unit("mm", 1e-3))),
     Dimension.STIFFNESS: ((1e6, Unit("MN/m", 1e6)),),
@@ -72,7 +73,7 @@ class Trade:
     def unit(self, unit: str, name: str = "") -> Unit:
         """What stands for a unit of SI, for a quantity of a name: a drift ratio is in per cent."""
         if name.endswith("drift_ratio"):
-            return Unit("%", 0.01)
+            return PERCENT
         usual = ("kN" if self.heavy else "N", "mm", "g")
         force, length, acceleration = (
             next((word for word in self.chosen if word in USUAL[dimension]), word)

@@ -83,15 +83,11 @@ _TIME_STEPS_AT = (61, 1000.0), (33, 1.0)
 
 def _cosmos_extents(source: Source) -> Iterator[Extent]:
     """The channels of acceleration."""
-    found = False
     for start, line in enumerate(source.lines, start=1):
         # The pattern is slow on lines of numbers.
         first = _COSMOS_FIRST.match(line) if "(" in line else None
         if first and (extent := _cosmos_extent(source, start, start + to_count(first.group(1)))):
-            found = True
             yield extent
-    if not found:
-        raise source.error(None, "no acceleration among its series")
 
 
 def _cosmos_extent(source: Source, start: int, line: int) -> Extent | None:
@@ -162,6 +158,7 @@ COSMOS = Dialect(
     count="pts",
     step="step",
     ends_file=False,
+    missing="no acceleration among its series",
     other_names=lambda head: (head.text("azimuth") or "", head.text("location") or ""),
 )
 

@@ -168,9 +168,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
             'format = "opensees" if one series runs along the lines',
             ["component"],
         )
-    if rows.bad:
-        raise InputError(source.unreadable(rows.bad))
-    rows.refuse_other_widths(source)
+    rows.refuse_odd(source)
     if not components:
         found = [f"'{t.text}' is {t.kind.value}" for t in table.titles if t.kind in _OTHERS]
         raise source.error(rows.lines[0] - 1, f"{', '.join(found)}; an acceleration is needed")
@@ -207,12 +205,11 @@ def _channels_along_lines(source: Source, given: Given) -> list[Channel]:
         rows = read_rows(source)
         last = rows.lines[-1]
         after = [(i, x) for i, x in rows.bad if i > last and FOLLOWING_WORD.search(source.line(i))]
-        bad = [one for one in rows.bad if one not in after]
-        if bad:
+        if bad := [one for one in rows.bad if one not in after]:
             raise InputError(source.unreadable(bad))
-        rows, stated, notes = without_head(source, rows, given.time_step)
+        rows, stated, notes = without_head(source, replace(rows, bad=[]), given.time_step)
         stated, count = stated_before(source, rows.lines[0], stated)
-        rows.refuse_other_widths(source, all_but_last=True)
+        rows.refuse_odd(source, all_but_last=True)
         rows, dropped = without_counts(rows)
         notes += _passed_over(rows)
         notes += ("numbers of the lines passed over",) if dropped else ()

@@ -78,9 +78,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         raise source.error(line, f"{rate:g} Hz for {number(_DURATION):g} s is no number of samples")
     table = numeric_rows(source, given)
     rows = table.rows
-    if rows.bad:
-        raise InputError(source.unreadable(rows.bad))
-    rows.refuse_other_widths(source)
+    rows.refuse_odd(source)
     if len(rows.rows) != count:
         stated = StatedCount(count, line, "frequency times duration")
         raise InputError(miscounted(source, stated, len(rows.rows), rows.lines[-1], "rows"))

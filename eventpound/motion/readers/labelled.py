@@ -167,6 +167,8 @@ class Dialect:
         Characters of a number, where the format fixes it, unless a group `width` says so.
     ends_file : bool
         Whether nothing but text may follow the block.
+    missing : str
+        What is said of a file without a header.
     numbers : callable
         The `Trace` of a component.
     other_names : callable
@@ -198,6 +200,7 @@ class Dialect:
     timed: bool = False
     width: int | None = None
     ends_file: bool = True
+    missing: str = ""
     numbers: Numbers = plain_numbers
     other_names: Callable[[Labelled], tuple[str, ...]] = lambda head: ()
 
@@ -211,6 +214,8 @@ class Dialect:
 
         def channels(source: Source, given: Given) -> list[Channel]:
             heads = [self._head(source, extent) for extent in self.extents(source)]
+            if self.missing and not heads:
+                raise source.error(None, self.missing)
             return [channel for head in heads for channel in self._channels(head, given)]
 
         return Reader(self.name, detect, channels)
@@ -339,9 +344,7 @@ class Dialect:
         """The rows under a header; times beside the components must be those it states."""
         source = head.source
         rows = read_rows(source, head.extent.end)
-        if rows.bad:
-            raise InputError(source.unreadable(rows.bad))
-        rows.refuse_other_widths(source, len(self._columns(head)) + self.timed)
+        rows.refuse_odd(source, len(self._columns(head)) + self.timed)
         last, after = rows.rows[stated.count - 1 : stated.count], rows.rows[stated.count :]
         if not last or any(row != last[0] for row in after):
             raise InputError(miscounted(source, stated, len(rows.rows), rows.lines[-1], "rows"))

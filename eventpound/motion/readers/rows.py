@@ -9,6 +9,7 @@ from itertools import chain
 
 import numpy as np
 
+from eventpound.errors import InputError
 from eventpound.motion.readers.base import Source
 from eventpound.motion.readers.numbers import clean_numbers, split_token, to_float, with_seconds
 from eventpound.motion.readers.time_column import increases
@@ -48,10 +49,18 @@ class NumberRows:
             return self.numbers[index :: self.width]
         return np.array([to_float(row[index]) for row in self.rows])
 
-    def refuse_other_widths(
+    def refuse_odd(
         self, source: Source, width: int | None = None, *, all_but_last: bool = False
     ) -> None:
-        """Stop at the first row that does not have so many numbers, or as many as the first."""
+        """Stop at what is no number, and at a row of other than so many, or as many as the first.
+
+        Raises
+        ------
+        InputError
+            Naming the first of either.
+        """
+        if self.bad:
+            raise InputError(source.unreadable(self.bad))
         if self.numbers is not None and width in (None, self.width):
             return
         as_first = "" if width else f", as on line {self.lines[0]}"

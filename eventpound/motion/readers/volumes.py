@@ -100,10 +100,11 @@ def _even(source: Source, t: Floats, line: int) -> float | None:
 
 # University of Southern California, Volume I. The lines of text end with the number of their
 # characters. "UNITS ARE SEC AND G/10".
+_USC_FIRST = r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b"
 USC = Dialect(
     name="usc",
-    begins=(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b",),
-    extents=_heads(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b"),
+    begins=(_USC_FIRST,),
+    extents=_heads(_USC_FIRST),
     patterns=(
         r"NO\. OF POINTS\s*=\s*(?P<NO_OF_POINTS>\d+)",
         r"\A.*\n(?P<event>.*?)( {3,}\d.*)?\n(?P<date>.*?)( {3,}\d.*)?\n",
@@ -204,23 +205,16 @@ _CSMIP_NUMBERS = (
 
 def _csmip_extents(source: Source) -> Iterator[Extent]:
     """The channels of acceleration."""
-    start, found = 1, False
+    start = 1
     for number, line in enumerate(source.lines, start=1):
         numbers = None
         if "points" in line.casefold():
             matches = (like.match(line) for like in _CSMIP_NUMBERS)
             numbers = next(filter(None, matches), None)
         if numbers is not None:
-            found = True
             yield Extent(start, number, number, named_groups(numbers, number))
         if numbers or line.startswith(END_OF_CHANNEL):
             start = number + 1
-    if not found:
-        raise source.error(
-            None,
-            "no line 'n POINTS OF ACCEL DATA EQUALLY SPACED AT ...' or "
-            "'n Accelerogram points at ... pts/sec in units of ...'",
-        )
 
 
 CSMIP = Dialect(
@@ -240,5 +234,7 @@ CSMIP = Dialect(
     units="units|peak units",
     width=10,
     ends_file=False,
+    missing="no line 'n POINTS OF ACCEL DATA EQUALLY SPACED AT ...' or "
+    "'n Accelerogram points at ... pts/sec in units of ...'",
     other_names=lambda head: tuple(head.text(key) or "" for key in _OTHER_NAMES),
 )
