@@ -9,7 +9,7 @@ runs do not see the same events, there is a warning: then the tolerance does not
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,7 +22,7 @@ from eventpound.basics.told import Reached
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
-from eventpound.score.difference import Truth, difference
+from eventpound.score.difference import Deviation, Truth, difference
 from eventpound.score.levels import UNIT_OF_TIME
 from eventpound.score.pairing import Paired
 from eventpound.solvers import solver_named
@@ -123,7 +123,7 @@ def estimate_errors(
     estimate["largest"] = {"quantity": worst.quantity.name, "part": worst.error}
     estimate["warnings"] = [
         *_doubts(response, other.events, found.events, estimate["by"]),
-        *_doubts_of_values(task.rtol, estimate["largest"]),
+        *_doubts_of_values(task.rtol, worst),
     ]
     return estimate
 
@@ -186,13 +186,12 @@ def _closing_speeds(events: Sequence[Event], contacts: int) -> list[Floats]:
     return [np.sort(each) for each in found]
 
 
-def _doubts_of_values(rtol: float, largest: Mapping[str, Any]) -> list[str]:
-    if largest["part"] <= allowed_part(rtol):
-        return []
-    return [
-        f"{largest['quantity']} is off by {largest['part']:.1e} of the largest value of its "
-        "kind, as estimated; `eventpound verify` tells why, a smaller rtol may help"
-    ]
+def _doubts_of_values(rtol: float, worst: Deviation) -> Iterator[str]:
+    if worst.error > allowed_part(rtol):
+        yield (
+            f"{worst.quantity.name} is off by {worst.error:.1e} of the largest value of its "
+            "kind, as estimated; `eventpound verify` tells why, a smaller rtol may help"
+        )
 
 
 def _said(kind: str) -> str:

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.score.levels import UNIT_OF_TIME
+from eventpound.score.levels import TINY, UNIT_OF_TIME
 from eventpound.score.pairing import Pair, Paired, Weights
 from eventpound.solvers.base import ENDS_OF_REST, Event, EventKind
 
@@ -25,8 +25,6 @@ SOFT = 1e-6
 BRIEF = 1e-12
 """Part of the length of a run below which a contact that detaches and rests again has not
 opened."""
-TINY = 1e-300
-"""What is divided by instead of nothing."""
 MARGIN = 10.0
 """Multiple of a limit of speed below which one run may find an impact softer than it and the
 other not."""

@@ -12,7 +12,7 @@ import math
 import shlex
 import subprocess
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -214,6 +214,8 @@ def _by_command(
         word.format(problem=folder, out=out, size=f"{size:g}")
         for word in shlex.split(entrant.command)
     ]
+    # It may use so much processor time, and is ended then.
+    most = math.ceil(limit) + 1
     before = _children()
     try:
         run = subprocess.run(
@@ -222,7 +224,9 @@ def _by_command(
             text=True,
             timeout=_ASLEEP * limit if resource else limit,
             check=False,
-            preexec_fn=_limited(math.ceil(limit) + 1) if resource else None,
+            preexec_fn=(lambda: resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1)))
+            if resource
+            else None,
         )
     except subprocess.TimeoutExpired as error:
         raise _TooLongError("the limit of time is reached", np.nan) from error
@@ -237,11 +241,6 @@ def _by_command(
         raise InputError(f"ended with {run.returncode} and said: {said[:200]}")
     history = score.read_history(known, out)
     return score.judge(known, history, max(seconds, 1e-6))
-
-
-def _limited(most: int) -> Callable[[], None]:
-    """What a command does first: it may use so much processor time (s), and is ended then."""
-    return lambda: resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1))
 
 
 def _children() -> float:

@@ -233,10 +233,8 @@ def _write_through(path: Path, content: bytes) -> None:
 
 def _remove(path: Path) -> None:
     """Remove a file of a set that failed; the failure itself is what gets reported."""
-    try:
+    with suppress(OSError):
         path.unlink(missing_ok=True)
-    except OSError:
-        return
 
 
 def _not_written(folder: Path, error: OSError) -> InputError:

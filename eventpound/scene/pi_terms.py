@@ -111,9 +111,7 @@ def number_of_terms(scene: Scene) -> int | None:
     return 1 + len(others) + len(shared)
 
 
-def of_all(
-    scene: Scene, terms: Mapping[str, Value], oscillator: str | None = None
-) -> dict[str, Value]:
+def of_all(scene: Scene, terms: Mapping[str, Value]) -> dict[str, Value]:
     """Terms with those said of all written out for each.
 
     Parameters
@@ -124,17 +122,14 @@ def of_all(
         By the keys of this module, and by ``m.i``, ``omega_s.i``, ``uy.i`` and
         ``Q.i`` for all oscillators but the one looked at, and ``delta`` and
         ``epsilon`` for all contacts, ``delay`` for all supports that have one. A term said of
-        one goes before.
-    oscillator : str, optional
-        Name of the body looked at; the first one by default.
+        one goes before. The body looked at is the first one.
 
     Returns
     -------
     dict
         Terms by the keys of this module only.
     """
-    first = looked_at(scene, oscillator)
-    others = [body.name for body in scene.bodies if body is not first]
+    others = [body.name for body in scene.bodies[1:]]
     written: dict[str, Value] = {}
     for key, value in terms.items():
         stem, _, which = key.partition(".")
