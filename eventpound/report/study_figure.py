@@ -14,12 +14,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.report.map_panel import colours_of, draw_map
 from eventpound.report.notes import LETTER, LINE, letters, wrapped, write_below
 from eventpound.report.style import colors, largest_size, plain_logarithms, show_as_written, styled
 from eventpound.report.symbols import axis_label, display_unit, plain_value, symbol, value_label
@@ -263,11 +264,11 @@ def _draw_map(axes: Axes, plan: FigurePlan, panel: _Panel, page: Sequence[pd.Dat
     plain_logarithms(axes, plan.x_scale == "logarithmic", plan.y_scale == "logarithmic")
     values = np.concatenate([table[panel.y].to_numpy(float) for table in page])
     most = None if plan.y_max is None else plan.y_max / panel.units[1]
-    colours = colours_of(values, most, panel.y.startswith("amplification"))
+    colours = _colours_of(values, most, panel.y.startswith("amplification"))
     grid = panel.table.pivot(index=plan.curves, columns=panel.x, values=panel.y).sort_index()
     grid = grid.set_axis(grid.index / unit.size, axis=0)
     levels = [level / panel.units[1] for level in plan.levels]
-    draw_map(axes, grid, colours, levels)
+    _draw_grid(axes, grid, colours, levels)
     for mark in plan.marks:
         axes.axvline(mark / panel.units[0], color=_WITHOUT, linewidth=0.8, linestyle=":")
     if plan.line:
@@ -340,3 +341,58 @@ def _mark_regions(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Arti
             axes.axvspan(low, high, color=color, linewidth=0.0, zorder=0)
         handles[name] = Patch(color=color)
     return handles
+
+
+_MISSING, _CONTOUR = "#BBBBBB", "#222222"
+"""Colours of where no run has a value, and of lines."""
+_MOST_CONTOURS = 6
+
+
+def _colours_of(values: Floats, high: float | None, around_one: bool) -> tuple[Normalize, str]:
+    """Range and name of the colours of values, shape (n,), up to a given one where that is said.
+
+    Of a ratio that is judged by 1, and of values of both signs, they have two sides.
+    """
+    known = values[np.isfinite(values)]
+    least, most = (known.min(), known.max()) if known.size else (0.0, 1.0)
+    most = float(most) if high is None else high
+    if around_one:
+        away = max(most - 1.0, 1.0 - float(least)) or 1.0
+        return Normalize(1.0 - away, 1.0 + away), "RdBu_r"
+    if least < 0.0 < most:
+        away = max(most, -float(least))
+        return Normalize(-away, away), "RdBu_r"
+    return Normalize(float(least), most if most > least else float(least) + 1.0), "viridis"
+
+
+def _draw_grid(
+    axes: Axes, grid: pd.DataFrame, colours: tuple[Normalize, str], levels: Sequence[float]
+) -> None:
+    """Draw a quantity in colours with a bar beside them, and lines at levels or round values.
+
+    The grid has the abscissa as its columns and the ordinate as its rows, both rising.
+    """
+    x, y, values = (np.asarray(v, float) for v in (grid.columns, grid.index, grid))
+    axes.set_facecolor(_MISSING)
+    axes.grid(visible=False)
+    borders = _borders(x, axes.get_xscale() == "log"), _borders(y, axes.get_yscale() == "log")
+    known = values[np.isfinite(values)]
+    mesh = axes.pcolormesh(*borders, np.ma.masked_invalid(values), norm=colours[0], cmap=colours[1])
+    axes.figure.colorbar(mesh, ax=axes)
+    if min(values.shape) < 2 or not known.size:
+        return
+    low, high = float(known.min()), float(known.max())
+    wanted = levels or MaxNLocator(_MOST_CONTOURS).tick_values(low, high)
+    if inside := sorted(level for level in wanted if low < level < high):
+        lines = axes.contour(
+            x, y, np.ma.masked_invalid(values), inside, colors=_CONTOUR, linewidths=0.7
+        )
+        axes.clabel(lines, fmt="%g", fontsize=7.0)
+
+
+def _borders(middles: Floats, logarithmic: bool) -> Floats:
+    """Borders of cells around n values, half-way between them as the axis has them, (n + 1,)."""
+    m = np.log(middles) if logarithmic else middles
+    half = np.diff(m) / 2.0 if m.size > 1 else np.array([0.5])
+    found = np.concatenate((m[:1] - half[:1], m[:-1] + half[: m.size - 1], m[-1:] + half[-1:]))
+    return np.exp(found) if logarithmic else found
