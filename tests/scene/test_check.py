@@ -54,7 +54,6 @@ def changed(kind: str, position: int, **values: Any) -> Scene:
         (changed("bodies", 0, mass=math.nan), "body 1 (a): mass: found nan"),
         (changed("bodies", 1, velocity=math.inf), "body 2 (b): initial.velocity: found inf"),
         (changed("springs", 1, name="s"), "spring 2 (s): name: found 's'"),
-        (changed("springs", 0, between=("ground", "x")), "spring 1 (s): between: found 'x'"),
         (changed("springs", 0, law=Linear(-1.0)), "spring 1 (s): stiffness: found -1.0"),
         (changed("springs", 1, law=Series(())), "spring 2 (stop): parts: found []"),
         (
@@ -70,7 +69,6 @@ def changed(kind: str, position: int, **values: Any) -> Scene:
         (changed("springs", 0, law=replace(BOUC_WEN, initial_z=1.01)), "initial_z: found 1.01"),
         (changed("dashpots", 0, coefficient=-0.1), "dashpot 1: coefficient: found -0.1"),
         (changed("contacts", 0, restitution=1.1), "contact 1 (c): restitution: found 1.1"),
-        (changed("contacts", 0, left="barrier", right="barrier"), "contact 1 (c): between"),
         (changed("contacts", 1, gap=-0.1), "contact 2 (wall): gap: found -0.1"),
         (changed("bodies", 0, displacement=1e-3), "contact 1 (c): gap: found 0.0"),
     ],
