@@ -56,7 +56,7 @@ class Response:
     error_estimate : mapping, optional
         Errors of peaks and final values, where they were estimated (page "results" of the docs).
     stated : Stated
-        Numbers of ``[run]`` that quantities need, as its `threshold_speed`.
+        Numbers of ``[run]`` that quantities need.
     in_equilibrium : bool
         Whether the scene was put where its forces hold it, as ``start`` of ``[run]`` says.
 

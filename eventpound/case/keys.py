@@ -1,6 +1,6 @@
 """Keys of a table of a case, each declared once by a field of a dataclass.
 
-    threshold_speed: float = number("closing speed of impacts that count", Dimension.VELOCITY, 0.01)
+    start: float = number_key("time of the first sample (s)", Dimension.TIME, 0.0)
 
 What is declared is all that is read of a table, checked of an argument in Python, and told on the
 page of the reference. What follows from several numbers stays code.
