@@ -19,7 +19,7 @@ from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import Clusters, ContactEnds, form_clusters
 from eventpound.mechanics.contact_problem import Joints, of_members, parts, solve_contacts
 from eventpound.mechanics.elements import memory_on_branches
-from eventpound.mechanics.followers import is_support
+from eventpound.mechanics.followers import is_unmoved
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce, state_vector
@@ -320,7 +320,7 @@ def _put_openings(
         level[members[i]] = largest[label[i]]
         mass = now.system.mass
         # Nothing that is undecided moves these, so nothing of its rounding is in them.
-        if (one < 0 or is_support(one, mass)) and (other < 0 or is_support(other, mass)):
+        if is_unmoved(one, mass) and is_unmoved(other, mass):
             level[members[i]] = max(
                 noise[one] if one >= 0 else 0.0, noise[other] if other >= 0 else 0.0
             )

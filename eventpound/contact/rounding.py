@@ -12,7 +12,7 @@ from eventpound.contact.state import Instant
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.elements import drag_slope, memory_stiffness, pull_per_z
-from eventpound.mechanics.followers import is_support
+from eventpound.mechanics.followers import is_unmoved
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_taylor
@@ -119,7 +119,7 @@ def _pass_on(
             if c >= 0:
                 error = max(error, rounding[order, c])
         for c in system.ends[a]:
-            if c < 0 or is_support(c, system.mass):
+            if is_unmoved(c, system.mass):
                 continue
             if system.compliance.size == 0:
                 part = error / (system.mass[c] * (order + 2))

@@ -31,7 +31,7 @@ from eventpound.contact.kinks import still_rate
 from eventpound.contact.rest import ORDER, Touching, free_accelerations, rest_contacts, touching_of
 from eventpound.contact.state import Instant, between_now
 from eventpound.mechanics.clusters import ContactEnds
-from eventpound.mechanics.followers import is_support, rows_of
+from eventpound.mechanics.followers import rows_of, supports_of
 from eventpound.mechanics.link_law import STRENGTH
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.reduced import Forcing
@@ -161,9 +161,7 @@ def _accelerations(touching: Touching, bodies: int) -> tuple[Floats, Floats]:
     Behind the first row stand the Taylor coefficients of those of supports, where not all vanish:
     they may be less than the rounding of a sum, and still tell who gives way.
     """
-    mass, supports = touching.at.mass, 0
-    for b in range(mass.size):
-        supports += is_support(b, mass)
+    supports = supports_of(touching.at.mass).size
     found, noise = free_accelerations(ORDER if supports > 0 else 1, touching)
     rows, count = np.zeros((1 + found.shape[0], bodies)), 1
     rows[0] = found[0, :bodies]

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.followers import Grouped, Rests, examine_rests, follow, is_support
+from eventpound.mechanics.followers import Grouped, Rests, examine_rests, follow, is_unmoved
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel
@@ -158,7 +158,7 @@ def _joined(between: ContactEnds, resting: Bools, pressed: Bools) -> tuple[Any, 
     first_node[first_node < 0] = bodies
     second_node[second_node < 0] = bodies
     # Supports count as the barrier only here: where bodies are placed, these go with theirs.
-    tail, head = _anchored(first_node, mass), _anchored(second_node, mass)
+    tail, head = _anchored(between.left[members], mass), _anchored(between.right[members], mass)
     points, rests = weights.shape[0], members.size
     carrying, locked = np.zeros(rests, np.bool_), np.zeros(rests, np.bool_)
     unique = np.zeros(rests, np.bool_)
@@ -229,11 +229,11 @@ def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> Non
 
 
 @kernel
-def _anchored(node: Ints, mass: Floats) -> Ints:
-    """Nodes, N where one is a support."""
-    result = node.copy()
-    for i in range(node.size):
-        if node[i] < mass.size and is_support(node[i], mass):
+def _anchored(ends: Ints, mass: Floats) -> Ints:
+    """Nodes of the graph at ends of contacts, N of barriers and supports."""
+    result = ends.copy()
+    for i in range(ends.size):
+        if is_unmoved(ends[i], mass):
             result[i] = mass.size
     return result
 

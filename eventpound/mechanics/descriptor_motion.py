@@ -22,7 +22,7 @@ from eventpound.mechanics.elements import (
     z_rate,
     z_slopes,
 )
-from eventpound.mechanics.followers import is_support, own_mass
+from eventpound.mechanics.followers import acceleration_of, force_or_given, own_mass, supports_of
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
@@ -77,7 +77,7 @@ def _accelerations(d: Descriptor, loads: Floats, contact: Floats, ground: float)
         total = loads[b]
         for j in range(contact.size):
             total += d.W[j, b] * contact[j]
-        a[b] = (loads[b] if is_support(b, d.mass) else total / d.mass[b]) - ground
+        a[b] = acceleration_of(b, force_or_given(b, total, loads[b], d.mass), d.mass) - ground
     return a
 
 
@@ -280,9 +280,8 @@ def jacobian(tau: float, y: Floats, cj: float, J: Floats, problem: DescriptorPro
             J[i, i] = cj
             for k in range(d.size):
                 J[i, k] *= d.ledger_weight
-    for b in range(N):
-        if is_support(b, d.mass):
-            # Others follow its given motion.
-            J[:, b], J[:, N + b] = 0.0, 0.0
-            J[b, b] = J[N + b, N + b] = cj
-            J[b, N + b] = -1.0
+    for b in supports_of(d.mass):
+        # Others follow its given motion.
+        J[:, b], J[:, N + b] = 0.0, 0.0
+        J[b, b] = J[N + b, N + b] = cj
+        J[b, N + b] = -1.0

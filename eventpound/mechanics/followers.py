@@ -61,10 +61,34 @@ def is_support(b: int, mass: Floats) -> bool:
     return mass[b] == np.inf
 
 
+@kernel
+def supports_of(mass: Floats) -> Ints:
+    """The supports, or clusters that hold one."""
+    return np.flatnonzero(mass == np.inf)
+
+
+@scalar_kernel
+def is_unmoved(b: int, mass: Floats) -> bool:
+    """Whether no force moves it: a support; or the ground or a barrier, which are -1."""
+    return b < 0 or is_support(b, mass)
+
+
 @scalar_kernel
 def own_mass(b: int, mass: Floats) -> float:
     """Mass of a body that forces move (kg): none of a support."""
     return 0.0 if is_support(b, mass) else float(mass[b])
+
+
+@scalar_kernel
+def force_or_given(b: int, force: float, given: float, mass: Floats) -> float:
+    """The force on a body or cluster (N), in its place the acceleration that is `given` (m/s²)."""
+    return given if is_support(b, mass) else force
+
+
+@scalar_kernel
+def acceleration_of(b: int, force: float, mass: Floats) -> float:
+    """Acceleration in space (m/s²) of what follows no other, by its `force_or_given`."""
+    return force if is_support(b, mass) else force / float(mass[b])
 
 
 @scalar_kernel
@@ -126,9 +150,9 @@ def examine_rests(rests: Rests, own: int, mass: Floats, weights: Floats) -> None
     """
     rows = rows_of(rests.left, rests.right, mass.size, weights)
     R, first = rows.shape
-    for b in range(first):
-        # What moves as it is told to no force moves.
-        rows[:, b] *= not is_support(b, mass)
+    # What moves as it is told to no force moves.
+    for b in supports_of(mass[:first]):
+        rows[:, b] = 0.0
     basis, parts, order = np.zeros(rows.shape), np.zeros((R, R)), np.zeros(R, np.int64)
     count = 0
     for turn in (True, False):
@@ -337,9 +361,9 @@ def _put_compliance(N: Floats, mass: Floats, out: Grouped) -> None:
         for a in range(free):
             for b in range(a + 1):
                 K[a, b] += own[c] * N[c, a] * N[c, b]
-    for g in range(free):
-        if is_support(g, mass):
-            K[g], K[:, g], K[g, g], right[g] = 0.0, 0.0, 1.0, 0.0
+    given = supports_of(mass[:free])
+    for g in given:
+        K[g], K[:, g], K[g, g], right[g] = 0.0, 0.0, 1.0, 0.0
     answer = solve_definite(K, right)
     out.compliance[:] = 0.0
     for c in range(moving):
@@ -348,8 +372,8 @@ def _put_compliance(N: Floats, mass: Floats, out: Grouped) -> None:
             for a in range(free):
                 out.compliance[c, d] += N[c, a] * answer[a, d]
             out.carried[c] += out.compliance[c, d] * own[d]
-    for g in range(free):
-        for c in range(moving if is_support(g, mass) else 0):
+    for g in given:
+        for c in range(moving):
             along = N[c, g]
             for d in range(moving):
                 along -= out.compliance[c, d] * own[d] * N[d, g]

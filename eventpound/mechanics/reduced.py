@@ -29,7 +29,7 @@ from eventpound.mechanics.elements import (
     pull_per_z,
     z_rate,
 )
-from eventpound.mechanics.followers import answers, is_support, own_mass
+from eventpound.mechanics.followers import acceleration_of, answers, force_or_given, own_mass
 from eventpound.mechanics.link_law import LinkLaw
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced_loads import add_load_coefficients, placed, support_of, taken
@@ -152,23 +152,13 @@ def _fields(
     z_of_link = np.full(stiffness.size, -1, np.int64)
     for h in range(hysteretic.size):
         z_of_link[hysteretic[h]] = h
-    link_clusters, shift = np.full(link_ends.shape, -1, np.int64), np.zeros(stiffness.size)
-    moves = np.empty(stiffness.size, np.bool_)
-    for i in range(stiffness.size):
-        for end, sign in ((0, -1.0), (1, 1.0)):
-            b = link_ends[i, end]
-            if b >= 0:
-                link_clusters[i, end] = clusters.of_body[b]
-                shift[i] += sign * clusters.offset[b]
-        # Within a cluster, or at a barrier, a link keeps its elongation, and so its z.
-        moves[i] = link_clusters[i, 0] != link_clusters[i, 1]
-    active, plain = np.flatnonzero(moves), 0
-    ends, z_of_active = np.empty((active.size, 2), np.int64), np.empty(active.size, np.int64)
-    shifted, damping = np.empty(active.size), np.empty(active.size)
+    link_clusters, shift = _ends_in_clusters(link_ends, clusters)
+    # Within a cluster, or at a barrier, a link keeps its elongation, and so its z.
+    active = np.flatnonzero(link_clusters[:, 0] != link_clusters[:, 1])
+    ends, z_of_active, damping = link_clusters[active], z_of_link[active], law.damping[active]
+    shifted, plain = np.empty(active.size), 0
     for a in range(active.size):
         i = active[a]
-        ends[a, 0], ends[a, 1] = link_clusters[i, 0], link_clusters[i, 1]
-        z_of_active[a], damping[a] = z_of_link[i], law.damping[i]
         # x of the bodies is x of their clusters and a constant, whose force belongs to f.
         shifted[a] = preload[i] + stiffness[i] * shift[i]
         code = contact_code(i, law.memory)
@@ -185,29 +175,25 @@ def _fields(
         if iz[a] >= 0:
             # Both have the same ends, so both are active.
             beside[a] = z_of[z_of_link[number_beside(active[a], law.memory)]]
+    first_entry = size if ledger > 0 else -1
     return (
-        size + ledger,
-        cluster_mass,
-        own,
-        ends,
-        stiffness[active],
-        shifted,
-        damping,
-        law.memory[active],
-        np.zeros(active.size),
-        iq,
-        iv,
-        iz,
-        beside,
-        size if ledger > 0 else -1,
-        z_of,
-        active,
-        plain,
-        clusters.compliance,
-        clusters.carried,
-        clusters.slide,
-        clusters.press,
+        *(size + ledger, cluster_mass, own, ends, stiffness[active], shifted, damping),
+        *(law.memory[active], np.zeros(active.size), iq, iv, iz, beside, first_entry, z_of),
+        *(active, plain, clusters.compliance, clusters.carried, clusters.slide, clusters.press),
     )
+
+
+@kernel
+def _ends_in_clusters(link_ends: Ints, clusters: Clusters) -> tuple[Ints, Floats]:
+    """Clusters at the ends of links (L, 2), and what their elongations are more by offsets (m)."""
+    ends, shift = np.full(link_ends.shape, -1, np.int64), np.zeros(link_ends.shape[0])
+    for i in range(shift.size):
+        for end, sign in ((0, -1.0), (1, 1.0)):
+            b = link_ends[i, end]
+            if b >= 0:
+                ends[i, end] = clusters.of_body[b]
+                shift[i] += sign * clusters.offset[b]
+    return ends, shift
 
 
 @kernel
@@ -279,11 +265,6 @@ def put_clusters(
     `share` of the offsets in clusters is in those of the coordinates, u and v (N,): all, or none of
     derivatives.
     """
-    # A cluster of points alone has no mass to weigh their places by: the first point tells it.
-    for b in range(mass.size - 1, -1, -1):
-        c = clusters.of_body[b]
-        if c >= 0 and system.mass[c] == 0.0:
-            y[system.iq[c]], y[system.iv[c]] = u[b] - share * clusters.offset[b], v[b]
     # The mean weighted by mass keeps the momentum, and the place of the centre of mass.
     for b in range(mass.size):
         c = clusters.of_body[b]
@@ -291,10 +272,11 @@ def put_clusters(
             part = mass[b] / system.mass[c]
             y[system.iq[c]] += part * (u[b] - share * clusters.offset[b])
             y[system.iv[c]] += part * v[b]
-    # Nothing moves a support: where one is, its cluster is; the first one where there are several.
+    # Who has all the mass tells it alone: a support, and a point among points, which have none. Of
+    # several the first does.
     for b in range(mass.size - 1, -1, -1):
         c = clusters.of_body[b]
-        if c >= 0 and is_support(b, mass):
+        if c >= 0 and mass[b] == system.mass[c]:
             y[system.iq[c]], y[system.iv[c]] = u[b] - share * clusters.offset[b], v[b]
 
 
@@ -394,9 +376,7 @@ def rate_on_ground(
         _answer_coupled(ground, system, rate)
     else:
         for c in range(system.mass.size):
-            # What stands in the place of the force on a support is its acceleration in space.
-            given = is_support(c, system.mass)
-            rate[iv[c]] = (rate[iv[c]] if given else rate[iv[c]] / system.mass[c]) - ground
+            rate[iv[c]] = acceleration_of(c, rate[iv[c]], system.mass) - ground
     if system.ledger >= 0:
         rate[system.ledger] = put_in
         rate[system.ledger + 1] = viscous
@@ -430,10 +410,7 @@ def _answer_coupled(ground: float, system: Reduced, rate: Floats) -> None:
 def _add_loads(
     t: float, ground: float, y: Floats, rate: Floats, system: Reduced, forcing: Forcing
 ) -> float:
-    """Add the loads at t (s) to the forces that stand in place of v'; returns their power (W).
-
-    In clusters with supports the acceleration in space of these takes that place.
-    """
+    """Add the loads at t (s) to the forces that stand in place of v'; returns their power (W)."""
     loads, power = np.zeros((2, 1, system.mass.size)), 0.0
     pushed, driven = loads[0, 0], loads[1, 0]
     add_load_coefficients(t, system, forcing, 1, loads[0], loads[1])
@@ -446,7 +423,6 @@ def _add_loads(
                 rate[system.ledger + WORK_OF_SUPPORTS + k] = given[c] * y[system.iv[c]]
     for c in range(system.mass.size):
         power += y[system.iv[c]] * pushed[c]
-        rate[system.iv[c]] += pushed[c]
-        if is_support(c, system.mass):
-            rate[system.iv[c]] = driven[c]
+        force = rate[system.iv[c]] + pushed[c]
+        rate[system.iv[c]] = force_or_given(c, force, driven[c], system.mass)
     return power

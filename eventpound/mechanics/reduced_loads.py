@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.mechanics.followers import answers, is_support
+from eventpound.mechanics.followers import answers, force_or_given, supports_of
 from eventpound.motion.loads import (
     LOADED,
     body_of,
@@ -89,17 +89,18 @@ def taken(ground: float, force: Floats, pushed: Floats, driven: Floats, system: 
     system : Reduced
         The mode.
     """
+    # Without points `carried` is empty: only what rests on a support, and goes with it, counts.
     acceleration, found = driven.copy(), np.empty(system.carried.size)
     for c in range(found.size):
-        if not is_support(c, system.mass):
-            acceleration[c] = force[c] + pushed[c]
+        acting = force[c] + pushed[c]
+        acceleration[c] = force_or_given(c, acting, driven[c], system.mass)
     answers(system.compliance, acceleration, found)
     for c in range(found.size):
         acceleration[c] = found[c] + (1.0 - system.carried[c]) * ground
     result = system.own_mass * acceleration - force - pushed
-    for c in range(found.size):
+    for c in supports_of(system.mass):
         for d in range(found.size):
-            if is_support(c, system.mass) and d != c:
+            if d != c:
                 result[c] += system.compliance[d, c] * result[d]
     return result
 

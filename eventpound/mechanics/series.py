@@ -19,7 +19,7 @@ from eventpound.mechanics.elements import (
     pull_per_z,
     z_coefficient,
 )
-from eventpound.mechanics.followers import answers, is_support
+from eventpound.mechanics.followers import acceleration_of, answers, force_or_given
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
 from eventpound.mechanics.reduced_loads import (
@@ -186,6 +186,24 @@ def _set_forces(
 
 
 @kernel
+def _set_accelerations(
+    k: int, ground: float, force: Floats, coupled: Floats, system: Reduced, Y: Floats
+) -> None:
+    """Coefficient k + 1 of q and v, from coefficient k of what acts on the clusters.
+
+    `coupled` (C,), empty where no cluster follows others, is overwritten.
+    """
+    answers(system.compliance, force, coupled)
+    for c in range(force.size):
+        if coupled.size > 0:
+            relative = coupled[c] - system.carried[c] * ground
+        else:
+            relative = acceleration_of(c, force[c], system.mass) - ground
+        Y[k + 1, system.iq[c]] = Y[k, system.iv[c]] / (k + 1)
+        Y[k + 1, system.iv[c]] = relative / (k + 1)
+
+
+@kernel
 def motion_series(
     tau: float, y: Floats, system: Reduced, forcing: Forcing, order: int, speed_noise: float
 ) -> Floats:
@@ -223,27 +241,17 @@ def motion_series(
     if forcing.family == LOADED and system.mass.size > 0:
         place_supports(forcing.start + tau, system, forcing, Y[0])
         add_load_coefficients(forcing.start + tau, system, forcing, order, pushed, driven)
-    iq, iv = system.iq, system.iv
     for k in range(order):
         _set_forces(k, Y, system, terms, speed_noise, force)
         if forcing.family == LOADED:
             if system.ledger >= 0:
                 given[k] = taken(ground[k], force, pushed[k], driven[k], system)
             for c in range(force.size):
-                force[c] += pushed[k, c]
-                if coupled.size > 0 and is_support(c, system.mass):
-                    force[c] = driven[k, c]
+                pushing = force[c] + pushed[k, c]
+                force[c] = force_or_given(c, pushing, driven[k, c], system.mass)
         if forces.size > 0:
             forces[k] = force
-        answers(system.compliance, force, coupled)
-        for c in range(system.mass.size):
-            Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
-            if coupled.size > 0:
-                Y[k + 1, iv[c]] = (coupled[c] - system.carried[c] * ground[k]) / (k + 1)
-                continue
-            # That of a support is given in space; below both are put relative to the ground.
-            free = driven[k, c] if is_support(c, system.mass) else force[c] / system.mass[c]
-            Y[k + 1, iv[c]] = (free - ground[k]) / (k + 1)
+        _set_accelerations(k, ground[k], force, coupled, system, Y)
         if system.ledger >= 0:
             out = Y[k + 1, system.ledger : system.ledger + 3]
             _add_ledger(k, system, Y, ground, terms.x_rate, out)

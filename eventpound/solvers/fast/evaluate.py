@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.followers import drive, is_support, own_mass, place_points, row_answer
+from eventpound.mechanics.followers import (
+    acceleration_of,
+    drive,
+    force_or_given,
+    own_mass,
+    place_points,
+    row_answer,
+)
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.by_address import by_address
@@ -85,8 +92,8 @@ def _accelerations(run: FastRun) -> None:
     if state.progress[0].resting == 0 and series.free.shape[0] == 0:
         for b in range(plan.mass.size):
             # Those of supports `_add_loads` has put there.
-            if not is_support(b, plan.mass):
-                observed.a[b] = observed.body_force[b] / plan.mass[b]
+            applied = force_or_given(b, observed.body_force[b], observed.a[b], plan.mass)
+            observed.a[b] = acceleration_of(b, applied, plan.mass)
         return
     total = series.force
     total[:] = 0.0

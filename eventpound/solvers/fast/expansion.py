@@ -71,7 +71,8 @@ def _curve_coefficient(h: int, k: int, x: float, s: FastSeries) -> float:
 def _add_loads(k: int, mass: Floats, series: FastSeries) -> None:
     """Add coefficient k of the loads on bodies to the forces on clusters."""
     for b in range(mass.size):
-        if series.of_body[b] >= 0 and not is_support(b, mass):
+        # That of a support, no force, is overwritten with what its cluster does.
+        if series.of_body[b] >= 0:
             series.force[series.of_body[b]] += series.load[k, b]
 
 
@@ -142,8 +143,7 @@ def expand(h: float, most: int, run: FastRun) -> tuple[int, float]:
                 X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
                 acceleration[c] = 0.0
         if loaded:
-            # After the forces: the given motion of a support takes the place of what these make of
-            # it.
+            # After the forces: what is given of a support takes the place of what these make.
             drive_clusters(k, plan.mass, series)
         power *= h
         if k + 2 < FEWEST:

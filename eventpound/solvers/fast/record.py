@@ -14,7 +14,7 @@ from eventpound.contact.cascade import is_fleeting, is_over
 from eventpound.contact.event_rows import end_cascade, events_wanted
 from eventpound.contact.state import Now
 from eventpound.mechanics.elements import drag, pull_per_z
-from eventpound.mechanics.followers import is_support, own_mass
+from eventpound.mechanics.followers import is_unmoved, own_mass
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.monitored import copy_extremes
 from eventpound.motion.forcing import CurrentPiece, ground_acceleration
@@ -174,7 +174,7 @@ def goes_with(b: int, s: int, run: FastRun) -> float:
     of_body, series = run.series.of_body, run.series
     if b == s:
         return 1.0
-    if b < 0 or of_body[b] < 0 or of_body[s] < 0 or is_support(b, run.plan.mass):
+    if is_unmoved(b, run.plan.mass) or of_body[b] < 0 or of_body[s] < 0:
         return 0.0
     if series.free.shape[0] > 0:
         return float(series.compliance[of_body[b], of_body[s]])
