@@ -16,7 +16,7 @@ from eventpound.contact.modes import IMPACT, duty
 from eventpound.contact.state import Instant, Now, between_now
 from eventpound.mechanics.clusters import Clusters, close_one, form_clusters
 from eventpound.mechanics.contact_problem import Joints
-from eventpound.mechanics.followers import answers, drive, is_support, own_mass
+from eventpound.mechanics.followers import answers, drive, own_mass
 from eventpound.mechanics.impact import impact_law, inverse_mass, newton, push_apart
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
@@ -123,23 +123,21 @@ def put_as_one(clusters: Clusters, places: bool, mass: Floats, x: Floats) -> Non
     if clusters.compliance.size > 0:
         _put_followers(clusters, offset, mass, x)
         return
-    total, moment = np.zeros(mass.size), np.zeros(mass.size)
+    total, mean = np.zeros(mass.size), np.zeros(mass.size)
     for b in range(mass.size):
-        c = cluster[b]
-        if c >= 0 and not is_support(b, mass):
-            total[c] += mass[b]
-            moment[c] += mass[b] * (x[b] - offset[b])
-    # Backwards: of several supports the first one tells.
-    for b in range(mass.size - 1, -1, -1):
-        if cluster[b] >= 0 and is_support(b, mass):
-            total[cluster[b]], moment[cluster[b]] = 1.0, x[b] - offset[b]
+        if cluster[b] >= 0:
+            total[cluster[b]] += mass[b]
+            mean[cluster[b]] += own_mass(b, mass) * (x[b] - offset[b])
+    for c in range(clusters.count):
+        mean[c] /= total[c]
+    drive(cluster, mass, x - offset, mean)
     for b in range(mass.size):
         c = cluster[b]
         if c < 0:
             x[b] = offset[b]
         # A body by itself keeps every bit.
         elif total[c] != mass[b]:
-            x[b] = offset[b] + moment[c] / total[c]
+            x[b] = offset[b] + mean[c]
 
 
 @kernel

@@ -7,7 +7,9 @@ import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from eventpound.contact.impacts import put_as_one
 from eventpound.mechanics.clusters import Clusters, ContactEnds, form_clusters
+from eventpound.numerics.compiled import in_python
 from tests.numerics.problems import NO_POINTS, Contacts, graph
 
 
@@ -133,6 +135,18 @@ def test_supports_are_one_node_and_no_cluster_has_two() -> None:
     # From the barrier to the first support nothing leads, from the first to the second one row.
     np.testing.assert_array_equal(clusters.locked, every)
     assert not clusters.unique.any()
+
+
+@pytest.mark.parametrize("mass", [1.0, 2.0])
+def test_what_rests_on_a_support_is_put_there(mass: float) -> None:
+    """One of 1 kg, too, for which it was once enough that the others of its cluster weigh that."""
+    every, masses = np.ones(1, bool), np.array([np.inf, mass])
+    ends = np.array([0]), np.array([1]), np.array([0.25])
+    clusters = form_clusters(ContactEnds(*ends, masses, NO_POINTS, 1), every, every)
+    for places, expected in ((True, [0.5, 0.25]), (False, [0.5, 0.5])):
+        x = np.array([0.5, 0.375])
+        in_python(put_as_one)(clusters, places, masses, x)
+        np.testing.assert_array_equal(x, expected)
 
 
 def test_nobody_rests() -> None:
