@@ -82,8 +82,8 @@ def _accelerations(d: Descriptor, loads: Floats, contact: Floats, ground: float)
 
 
 @kernel
-def to_moving_frame(problem: DescriptorProblem, tau: float, sign: float, y: Floats) -> None:
-    """Add (sign +1) or take away (-1) the motion of the frame at tau, in place.
+def to_moving_frame(problem: DescriptorProblem, tau: float, sign: float, y: Floats) -> float:
+    """Add (sign +1) or take away (-1) the motion of the frame at tau, in place; its s'' (m/s²).
 
     Where there are loads there is no frame, and supports are put where they are at tau.
     """
@@ -94,12 +94,13 @@ def to_moving_frame(problem: DescriptorProblem, tau: float, sign: float, y: Floa
                 b = body_of(row, forcing.coefficients)
                 y[b], y[d.mass.size + b] = support_motion(row, forcing, forcing.start + tau)
     if frame.shape[1] == 0:
-        return
+        return 0.0
     N = d.mass.size
-    s, v, _ = frame_motion(frame, problem.forcing.start + tau)
+    s, v, a = frame_motion(frame, forcing.start + tau)
     for b in range(N):
         y[b] += sign * d.framed[b] * s
         y[N + b] += sign * d.framed[b] * v
+    return a
 
 
 @kernel
@@ -129,11 +130,11 @@ def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Descript
     problem : DescriptorProblem
         Whose equations.
     """
-    d, forcing, frame = problem.d, problem.forcing, problem.frame
+    d, forcing = problem.d, problem.forcing
     N, H, R, t = d.mass.size, d.hysteretic, d.opening.size, forcing.start + tau
     ground = ground_acceleration(forcing, t)
-    lift = frame_motion(frame, t)[2] if frame.shape[1] > 0 else 0.0
-    relative = relative_to_ground(tau, y, problem)
+    relative = y.copy()
+    lift = to_moving_frame(problem, tau, -1.0, relative)
     z_rates, loads = np.empty(H), np.empty(N)
     _link_loads(d, relative, z_rates, loads)
     if forcing.family == LOADED:
