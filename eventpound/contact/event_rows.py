@@ -72,6 +72,12 @@ def new_group(now: Now) -> int:
 
 
 @scalar_kernel
+def kind_of_slide(rate: float) -> int:
+    """Kind of the row of a contact that slides at a rate (m/s), whose sign alone counts."""
+    return STICKS if rate == 0.0 else SLIPS_FORWARD if rate > 0.0 else SLIPS_BACKWARD
+
+
+@scalar_kernel
 def kind_of_impact(listed: bool, plastic: bool, before: float, restitution: float) -> int:
     """Kind of the row of an impact, the last of a cascade where it is `plastic` against its law.
 

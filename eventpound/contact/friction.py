@@ -47,11 +47,13 @@ from eventpound.contact.rubbing import (
     Sliding,
     all_joints,
     by_poisson,
+    first_holding,
     is_at_bound,
     keep_friction,
     kinds_before,
     list_slides,
     matrix_of_rows,
+    slide_of,
     sliding_of,
 )
 from eventpound.contact.state import Instant, between_now
@@ -61,8 +63,6 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.coulomb import (
-    BACKWARD,
-    FORWARD,
     NO_ANSWER,
     OPEN,
     SEVERAL,
@@ -70,6 +70,7 @@ from eventpound.numerics.coulomb import (
     Rubbing,
     solve_rubbing,
     sticks_well,
+    way_of,
 )
 from eventpound.tolerances import CANCELLED, GAINED, QUIET
 
@@ -80,11 +81,10 @@ def begin_beside_friction(force: Floats, kinked: Bools, rubs: Rubs, at: Instant)
 
     force (K,): of the contacts as the instant begins (N). kinked (L,): links whose rate vanishes.
     """
-    K, L = at.gap.size, at.branch.size
-    own, first, stopped = K - rubs.contact.size, L - rubs.contact.size, False
+    own, stopped = first_holding(rubs), False
     held = at.resting.copy()
     for f in range(rubs.contact.size):
-        t, a = own + f, first + f
+        t, a = own + f, slide_of(own + f, at)
         x = difference(at.u, at.left[t], at.right[t])
         if at.resting[rubs.contact[f]] and at.branch[a] != 0:
             rubs.kept[PATH, f] += abs(x - rubs.kept[PLACE, f])
@@ -110,7 +110,7 @@ def begin_beside_friction(force: Floats, kinked: Bools, rubs: Rubs, at: Instant)
 def _still_slides(rubs: Rubs, at: Instant) -> None:
     """Let contacts that slide so slowly that it has no direction not slide."""
     still = still_rate(at.length, at.time)
-    for t in range(at.gap.size - rubs.contact.size, at.gap.size):
+    for t in range(first_holding(rubs), at.gap.size):
         at.gap_rate[t] = at.gap_rate[t] if abs(at.gap_rate[t]) > still else 0.0
 
 
@@ -123,7 +123,7 @@ def settle_with_friction(rubs: Rubs, at: Instant) -> int:
     ended = _impacts(rubs, at)
     _still_slides(rubs, at)
     if ended == DONE and at.now[0].here > 0:
-        own = at.gap.size - rubs.contact.size
+        own = first_holding(rubs)
         for f in range(rubs.contact.size):
             j, t = rubs.contact[f], own + f
             closed = at.gap[j] == 0.0 and at.gap_rate[j] == 0.0
@@ -189,9 +189,8 @@ def _impact(plastic: bool, shut: Bools, rubs: Rubs, at: Instant) -> int:
             at.gap_rate[t] = w[k + i]
             by_friction = -0.5 * x[k + i] * (before[t] + w[k + i])
             lost += by_friction
-            keep_friction(
-                t - at.gap.size + rubs.contact.size, x[i], x[k + i], by_friction, rubs.kept
-            )
+            f = t - first_holding(rubs)
+            keep_friction(f, x[i], x[k + i], by_friction, rubs.kept)
     if lost < -GAINED * passed:
         return GAINS
     open_last(plastic, shut, at)
@@ -243,7 +242,7 @@ def _ways(sliding: Sliding, at: Instant) -> tuple[Ints, Bools]:
 
     Its bound has just been reached, or is that of a contact that slides no more than others let it.
     """
-    k, K, L = sliding.members.size, at.gap.size, at.branch.size
+    k = sliding.members.size
     ways, bound = np.zeros(k, np.int64), np.zeros(k, np.bool_)
     for i in range(k):
         t = sliding.rows[k + i]
@@ -252,7 +251,7 @@ def _ways(sliding: Sliding, at: Instant) -> tuple[Ints, Bools]:
         if at.gap_rate[t] != 0.0:
             ways[i] = 1 if at.gap_rate[t] > 0.0 else -1
         elif at.released[t] or is_at_bound(sliding.members[i], t, at):
-            ways[i], bound[i] = at.branch[L - K + t], True
+            ways[i], bound[i] = at.branch[slide_of(t, at)], True
     return ways, bound
 
 
@@ -328,7 +327,7 @@ def _answer_where_open(
                 kept[i] = again = True
             elif kept[i] and bound[i] and ways[i] != 0:
                 # It does not go the way in which friction has come to its bound.
-                slips = state[i] in (FORWARD, BACKWARD)
+                slips = way_of(state[i]) != 0
                 if outcome == NO_ANSWER or (slips and ways[i] * w[k + i] < -problem.noise[k + i]):
                     ways[i], again = 0, True
         if not again:
@@ -363,12 +362,11 @@ def _take_ways(
     sliding: Sliding, state: Ints, resting: Bools, pressed: Bools, rubs: Rubs, at: Instant
 ) -> None:
     """Branches, and who sticks (K,) where, from the states of the contacts that touch."""
-    K, L, k = at.gap.size, at.branch.size, sliding.members.size
-    own = K - rubs.contact.size
-    for t in range(own, K):
-        at.branch[L - K + t], at.gap[t] = 0, np.inf
+    k = sliding.members.size
+    for t in range(first_holding(rubs), at.gap.size):
+        at.branch[slide_of(t, at)], at.gap[t] = 0, np.inf
     for i in range(k):
-        t, a = sliding.rows[k + i], L - K + sliding.rows[k + i]
+        t = sliding.rows[k + i]
         if t < 0 or not resting[sliding.members[i]]:
             continue
         if state[i] == STICK:
@@ -376,5 +374,5 @@ def _take_ways(
             at.gap[t], at.gap_rate[t] = 0.0, 0.0
             if not at.resting[t]:
                 at.opening[t] = -difference(at.u, at.left[t], at.right[t])
-        elif state[i] != OPEN:
-            at.branch[a] = 1 if state[i] == FORWARD else -1
+        else:
+            at.branch[slide_of(t, at)] = way_of(state[i])

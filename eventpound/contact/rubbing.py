@@ -11,13 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.contact.event_rows import (
-    SLIPS_BACKWARD,
-    SLIPS_FORWARD,
-    STICKS,
-    new_group,
-    write_slide,
-)
+from eventpound.contact.event_rows import STICKS, kind_of_slide, new_group, write_slide
 from eventpound.contact.impacts import NO_FORCES, NO_IMPACT
 from eventpound.contact.kinks import still_rate
 from eventpound.contact.state import Instant
@@ -25,7 +19,7 @@ from eventpound.mechanics.contact_problem import Joints, coupling
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
-from eventpound.numerics.coulomb import FORWARD, OPEN, STICK
+from eventpound.numerics.coulomb import OPEN, STICK, way_of
 from eventpound.numerics.small_systems import independent_columns
 from eventpound.tolerances import DEPENDENT
 
@@ -72,21 +66,32 @@ class Sliding(NamedTuple):
 
 
 @scalar_kernel
+def first_holding(rubs: Rubs) -> int:
+    """The first of the contacts that rest while those with friction stick."""
+    return rubs.friction.size - rubs.contact.size
+
+
+@scalar_kernel
+def slide_of(t: int, at: Instant) -> int:
+    """The link beside a contact that holds what sticks, whose branch is the way of the slip."""
+    return at.branch.size - at.gap.size + t
+
+
+@scalar_kernel
 def by_poisson(rubs: Rubs, at: Instant) -> bool:
     """Whether impacts follow Poisson's law, not Newton's."""
-    return at.restitution[at.restitution.size - rubs.contact.size] > 0.0
+    return at.restitution[first_holding(rubs)] > 0.0
 
 
 @kernel
 def sliding_of(members: Ints, rubs: Rubs) -> Sliding:
     """Rows of some contacts."""
-    first = rubs.friction.size - rubs.contact.size
     rows = np.full(2 * members.size, -1)
     for i in range(members.size):
         rows[i] = members[i]
         for f in range(rubs.contact.size):
             if rubs.contact[f] == members[i]:
-                rows[members.size + i] = first + f
+                rows[members.size + i] = first_holding(rubs) + f
     return Sliding(members, rows)
 
 
@@ -120,24 +125,24 @@ def keep_friction(f: int, normal: float, tangential: float, lost: float, kept: F
 def is_at_bound(j: int, t: int, at: Instant) -> bool:
     """Whether contact j, which has not slid, was one of those that slip all the same."""
     slid = difference(at.before, at.left[t], at.right[t])
-    slips = at.branch[at.branch.size - at.gap.size + t] != 0
+    slips = at.branch[slide_of(t, at)] != 0
     return at.resting[j] and slips and abs(slid) <= still_rate(at.length, at.time)
 
 
 @kernel
 def kinds_before(sliding: Sliding, at: Instant) -> Ints:
     """What contacts did up to the instant (k,): the kind of row that told it, -1 of open ones."""
-    k, K, L = sliding.members.size, at.gap.size, at.branch.size
+    k = sliding.members.size
     kinds = np.full(k, -1)
     for i in range(k):
         t = sliding.rows[k + i]
         if t >= 0 and at.resting[sliding.members[i]]:
-            way = at.branch[L - K + t]
+            way = at.branch[slide_of(t, at)]
             if at.resting[t] or is_at_bound(sliding.members[i], t, at):
                 kinds[i] = STICKS
             elif way != 0:
                 # One whose slip has just ended is told anew, whatever follows.
-                kinds[i] = SLIPS_BACKWARD if way < 0 else SLIPS_FORWARD
+                kinds[i] = kind_of_slide(way)
     return kinds
 
 
@@ -150,7 +155,7 @@ def list_slides(sliding: Sliding, before: Ints, state: Ints, groups: int, at: In
         if t < 0 or state[i] == OPEN or not at.resting[sliding.members[i]]:
             continue
         if state[i] != STICK and (at.gap_rate[t] != 0.0 or not _is_held(i, sliding, state, at)):
-            kind = SLIPS_FORWARD if state[i] == FORWARD else SLIPS_BACKWARD
+            kind = kind_of_slide(way_of(state[i]))
         if kind != before[i]:
             if now.groups == groups:
                 group = new_group(now)

@@ -72,9 +72,15 @@ def _is_given(i: int, problem: Rubbing) -> bool:
 
 
 @scalar_kernel
+def way_of(state: int) -> int:
+    """The way of slip in a state: 1, -1, or 0 where there is none."""
+    return 1 if state == FORWARD else -1 if state == BACKWARD else 0
+
+
+@scalar_kernel
 def _drag(i: int, state: int, problem: Rubbing) -> float:
     """T of a contact for N = 1, in a state of slip."""
-    return -problem.friction[i] if state == FORWARD else problem.friction[i]
+    return -way_of(state) * float(problem.friction[i])
 
 
 @scalar_kernel
@@ -198,7 +204,7 @@ def solve_state(state: Ints, problem: Rubbing) -> tuple[Floats, Floats, float]:
         left = max(left, abs(w[rows[a]]))
         x[rows[a]], w[rows[a]] = found[a], 0.0
     for i in range(k):
-        if state[i] == FORWARD or state[i] == BACKWARD:
+        if way_of(state[i]) != 0:
             x[k + i] = _drag(i, state[i], problem) * x[i]
     failing = _failing(state, x, w, problem) if left <= rounding * spread else np.inf
     return x, w, failing / (rounding * spread) if failing > 0.0 else 0.0
@@ -216,7 +222,7 @@ def _failing(state: Ints, x: Floats, w: Floats, problem: Rubbing) -> float:
         if state[i] == STICK:
             most = max(most, abs(x[k + i]) - problem.friction[i] * x[i])
         elif not _is_given(i, problem):
-            most = max(most, -w[k + i] if state[i] == FORWARD else w[k + i])
+            most = max(most, -way_of(state[i]) * w[k + i])
     return most
 
 

@@ -28,10 +28,8 @@ from eventpound.contact.event_rows import (
     DETACHMENT,
     IMPACT,
     REST,
-    SLIPS_BACKWARD,
-    SLIPS_FORWARD,
-    STICKS,
     EventRow,
+    kind_of_slide,
     new_group,
     write_event,
     write_slide,
@@ -352,7 +350,7 @@ def _list_slide(
     kind, now = -1, stepping.record.now[0]
     if active.resting[j]:
         rate = slip_rate(stepping.structure, j, stepping.trial.v)
-        kind = SLIPS_FORWARD if rate > still else SLIPS_BACKWARD if rate < -still else STICKS
+        kind = kind_of_slide(rate if abs(rate) > still else 0.0)
         if kind != active.slides[j]:
             group = new_group(now) if group < 0 else group
             write_slide(t, kind, j, group, now, stepping.record.events)
