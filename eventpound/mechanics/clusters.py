@@ -206,6 +206,20 @@ def _unique(
     return ~several[cluster]
 
 
+@kernel
+def have_ends(clusters: Clusters, first_holding: int) -> Bools:
+    """Resting contacts (R,) whose forces tell when their rest ends.
+
+    Not those that are locked, nor redundant ones, which are given none. But of those from
+    `first_holding` on, which hold what friction does, each takes part of it, and has a bound.
+    """
+    found = np.empty(clusters.resting.size, np.bool_)
+    for i in range(found.size):
+        idle = clusters.redundant[i] and clusters.resting[i] < first_holding
+        found[i] = not (clusters.locked[i] or idle)
+    return found
+
+
 def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> None:
     """Put two bodies, or one at a barrier, in touch, their centre of mass kept.
 

@@ -136,6 +136,16 @@ class Model:
         return self.contacts - self.sliders.size - self.rubbing.size
 
     @property
+    def holding(self) -> Ints:
+        """Contacts that rest while those with friction stick (F,), the last."""
+        return np.arange(self.contacts - self.rubbing.size, self.contacts)
+
+    @property
+    def slides(self) -> Ints:
+        """Links along contacts with friction (F,), the last, whose branches are ways of slips."""
+        return np.arange(self.links - self.rubbing.size, self.links)
+
+    @property
     def ledger_entries(self) -> int:
         """Entries of the energy ledger, the work of each support and each friction the last."""
         return WORK_OF_SUPPORTS + self.supports + self.rubbing.size

@@ -23,7 +23,7 @@ SCENE = Scene(
 LENGTH_NOISE, FORCE_NOISE = 1e-15, 1e-12
 
 
-def _watched(*, rests: bool) -> Guards:
+def _guards(*, rests: bool) -> Guards:
     none = np.array([np.inf])
     marks = np.array([not rests]), np.array([rests])
     forces, turns = (np.zeros(1), none), np.zeros(1, np.bool_)
@@ -31,30 +31,30 @@ def _watched(*, rests: bool) -> Guards:
     return Guards(*marks, False, *forces, -none, none, turns, FORCE_NOISE, at, *rubs)
 
 
-def _check(t: float, observed: Observed, watched: Guards) -> None:
-    j = broken_contact(observed, watched, LENGTH_NOISE)
+def _check(t: float, observed: Observed, guards: Guards) -> None:
+    j = broken_contact(observed, guards, LENGTH_NOISE)
     if j >= 0:
-        raise contact_error(t, j, observed, watched, ["joint"])
+        raise contact_error(t, j, observed, guards, ["joint"])
 
 
 def test_penetration_names_the_contact_and_the_depth():
     observed = blank_observed(*assemble(SCENE).counts)
     observed.gap[0, 0] = -1e-6
     with pytest.raises(ComputationError, match=r"t = 2 s: contact 'joint' penetrates by 1e-06 m"):
-        _check(2.0, observed, _watched(rests=False))
+        _check(2.0, observed, _guards(rests=False))
 
 
 def test_rounding_is_not_penetration():
     observed = blank_observed(*assemble(SCENE).counts)
     observed.gap[0, 0] = -1e-16
-    _check(2.0, observed, _watched(rests=False))
+    _check(2.0, observed, _guards(rests=False))
 
 
 def test_a_resting_contact_does_not_pull():
     observed = blank_observed(*assemble(SCENE).counts)
     observed.contact_force[0, 0] = -1e-3
     with pytest.raises(ComputationError, match=r"'joint' pulls with 0.001 N"):
-        _check(2.0, observed, _watched(rests=True))
+        _check(2.0, observed, _guards(rests=True))
 
 
 @pytest.mark.parametrize("closure", [1e-2, -1e-2, np.nan])

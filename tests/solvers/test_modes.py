@@ -70,10 +70,10 @@ def test_what_a_mode_watches():
         Contact("right", "b", "barrier", 0.0, 0.5),
     )
     branch = np.zeros(1, np.int64)
-    free = table.mode(np.array([False, True, False]), branch).watched
+    free = table.mode(np.array([False, True, False]), branch).guards
     np.testing.assert_array_equal(free.open_contacts, [True, False, True])
     np.testing.assert_array_equal(free.unlocked, [False, True, False])
-    locked = table.mode(np.ones(3, bool), branch).watched
+    locked = table.mode(np.ones(3, bool), branch).guards
     assert not locked.open_contacts.any()
     assert not locked.unlocked.any()
 

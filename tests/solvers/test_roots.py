@@ -63,11 +63,11 @@ def nothing_else_looks(monkeypatch):
     def watched(self: Segment, *arguments: object) -> None:
         begin(self, *arguments)
         assert self.event_run.state.progress[0].finder == INTEGRATOR
-        watched = self._examined.dynamics.watched
-        assert not watched.open_contacts.any()
-        assert not watched.unlocked.any()
-        assert not watched.follows
-        assert np.isinf((watched.kink_low, watched.kink_high)).all()
+        guards = self._examined.dynamics.guards
+        assert not guards.open_contacts.any()
+        assert not guards.unlocked.any()
+        assert not guards.follows
+        assert np.isinf((guards.kink_low, guards.kink_high)).all()
 
     monkeypatch.setattr(Segment, "__init__", watched)
 

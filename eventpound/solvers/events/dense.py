@@ -86,7 +86,7 @@ def observe_at(tau: float, step: DenseStep) -> None:
     if dense.own:
         for j in range(observed.gap.shape[1]):
             # By their own variables, whose digits differences of displacements do not have.
-            if mode.watched.open_contacts[j]:
+            if mode.guards.open_contacts[j]:
                 observed.gap[0, j], observed.gap[1, j] = value_and_slope(dense.gaps[j], tau)
 
 

@@ -97,73 +97,73 @@ def _may_peak(i: int, a: Observed, b: Observed, h: float, running: Running) -> b
 
 
 @kernel
-def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Guards, marks: Marks) -> None:
-    at = watched.at
+def _inspect_contacts(a: Observed, b: Observed, h: float, guards: Guards, marks: Marks) -> None:
+    at = guards.at
     for j in range(a.gap.shape[1]):
         marks.closing[j] = False
         marks.detaching[j] = False
-        if watched.open_contacts[j]:
+        if guards.open_contacts[j]:
             i = at.gap + j
             low, high = _bounds(motion_of(i, at, a), motion_of(i, at, b), h, True)
             marks.closing[j] = low <= DOUBT * (high - low)
-        elif watched.unlocked[j] and watched.presses[j] >= 0:
-            marks.detaching[j] = _may_slip(j, a, b, h, watched)
-        elif watched.unlocked[j]:
+        elif guards.unlocked[j] and guards.presses[j] >= 0:
+            marks.detaching[j] = _may_slip(j, a, b, h, guards)
+        elif guards.unlocked[j]:
             i = at.contact_force + j
             low, high = _bounds(motion_of(i, at, a), motion_of(i, at, b), h, False)
             doubt = DOUBT * (high - low)
             marks.detaching[j] = (
-                low - doubt < watched.force_low[j] - watched.force_noise
-                or high + doubt > watched.force_high[j] + watched.force_noise
+                low - doubt < guards.force_low[j] - guards.force_noise
+                or high + doubt > guards.force_high[j] + guards.force_noise
             )
 
 
 @kernel
-def _may_slip(j: int, a: Observed, b: Observed, h: float, watched: Guards) -> bool:
+def _may_slip(j: int, a: Observed, b: Observed, h: float, guards: Guards) -> bool:
     """Whether what sticks may come to the bound of friction inside a step."""
-    i, mu, may = watched.presses[j], watched.friction[j], False
+    i, mu, may = guards.presses[j], guards.friction[j], False
     x, y = a.contact_force, b.contact_force
     for way in (1.0, -1.0):
         start = mu * x[0, i] + way * x[0, j], mu * x[1, i] + way * x[1, j], 0.0
         end = mu * y[0, i] + way * y[0, j], mu * y[1, i] + way * y[1, j], 0.0
         low, high = _bounds(start, end, h, False)
-        may |= low - DOUBT * (high - low) < -watched.force_noise
+        may |= low - DOUBT * (high - low) < -guards.force_noise
     return may
 
 
 @kernel
-def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Guards, marks: Marks) -> None:
+def _inspect_kinks(a: Observed, b: Observed, h: float, guards: Guards, marks: Marks) -> None:
     for link in range(marks.kink.size):
         marks.kink[link] = False
-        if watched.kink_low[link] == -np.inf and watched.kink_high[link] == np.inf:
+        if guards.kink_low[link] == -np.inf and guards.kink_high[link] == np.inf:
             continue
         # Of contact elements, which are links too, no extremes are kept.
         x0, x1 = a.elongation[:, link], b.elongation[:, link]
-        if watched.turns[link]:
+        if guards.turns[link]:
             low, high = _bounds((x0[1], x0[2], 0.0), (x1[1], x1[2], 0.0), h, False)
         else:
             low, high = _bounds((x0[0], x0[1], x0[2]), (x1[0], x1[1], x1[2]), h, True)
         doubt = DOUBT * (high - low)
-        marks.kink[link] = low - doubt < watched.kink_low[link]
-        marks.kink[link] = marks.kink[link] or high + doubt > watched.kink_high[link]
+        marks.kink[link] = low - doubt < guards.kink_low[link]
+        marks.kink[link] = marks.kink[link] or high + doubt > guards.kink_high[link]
 
 
 @scalar_kernel
-def margin_on_branch(link: int, watched: Guards, elongation: Floats) -> tuple[float, float]:
+def margin_on_branch(link: int, guards: Guards, elongation: Floats) -> tuple[float, float]:
     """How far a link is from the end of its branch, positive inside (m, or m/s), and the rate."""
-    order = 1 if watched.turns[link] else 0
+    order = 1 if guards.turns[link] else 0
     x, x_rate = elongation[order, link], elongation[order + 1, link]
-    return _margin_between(watched.kink_low[link], watched.kink_high[link], x, x_rate)
+    return _margin_between(guards.kink_low[link], guards.kink_high[link], x, x_rate)
 
 
 @scalar_kernel
-def margin_at_rest(j: int, watched: Guards, contact_force: Floats) -> tuple[float, float]:
+def margin_at_rest(j: int, guards: Guards, contact_force: Floats) -> tuple[float, float]:
     """How far the force of a resting contact is from where its rest ends (N), and the rate."""
-    i, mu = watched.presses[j], watched.friction[j]
+    i, mu = guards.presses[j], guards.friction[j]
     if i >= 0:
         bound, rate = mu * contact_force[0, i], mu * contact_force[1, i]
         return _margin_of_stick(bound, rate, contact_force[0, j], contact_force[1, j])
-    low, high = watched.force_low[j], watched.force_high[j]
+    low, high = guards.force_low[j], guards.force_high[j]
     return _margin_between(low, high, contact_force[0, j], contact_force[1, j])
 
 
@@ -195,14 +195,14 @@ def _margin_between(low: float, high: float, x: float, x_rate: float) -> tuple[f
 
 
 @scalar_kernel
-def noise_on_branch(link: int, watched: Guards, length: float, time: float) -> float:
+def noise_on_branch(link: int, guards: Guards, length: float, time: float) -> float:
     """Size of `margin_on_branch` that means nothing, of a scene's own scales (m, s)."""
-    return still_rate(length, time) if watched.turns[link] else LENGTH * length
+    return still_rate(length, time) if guards.turns[link] else LENGTH * length
 
 
 @kernel
 def inspect_step(
-    a: Observed, b: Observed, h: float, watched: Guards, running: Running, marks: Marks
+    a: Observed, b: Observed, h: float, guards: Guards, running: Running, marks: Marks
 ) -> bool:
     """Mark what may have happened between two instants.
 
@@ -212,7 +212,7 @@ def inspect_step(
         Both ends of the step, in the same mode.
     h : float
         Length of the step (s).
-    watched : Guards
+    guards : Guards
         What to look for.
     running : Running
         Extremes known so far; a peak is marked only where it may exceed them.
@@ -224,12 +224,12 @@ def inspect_step(
     bool
         Whether anything is marked.
     """
-    _inspect_contacts(a, b, h, watched, marks)
-    _inspect_kinks(a, b, h, watched, marks)
+    _inspect_contacts(a, b, h, guards, marks)
+    _inspect_kinks(a, b, h, guards, marks)
     at = running.at
     for i in range(at.gap, at.end):
         j = contact_pressed(i, at)
         # An open contact has no force to peak.
-        marks.peak[i] = not (j >= 0 and watched.open_contacts[j]) and _may_peak(i, a, b, h, running)
+        marks.peak[i] = not (j >= 0 and guards.open_contacts[j]) and _may_peak(i, a, b, h, running)
     some = marks.closing.any() or marks.detaching.any() or marks.kink.any() or marks.peak.any()
-    return bool(some or watched.follows)
+    return bool(some or guards.follows)

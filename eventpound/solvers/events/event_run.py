@@ -295,9 +295,9 @@ class EventRun:
 
     def broken_contact(self, t: float) -> ComputationError:
         """What to raise where the last observation has a contact that penetrates or pulls."""
-        observed, watched = self.arrays.observations[2], self.mode.watched
-        j = in_python(broken_contact)(observed, watched, self.rules.length_noise)
-        return contact_error(t, j, observed, watched, self.names)
+        observed, guards = self.arrays.observations[2], self.mode.guards
+        j = in_python(broken_contact)(observed, guards, self.rules.length_noise)
+        return contact_error(t, j, observed, guards, self.names)
 
 
 def blank_observations(model: Model, count: int) -> tuple[Observed, ...]:

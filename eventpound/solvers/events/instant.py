@@ -225,9 +225,9 @@ def _decide(arrays: Run, mode: Dynamics, piece: CurrentPiece) -> int:
     z, at, sliders = arrays.state.z, arrays.instant, mode.bodies.sliders
     forcing = by_address(forcing_now(piece, arrays.state.now[0].t))
     if sliders.size > 0:
-        return decide_sticks(z, forcing, mode.watched.force_noise, sliders, at)
+        return decide_sticks(z, forcing, mode.guards.force_noise, sliders, at)
     if mode.bodies.rubbing.size > 0:
-        return decide_friction(z, forcing, mode.watched.force_noise, _rubs(mode), at)
+        return decide_friction(z, forcing, mode.guards.force_noise, _rubs(mode), at)
     return decide_rests(z, forcing, at)
 
 

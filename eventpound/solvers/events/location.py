@@ -78,12 +78,12 @@ def _sample(tau: float, g: EventFunction, step: DenseStep) -> Sample:
     if g.kind == _GAP:
         return Sample(tau, observed.gap[0, i], observed.gap[1, i])
     if g.kind == _FORCE:
-        force, rate = margin_at_rest(i, step.dynamics.watched, observed.contact_force)
+        force, rate = margin_at_rest(i, step.dynamics.guards, observed.contact_force)
         return Sample(tau, force - g.level, rate)
     if g.kind == _MONITORED:
-        value, rate, _ = motion_of(i, step.dynamics.watched.at, observed)
+        value, rate, _ = motion_of(i, step.dynamics.guards.at, observed)
         return Sample(tau, value, rate)
-    margin, rate = margin_on_branch(i, step.dynamics.watched, observed.elongation)
+    margin, rate = margin_on_branch(i, step.dynamics.guards, observed.elongation)
     return Sample(tau, margin - g.level, rate)
 
 
@@ -219,7 +219,7 @@ def _rate_at(tau: float, of: tuple[EventFunction, DenseStep]) -> float:
 
 @kernel
 def first_event(
-    marks: Marks, watched: Guards, rules: Rules, located: Located, step: DenseStep
+    marks: Marks, guards: Guards, rules: Rules, located: Located, step: DenseStep
 ) -> float:
     """The earliest closing, release or change of branch among what an inspection marked.
 
@@ -227,7 +227,7 @@ def first_event(
     ----------
     marks : Marks
         Of the inspection.
-    watched : Guards
+    guards : Guards
         What was inspected.
     rules : Rules
         Constants of the run: which sizes mean nothing.
@@ -252,9 +252,9 @@ def first_event(
         for i in range(of_kind.size):
             if not of_kind[i]:
                 continue
-            noise = watched.force_noise if kind == _FORCE else rules.length_noise
+            noise = guards.force_noise if kind == _FORCE else rules.length_noise
             if kind == _KINK:
-                noise = noise_on_branch(i, watched, rules.length, rules.time)
+                noise = noise_on_branch(i, guards, rules.length, rules.time)
             g = EventFunction(kind, i, noise, 0.0)
             if (kind == _FORCE and released[i]) or (kind == _KINK and kinked[i]):
                 g = EventFunction(kind, i, noise, _level_of_kept(g, step))
@@ -276,7 +276,7 @@ def first_event(
         return np.inf
     # The searches have looked elsewhere since.
     observe_at(first, step)
-    add_vanished(step.observed, watched, rules, located)
+    add_vanished(step.observed, guards, rules, located)
     return first
 
 
@@ -313,26 +313,26 @@ def any_located(located: Located) -> bool:
 
 
 @kernel
-def add_vanished(observed: Observed, watched: Guards, rules: Rules, located: Located) -> None:
+def add_vanished(observed: Observed, guards: Guards, rules: Rules, located: Located) -> None:
     """Add what happens in the instant in which a contact force vanishes.
 
     Of links that pass their kink in it, what follows is told by the other branch.
     """
-    slowest, level = np.inf, watched.force_noise
+    slowest, level = np.inf, guards.force_noise
     for j in range(located.released.size):
         if located.released[j]:
-            _, rate = margin_at_rest(j, watched, observed.contact_force)
+            _, rate = margin_at_rest(j, guards, observed.contact_force)
             slowest = min(slowest, abs(rate))
     if slowest == np.inf:
         return
     for j in range(located.released.size):
-        force, rate = margin_at_rest(j, watched, observed.contact_force)
-        if watched.unlocked[j] and force_vanishes(force, rate, level, slowest, rules.time):
+        force, rate = margin_at_rest(j, guards, observed.contact_force)
+        if guards.unlocked[j] and force_vanishes(force, rate, level, slowest, rules.time):
             located.released[j] = True
     for a in range(located.kinked.size):
-        margin, rate = margin_on_branch(a, watched, observed.elongation)
+        margin, rate = margin_on_branch(a, guards, observed.elongation)
         # A speed that vanishes is a length in the scene's own time.
-        unit = rules.time if watched.turns[a] else 1.0
+        unit = rules.time if guards.turns[a] else 1.0
         if passes_kink(unit * margin, -unit * rate, rules.length, rules.time):
             located.kinked[a] = True
 

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from eventpound.contact.modes import ends_of_stick
-from eventpound.mechanics.clusters import Clusters, between_of, form_clusters_of_few
+from eventpound.mechanics.clusters import Clusters, between_of, form_clusters_of_few, have_ends
 from eventpound.mechanics.elements import branch_ends, has_branches, memory_on_branches
 from eventpound.mechanics.link_law import STRENGTH, YIELDING
 from eventpound.mechanics.model import Model
@@ -38,7 +38,7 @@ class Mode:
     clusters: Clusters
     system: Reduced
     bodies: Bodies
-    watched: Guards
+    guards: Guards
     dynamics: Dynamics
 
     @cached_property
@@ -49,11 +49,11 @@ class Mode:
     @cached_property
     def unwatched(self) -> Dynamics:
         """The same where an integrator finds events: only extremes are looked for."""
-        none, never = np.zeros_like(self.watched.unlocked), np.full(self.branch.size, np.inf)
-        watched = self.watched._replace(
+        none, never = np.zeros_like(self.guards.unlocked), np.full(self.branch.size, np.inf)
+        guards = self.guards._replace(
             open_contacts=none, unlocked=none, kink_low=-never, kink_high=never
         )
-        return with_address(Dynamics(self.system, self.bodies, watched))
+        return with_address(Dynamics(self.system, self.bodies, guards))
 
 
 class ModeTable:
@@ -110,14 +110,14 @@ class ModeTable:
 
     def place_ends(self, mode: Mode, u: Floats, z: Floats) -> None:
         """Say where branches of memories end, from displacements (N,) and z (H,) on them."""
-        model, watched = self.model, mode.watched
+        model, guards = self.model, mode.guards
         at_rest = mode.clusters.resting - model.own_contacts
         sticking = model.sliders[at_rest[at_rest >= 0]] if model.sliders.size > 0 else at_rest[:0]
         for h, a in self._branched:
             branch, offset = int(mode.branch[a]), float(model.elastic.offset[a])
             if branch != 0 and a not in sticking:
                 x = float(model.elongations(u)[a])
-                watched.kink_low[a], watched.kink_high[a] = in_python(branch_ends)(
+                guards.kink_low[a], guards.kink_high[a] = in_python(branch_ends)(
                     a, model.law.memory, branch, offset, x, float(z[h])
                 )
 
@@ -125,54 +125,47 @@ class ModeTable:
         memory = in_python(memory_on_branches)(model.law.memory, branch)
         if memory is not model.law.memory:
             model = replace(model, law=model.law._replace(memory=memory))
-        clusters = form_clusters_of_few(between_of(model), resting, pressed)
-        rubs = model.rubbing.size > 0
+        between, rubs = between_of(model), model.rubbing.size > 0
+        clusters = form_clusters_of_few(between, resting, pressed)
         if rubs:
-            between, own = between_of(model), (model.rubbing, model.friction)
+            own = model.rubbing, model.friction
             slips = in_python(slips_of)(*own, between, branch, clusters.resting)
             clusters = in_python(with_slips)(clusters, slips, model.rubbing.size, between)
         branches = Branches(*model.elastic.on_side(branch))
-        system = in_python(reduce)(
-            model.link_ends,
-            model.law,
-            model.mass,
-            model.hysteretic,
-            clusters,
-            branches,
-            model.ledger_entries if self.ledger else 0,
-        )
-        frozen = np.zeros(model.hysteretic.size)
-        bodies = bodies_of(model, clusters, system, *branches, frozen)
+        links = model.link_ends, model.law, model.mass, model.hysteretic
+        entries = model.ledger_entries if self.ledger else 0
+        system = in_python(reduce)(*links, clusters, branches, entries)
+        bodies = bodies_of(model, clusters, system, *branches, np.zeros(model.hysteretic.size))
+        guards = self._guards(model, resting, branch, clusters)
         if rubs:
             bodies = bodies._replace(
-                slips=np.column_stack((model.rubbing, _tangential(model)))[slips.which],
+                slips=np.column_stack((model.rubbing, model.holding))[slips.which],
                 drag=slips.drag,
                 rubbed=self.rubbed,
             )
-        bodies = with_address(bodies)
-        system = with_address(system)
-        unlocked = resting.copy()
-        # Where friction is not unique each takes part of it, and has a bound.
-        idle = clusters.redundant & ~np.isin(clusters.resting, _tangential(model))
-        unlocked[clusters.resting[clusters.locked | idle]] = False
-        opened = ~resting
-        opened[model.laws] = opened[model.own_contacts :] = False
-        kink, turns = model.elastic.offset, branch == YIELDING
-        turns[model.sliders] = True
-        kink_low = np.where(branch > 0, kink, -np.inf)
-        kink_high = np.where(branch < 0, kink, np.inf)
-        kink_low[model.sliders], kink_high[model.sliders] = -np.inf, np.inf
-        slide = slice(model.links - model.rubbing.size, None)
-        turns[slide] = True
-        if rubs:
             # What others keep from sliding does not stop.
             tied = in_python(are_tied)(slips.left, slips.right, clusters)
-            kept = model.links - model.rubbing.size + slips.which[tied]
-            kink_low[kept], kink_high[kept] = -np.inf, np.inf
+            kept = model.slides[slips.which[tied]]
+            guards.kink_low[kept], guards.kink_high[kept] = -np.inf, np.inf
+        bodies, system = with_address(bodies), with_address(system)
+        dynamics = with_address(Dynamics(system, bodies, guards))
+        return Mode(branch.copy(), clusters, system, bodies, guards, dynamics)
+
+    def _guards(self, model: Model, resting: Bools, branch: Ints, clusters: Clusters) -> Guards:
+        """What a mode has to watch, whatever slips."""
+        opened, unlocked = ~resting, resting.copy()
+        opened[model.laws] = opened[model.own_contacts :] = False
+        first_holding = model.contacts - model.rubbing.size
+        unlocked[clusters.resting] = in_python(have_ends)(clusters, first_holding)
+        kink_low = np.where(branch > 0, model.elastic.offset, -np.inf)
+        kink_high = np.where(branch < 0, model.elastic.offset, np.inf)
+        kink_low[model.sliders], kink_high[model.sliders] = -np.inf, np.inf
+        turns = branch == YIELDING
+        turns[model.sliders] = turns[model.slides] = True
         presses, friction = np.full(model.contacts, -1), np.zeros(model.contacts)
-        presses[model.own_contacts :][: model.rubbing.size] = model.rubbing
-        friction[model.own_contacts :][: model.rubbing.size] = model.friction[model.rubbing]
-        watched = Guards(
+        presses[model.holding] = model.rubbing
+        friction[model.holding] = model.friction[model.rubbing]
+        return Guards(
             opened,
             unlocked,
             bool((branch[model.plain :] < 0).any()),
@@ -185,13 +178,6 @@ class ModeTable:
             presses,
             friction,
         )
-        dynamics = with_address(Dynamics(system, bodies, watched))
-        return Mode(branch.copy(), clusters, system, bodies, watched, dynamics)
-
-
-def _tangential(model: Model) -> Ints:
-    """The contacts along those with friction (F,)."""
-    return model.contacts - model.rubbing.size + np.arange(model.rubbing.size)
 
 
 def _force_limits(model: Model) -> tuple[Floats, Floats]:

@@ -398,8 +398,8 @@ def friction_of(
     if rubbing.size == 0:
         return None
     path, work, *impulses, place = rubbed
-    own = slice(model.links - rubbing.size, None)
-    path = path + np.where(branch[own] != 0, np.abs(model.elongations(u)[own] - place), 0.0)
+    slid = np.abs(model.elongations(u)[model.slides] - place)
+    path = path + np.where(branch[model.slides] != 0, slid, 0.0)
     work = work + (np.nan if ledger is None else ledger[ledger.size - rubbing.size :])
     table = np.zeros((4, model.own_contacts))
     table[:, rubbing] = path, work, *impulses

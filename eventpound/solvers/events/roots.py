@@ -53,19 +53,19 @@ def sundials_finds(settings: Settings, default: str) -> bool:
 
 
 @scalar_kernel
-def values_and_rates(observed: Observed, watched: Guards, pairs: Floats) -> None:
+def values_and_rates(observed: Observed, guards: Guards, pairs: Floats) -> None:
     """Fill `pairs` (n, 2), a value and its rate each, in the order of `owners`."""
     place = 0
     for j in range(observed.gap.shape[1]):
-        if watched.open_contacts[j]:
+        if guards.open_contacts[j]:
             pairs[place, 0], pairs[place, 1] = observed.gap[0, j], observed.gap[1, j]
             place += 1
-        elif watched.unlocked[j]:
-            pairs[place, 0], pairs[place, 1] = margin_at_rest(j, watched, observed.contact_force)
+        elif guards.unlocked[j]:
+            pairs[place, 0], pairs[place, 1] = margin_at_rest(j, guards, observed.contact_force)
             place += 1
     for i in range(observed.elongation.shape[1]):
-        if watched.kink_low[i] > -np.inf or watched.kink_high[i] < np.inf:
-            pairs[place, 0], pairs[place, 1] = margin_on_branch(i, watched, observed.elongation)
+        if guards.kink_low[i] > -np.inf or guards.kink_high[i] < np.inf:
+            pairs[place, 0], pairs[place, 1] = margin_on_branch(i, guards, observed.elongation)
             place += 1
 
 
@@ -124,24 +124,24 @@ def on_the_root(pairs: Floats, noise: Floats, start: float, tau: float, reach: f
     return first if first > start else tau
 
 
-def owners(watched: Guards) -> tuple[Bools, Bools, Bools]:
+def owners(guards: Guards) -> tuple[Bools, Bools, Bools]:
     """Contacts (K,) whose gap and whose force is a value, and links (L,) with one."""
-    kinked = np.isfinite(watched.kink_low) | np.isfinite(watched.kink_high)
-    return watched.open_contacts, watched.unlocked & ~watched.open_contacts, kinked
+    kinked = np.isfinite(guards.kink_low) | np.isfinite(guards.kink_high)
+    return guards.open_contacts, guards.unlocked & ~guards.open_contacts, kinked
 
 
-def noise_of(watched: Guards, length: float, time: float) -> Floats:
+def noise_of(guards: Guards, length: float, time: float) -> Floats:
     """Noise of every value of a mode, (n,); `length` (m) and `time` (s) are the scene's own."""
-    gaps, forces, kinked = owners(watched)
-    of_contacts = np.where(gaps, GAP * length, watched.force_noise)[gaps | forces]
+    gaps, forces, kinked = owners(guards)
+    of_contacts = np.where(gaps, GAP * length, guards.force_noise)[gaps | forces]
     of_link = in_python(noise_on_branch)
-    of_links = [of_link(i, watched, length, time) for i in np.flatnonzero(kinked).tolist()]
+    of_links = [of_link(i, guards, length, time) for i in np.flatnonzero(kinked).tolist()]
     return np.concatenate((of_contacts, of_links))
 
 
-def located_of(watched: Guards, fallen: Bools) -> tuple[Bools, Bools, Bools]:
+def located_of(guards: Guards, fallen: Bools) -> tuple[Bools, Bools, Bools]:
     """The events, from which values (n,) fell: closing (K,), released (K,), kinked (L,)."""
-    gaps, forces, kinked = owners(watched)
+    gaps, forces, kinked = owners(guards)
     whose = gaps | forces
     count = int(whose.sum())
     fell, passed = np.zeros_like(whose), np.zeros_like(kinked)

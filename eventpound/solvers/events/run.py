@@ -135,4 +135,4 @@ class Dynamics(NamedTuple):
 
     system: Reduced
     bodies: Bodies
-    watched: Guards
+    guards: Guards

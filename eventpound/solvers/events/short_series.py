@@ -286,7 +286,7 @@ def local_series(arrays: Run, forcing: Forcing, mode: Dynamics, limit: float) ->
     ground = ground_acceleration(forcing, forcing.start)
     least = ACCELERATION * acceleration
     C = gap_series(Y, system, bodies, state, ground, least, rules.time)
-    first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
+    first, closing = first_closings(C, mode.guards.open_contacts, min(limit, radius))
     closed = min(first, limit, radius)
     # No further than to the first closing, and the check of the equations no further than to this.
     reversal = _first_reversal(Y, system, weight, closed)

@@ -120,12 +120,12 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
         y = _between(tau, tau_0, tau_1, first, e)
         middle = e.observations[row]
         observe_motion(tau, y, rate, mode.system, mode.bodies, forcing, middle)
-        if inspect_step(before, middle, tau - low, mode.watched, e.record.running, e.marks):
+        if inspect_step(before, middle, tau - low, mode.guards, e.record.running, e.marks):
             return True
         # The two observations between take turns: 2, 3, 2 ...
         low, before, row = tau, middle, 5 - row
     after = e.observations[1 - first]
-    return inspect_step(before, after, tau_1 - low, mode.watched, e.record.running, e.marks)
+    return inspect_step(before, after, tau_1 - low, mode.guards, e.record.running, e.marks)
 
 
 @kernel
@@ -167,7 +167,7 @@ def examine(
         return BEYOND_BOUND, excess
     if e.frame.shape[1] == 0:
         before = e.observations[first]
-        marked = inspect_step(before, after, tau_1 - tau_0, mode.watched, e.record.running, e.marks)
+        marked = inspect_step(before, after, tau_1 - tau_0, mode.guards, e.record.running, e.marks)
     else:
         marked = _inspect_between_samples(tau_0, tau_1, first, e)
     if marked:
@@ -178,38 +178,38 @@ def examine(
 
 
 @scalar_kernel
-def broken_contact(observed: Observed, watched: Guards, length_noise: float) -> int:
+def broken_contact(observed: Observed, guards: Guards, length_noise: float) -> int:
     """The first contact that penetrates or pulls although no event was found, or -1.
 
     `length_noise`: gaps below this have no sign (m).
     """
     for j in range(observed.gap.shape[1]):
         # Far beyond what a search may leave, which has found no event here.
-        if watched.open_contacts[j] and observed.gap[0, j] < -GAP_NOISE * length_noise:
+        if guards.open_contacts[j] and observed.gap[0, j] < -GAP_NOISE * length_noise:
             return j
     for j in range(observed.gap.shape[1]):
-        margin = margin_at_rest(j, watched, observed.contact_force)[0]
-        if watched.unlocked[j] and margin < -PULLED * watched.force_noise:
+        margin = margin_at_rest(j, guards, observed.contact_force)[0]
+        if guards.unlocked[j] and margin < -PULLED * guards.force_noise:
             return j
     return -1
 
 
 def contact_error(
-    t: float, j: int, observed: Observed, watched: Guards, names: Sequence[str]
+    t: float, j: int, observed: Observed, guards: Guards, names: Sequence[str]
 ) -> ComputationError:
     """What to raise of contact j, which `broken_contact` names, those of sliders included."""
     name = names[j]
-    if watched.open_contacts[j]:
+    if guards.open_contacts[j]:
         depth = -float(observed.gap[0, j])
         return ComputationError(
             f"contact {name!r} penetrates by {depth:.3g} m; try a smaller rtol", t
         )
-    pull = -float(in_python(margin_at_rest)(j, watched, observed.contact_force)[0])
-    if watched.presses[j] >= 0:
+    pull = -float(in_python(margin_at_rest)(j, guards, observed.contact_force)[0])
+    if guards.presses[j] >= 0:
         return ComputationError(
             f"{name!r} sticks with {pull:.3g} N more than friction can; try a smaller rtol", t
         )
-    if watched.force_low[j] < 0.0 or watched.force_high[j] < np.inf:
+    if guards.force_low[j] < 0.0 or guards.force_high[j] < np.inf:
         return ComputationError(
             f"slider {name!r} sticks with {pull:.3g} N more than it can; try a smaller rtol", t
         )

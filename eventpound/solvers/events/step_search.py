@@ -78,9 +78,9 @@ def search_step(arrays: Run, mode: Dynamics, piece: CurrentPiece, dense: Dense) 
         # The integrator stands on its root: `located` has it, and what vanishes with it is added.
         if high == dense.end and not dense.own and state.progress[0].finder == FOUND_AT_END:
             tau = high
-            add_vanished(after, mode.watched, rules, arrays.located)
+            add_vanished(after, mode.guards, rules, arrays.located)
         # Beyond an event there is another mode, in which none of these need hold.
-        broken = tau == NO_EVENT and broken_contact(after, mode.watched, rules.length_noise) >= 0
+        broken = tau == NO_EVENT and broken_contact(after, mode.guards, rules.length_noise) >= 0
         if tau < NO_EVENT or broken or dense.own:
             observe_at(min(high, tau), step)
         if broken:
@@ -99,15 +99,15 @@ def _search_part(arrays: Run, step: DenseStep) -> float:
 
     The first two observations of the run are those of its ends.
     """
-    dense, watched, origin = step.dense, step.dynamics.watched, step.forcing.start
+    dense, guards, origin = step.dense, step.dynamics.guards, step.forcing.start
     (before, after, _), marks, record = arrays.observations, arrays.marks, arrays.record
-    marked = inspect_step(before, after, dense.end - dense.start, watched, record.running, marks)
+    marked = inspect_step(before, after, dense.end - dense.start, guards, record.running, marks)
     for j in range(marks.closing.size):
         marks.closing[j] = marks.closing[j] and not dense.own
     tau = NO_EVENT
     # Where the library finds events only turning points are left to look for.
     if marked and (dense.own or arrays.state.progress[0].finder == OURSELVES):
-        tau = first_event(marks, watched, arrays.rules, arrays.located, step)
+        tau = first_event(marks, guards, arrays.rules, arrays.located, step)
     end = min(dense.end, tau)
     if marked:
         update_peaks(marks.peak, end, arrays.rules.near, record.running, step)

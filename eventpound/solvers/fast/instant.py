@@ -16,7 +16,7 @@ from eventpound.contact.kinks import still_rate
 from eventpound.contact.rubbing import Rubs
 from eventpound.contact.sliders import begin_beside_sliders, decide_sticks
 from eventpound.contact.state import Instant
-from eventpound.mechanics.clusters import Clusters, ContactEnds, form_clusters
+from eventpound.mechanics.clusters import Clusters, ContactEnds, form_clusters, have_ends
 from eventpound.mechanics.oblique import are_tied, slips_of, with_slips
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
@@ -35,7 +35,7 @@ from eventpound.solvers.fast.links import (
 )
 from eventpound.solvers.fast.run import FastRun, FastSeries
 from eventpound.solvers.fast.search import force_level
-from eventpound.solvers.fast.sliding import any_rubbing, any_slider, holds_stick, own_contacts
+from eventpound.solvers.fast.sliding import any_rubbing, any_slider, own_contacts
 
 
 @compiled
@@ -88,21 +88,18 @@ def _form(run: FastRun) -> tuple[int, int]:
     numbers of clusters and of rows of the elimination.
     """
     contacts, mass, state, series = run.plan.contacts, run.plan.mass, run.state, run.series
-    own = own_contacts(run)
     ends = contacts.left, contacts.right, contacts.gap
-    between = ContactEnds(*ends, mass, contacts.weights, own)
+    between = ContactEnds(*ends, mass, contacts.weights, own_contacts(run))
     clusters = form_clusters(between, state.resting, state.pressed)
     count = clusters.count
     edges = clusters.elimination.shape[0]
     for row in range(edges):
         copy_numbers(clusters.elimination[row], series.elimination[row])
-    unique, locked = clusters.unique, clusters.locked
+    unlocked = have_ends(clusters, state.gap.size - contacts.rubbing.size)
     for i in range(clusters.resting.size):
         j = clusters.resting[i]
-        # Where friction is not unique each takes part of it, and has a bound.
-        idle = clusters.redundant[i] and not (any_rubbing(run) and holds_stick(j, run))
-        state.unlocked[j] = not (locked[i] or idle)
-        run.record.unique[j] &= unique[i]
+        state.unlocked[j] = unlocked[i]
+        run.record.unique[j] &= clusters.unique[i]
     _put_equations(clusters, series)
     if any_rubbing(run):
         count = _enter_slips(clusters, between, run)

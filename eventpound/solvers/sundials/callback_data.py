@@ -38,13 +38,13 @@ _FALLING, _RISING = -1, 1
 class Roots(NamedTuple):
     """Root functions of a mode, n of them; with an address.
 
-    fresh (1,): whether they are still to be asked for the first time. watched: of the `Mode`.
+    fresh (1,): whether they are still to be asked for the first time. guards: of the `Mode`.
     noise, lifted (n,), pairs (n, 2): as `eventpound.solvers.events.roots` has them. observed:
     scratch, with an address.
     """
 
     fresh: Bools
-    watched: Guards
+    guards: Guards
     noise: Floats
     lifted: Floats
     pairs: Floats
@@ -151,16 +151,16 @@ class RootFunctions:
 
     def point_to(self, mode: Mode) -> None:
         """Be the functions of a mode, from a start on."""
-        watched, noise = mode.watched, noise_of(mode.watched, self._length, self._time)
+        guards, noise = mode.guards, noise_of(mode.guards, self._length, self._time)
         self._mode, fresh, observed = mode, self.present.fresh, self.present.observed
         fresh[0] = True
         lifted, pairs = np.zeros(noise.size), np.zeros((noise.size, 2))
-        roots = Roots(fresh, watched, noise, lifted, pairs, observed)
+        roots = Roots(fresh, guards, noise, lifted, pairs, observed)
         change_group(self.present, roots)
 
     def located(self) -> tuple[Bools, Bools, Bools]:
         """The events where values have fallen: closing (K,), released (K,), kinked (L,)."""
-        return located_of(self._mode.watched, self.present.pairs[:, 0] < 0.0)
+        return located_of(self._mode.guards, self.present.pairs[:, 0] < 0.0)
 
 
 @kernel
@@ -170,7 +170,7 @@ def put_roots(tau: float, y: Floats, segment: SegmentData, out: Floats) -> None:
     to_frame(segment.frame, forcing.start + tau, -1.0, system.iq, system.iv, y)
     observe_motion(tau, y, np.empty(y.size), system, segment.bodies, forcing, roots.observed)
     pairs = out.reshape(roots.noise.size, 2)
-    values_and_rates(roots.observed, roots.watched, pairs)
+    values_and_rates(roots.observed, roots.guards, pairs)
     if roots.fresh[0]:
         lift(pairs, roots.noise, roots.lifted)
         roots.fresh[0] = False
