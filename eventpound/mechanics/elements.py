@@ -72,6 +72,12 @@ INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MOST_TERMS)])
 
 
 @step_kernel
+def pull_per_z(a: int, memory: Floats) -> float:
+    """∂F/∂z of link a (N), 0 without a memory."""
+    return float(memory[a, STRENGTH])
+
+
+@step_kernel
 def drag(a: int, links: Any, x_rate: float) -> float:
     """What x' makes link a pull with (N); `links` are its `damping` and `memory`, at least."""
     return float(links.damping[a] * x_rate)
@@ -93,7 +99,7 @@ def drag_coefficient(a: int, k: int, links: Any, x_rate: Floats) -> float:
 def link_force(a: int, links: Any, x: float, x_rate: float, z: float) -> float:
     """``F = k x + f + c x' + Q z`` of link a (N); `links` are its `stiffness`, `preload`, too."""
     elastic = links.stiffness[a] * x + links.preload[a]
-    return float(elastic + drag(a, links, x_rate) + links.memory[a, STRENGTH] * z)
+    return float(elastic + drag(a, links, x_rate) + pull_per_z(a, links.memory) * z)
 
 
 @step_kernel
@@ -101,20 +107,14 @@ def link_force_rate(a: int, links: Any, x_rate: float, x_second: float, z_rate: 
     """Rate of F (N/s) from those of x, and of x' and z."""
     elastic = links.stiffness[a] * x_rate
     viscous = drag_slope(a, links, x_rate) * x_second
-    return float(elastic + viscous + links.memory[a, STRENGTH] * z_rate)
+    return float(elastic + viscous + pull_per_z(a, links.memory) * z_rate)
 
 
 @step_kernel
 def link_coefficient(a: int, k: int, links: Any, x: float, x_rate: Floats, z: float) -> float:
     """Taylor coefficient k of F from those of x and z, and those of x' up to k."""
     elastic = links.stiffness[a] * x + (links.preload[a] if k == 0 else 0.0)
-    return float(elastic + drag_coefficient(a, k, links, x_rate) + links.memory[a, STRENGTH] * z)
-
-
-@step_kernel
-def pull_per_z(a: int, memory: Floats) -> float:
-    """∂F/∂z of link a (N), 0 without a memory."""
-    return float(memory[a, STRENGTH])
+    return float(elastic + drag_coefficient(a, k, links, x_rate) + pull_per_z(a, links.memory) * z)
 
 
 @step_kernel

@@ -32,6 +32,7 @@ from eventpound.solvers.fast.links import (
     reverse,
     saturate,
     tangent,
+    with_drag,
 )
 from eventpound.solvers.fast.run import LOCAL_SHARE, FastRun, FastSeries
 from eventpound.solvers.fast.search import distance_coefficient
@@ -254,7 +255,7 @@ def begin_series(t: float, piece: CurrentPiece, run: FastRun) -> None:
         # The step before has ended here, and its end was observed.
         if known:
             z = observed.z[h] if h >= 0 else 0.0
-            pull = observed.force[a] + links.law.damping[a] * x_rate
+            pull = with_drag(a, observed.force[a], x_rate, links)
         else:
             _, pull, z = link_force(a, x, x_rate, run)
         if h >= 0:

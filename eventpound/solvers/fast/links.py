@@ -90,6 +90,12 @@ def on_part(part: int, xi: float, tables: Floats, at: int) -> float:
 
 
 @compiled
+def with_drag(a: int, force: float, x_rate: float, links: Links) -> float:
+    """A force of link a (N) and what x' adds to it."""
+    return force + links.law.damping[a] * x_rate
+
+
+@compiled
 def link_force(a: int, x: float, x_rate: float, run: FastRun) -> tuple[float, float, float]:
     """Force of a link (N) without the dashpot beside it and with it, and its z, 0 for none.
 
@@ -102,7 +108,7 @@ def link_force(a: int, x: float, x_rate: float, run: FastRun) -> tuple[float, fl
     if h >= 0:
         z = hysteretic_variable(h, x, run.plan.hysteresis, run.state)
         force += pull_per_z(a, run.series.memory) * z
-    return force, force + links.law.damping[a] * x_rate, z
+    return force, with_drag(a, force, x_rate, links), z
 
 
 @compiled

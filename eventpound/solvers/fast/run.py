@@ -166,7 +166,7 @@ class FastState(NamedTuple):
     v: Floats  # (N,): velocity (m/s)
     sigma: Floats  # (H,): σ
     x_r: Floats  # (H,): elongation at the last reversal (m)
-    xi_r: Floats  # (H,): ξ there
+    xi_r: Floats  # (H,): ξ there; z of one that is followed, and z/b of any before the start
     part: Ints  # (H,): part of the backbone that a link is on
     gap: Floats  # (K,): exactly zero where closed (m)
     gap_rate: Floats  # (K,) (m/s)
