@@ -162,6 +162,19 @@ def _row_order(left: Ints, right: Ints, members: Ints, nodes: int) -> Ints:
 
 
 @kernel
+def _solve_row(row: Ints, joints: Joints, q: Floats, x: Floats, w: Floats) -> None:
+    """Put what `solve_contacts` returns of a row of contacts, from left to right, into x and w."""
+    inverse = np.zeros(row.size + 1)
+    for k in range(row.size + 1):
+        mass = joints.left[row[k]] if k < row.size else joints.right[row[-1]]
+        if mass >= 0:
+            inverse[k] = joints.inverse_mass[mass]
+    found, rate = solve_chain(inverse, q[row])
+    put_numbers(found, row, x)
+    put_numbers(rate, row, w)
+
+
+@kernel
 def solve_contacts(joints: Joints, q: Floats, noise: float) -> tuple[Floats, Floats, bool]:
     """Solve ``0 <= Wᵀ M⁻¹ W x + q ⊥ x >= 0``.
 
@@ -181,7 +194,6 @@ def solve_contacts(joints: Joints, q: Floats, noise: float) -> tuple[Floats, Flo
     solved : bool
         False where a part has no solution.
     """
-    left, right, inverse_mass = joints.left, joints.right, joints.inverse_mass
     x, w = np.zeros(q.size), np.zeros(q.size)
     label = parts(joints)
     solved, paired = True, joints.compliance.size == 0
@@ -205,16 +217,10 @@ def solve_contacts(joints: Joints, q: Floats, noise: float) -> tuple[Floats, Flo
         row = np.empty(0, np.int64)
         # A row with points is none: its bodies answer to forces beyond their neighbours.
         if count > LONG_ROW and paired:
-            row = _row_order(left, right, members[:count], inverse_mass.size)
+            nodes = joints.inverse_mass.size
+            row = _row_order(joints.left, joints.right, members[:count], nodes)
         if row.size > 0:
-            inverse = np.zeros(row.size + 1)
-            for k in range(row.size + 1):
-                mass = left[row[k]] if k < row.size else right[row[-1]]
-                if mass >= 0:
-                    inverse[k] = inverse_mass[mass]
-            found, rate = solve_chain(inverse, q[row])
-            put_numbers(found, row, x)
-            put_numbers(rate, row, w)
+            _solve_row(row, joints, q, x, w)
             continue
         G, own = delassus_matrix(joints, members[:count]), np.empty(count)
         for a in range(count):

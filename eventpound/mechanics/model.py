@@ -20,7 +20,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements, elements_of
-from eventpound.mechanics.coordinates import numbered, parts_on_ground
+from eventpound.mechanics.coordinates import Numbered, numbered, parts_on_ground
 from eventpound.mechanics.link_law import KIND, SLIDER, LinkLaw, contact_law, link_forces, link_law
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
@@ -309,6 +309,26 @@ def _with_contacts(model: Model, ends: Ints) -> Model:
     )
 
 
+def _column(values: list[float]) -> Floats:
+    """Numbers as an array."""
+    return np.array(values, dtype=np.float64)
+
+
+def _links_of(
+    scene: Scene, at: Numbered, two: list[int]
+) -> tuple[list[tuple[int, int]], list[float], dict[int, int]]:
+    """Ends of the links, their damping (N s/m), and the further link of each of `two` variables."""
+    ends = at.springs + at.dashpots
+    damping = [0.0] * len(ends)
+    for link, dashpot in zip(at.of_dashpot, scene.dashpots, strict=True):
+        damping[link] += dashpot.coefficient
+    further = dict(zip(two, range(len(ends), len(ends) + len(two)), strict=True))
+    ends += [ends[i] for i in two]
+    if isinstance(scene.motion, LoadedMotion):
+        ends += [(load.body, -1) for load in scene.motion.loads]
+    return ends, damping + [0.0] * (len(ends) - len(damping)), further
+
+
 def assemble(scene: Scene) -> Model:
     """Arrays of a scene; keeps only what it has.
 
@@ -323,28 +343,13 @@ def assemble(scene: Scene) -> Model:
     Model
         A dashpot shares the link of a spring between the same ends.
     """
-    at = numbered(scene)
-    ends = at.springs + at.dashpots
-    damping = [0.0] * len(ends)
-    for link, dashpot in zip(at.of_dashpot, scene.dashpots, strict=True):
-        damping[link] += dashpot.coefficient
+    at, motion = numbered(scene), scene.motion
     laws = [spring.acting for spring in scene.springs]
     loops = {i: law for i, law in enumerate(laws) if isinstance(law, Hysteretic)}
-    two = [i for i, law in loops.items() if law.second]
-    further = dict(zip(two, range(len(ends), len(ends) + len(two)), strict=True))
-    ends += [ends[i] for i in two]
-    damping += [0.0] * len(two)
-    motion = scene.motion
-    if isinstance(motion, LoadedMotion):
-        ends += [(load.body, -1) for load in motion.loads]
-        damping += [0.0] * len(motion.loads)
-
-    def column(values: list[float]) -> Floats:
-        return np.array(values, dtype=np.float64)
-
+    ends, damping, further = _links_of(scene, at, [i for i, law in loops.items() if law.second])
     no_mass = [0.0] * at.on_ground.size
     mass, u0, v0 = (
-        column([getattr(b, key) for b in scene.bodies] + no_mass)
+        _column([getattr(b, key) for b in scene.bodies] + no_mass)
         for key in ("mass", "displacement", "velocity")
     )
     first = len(scene.bodies)
@@ -363,17 +368,17 @@ def assemble(scene: Scene) -> Model:
         law=link_law(laws, damping, further),
         elastic=as_arrays(laws + [_SLACK] * (len(ends) - len(laws))),
         hysteretic=np.array([*loops, *further.values()], np.int64),
-        z0=column(
+        z0=_column(
             [law.z_at(start[i]) for i, law in loops.items()] + [loops[i].second_at for i in further]
         ),
         springs=len(laws),
         left=left,
         right=right,
-        gap=column([c.gap for c in scene.contacts]),
-        restitution=column(
+        gap=_column([c.gap for c in scene.contacts]),
+        restitution=_column(
             [math.nan if c.restitution is None else c.restitution for c in scene.contacts]
         ),
-        friction=column([c.friction for c in scene.contacts]),
+        friction=_column([c.friction for c in scene.contacts]),
         tangent=np.array(at.tangents, np.int64).reshape(-1, 2),
         elements=elements_of(scene, mass, left, right),
         by_poisson=scene.impact_law == POISSON,
