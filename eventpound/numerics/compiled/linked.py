@@ -88,6 +88,7 @@ class PartLibrary(JITCodeLibrary):
     """Code of one function, neither linked nor made into machine code."""
 
     inlined = False
+    recipe: Recipe | None = None
 
     def _optimize_functions(self, module: Any) -> None:
         """Passes over each function by itself, which make its code a third as long."""
@@ -222,34 +223,18 @@ def _callers_first(library: Any) -> list[Any]:
     return found[::-1]
 
 
-class _Pipeline(Compiler):
-    """Numba's pipeline with a library of ours."""
-
-    def _library(self, name: str) -> PartLibrary:
-        raise NotImplementedError
-
-    def compile_extra(self, function: Callable[..., Any]) -> Any:
-        """Compile a Python function."""
-        library = self._library(function.__qualname__)
-        library.enable_object_caching()
-        self.state.library = library
-        return super().compile_extra(function)
-
-
-class _PartPipeline(_Pipeline):
-    def _library(self, name: str) -> PartLibrary:
-        return PartLibrary(self.state.targetctx.codegen(), name)
-
-
 @cache
-def _pipeline(recipe: Recipe) -> type[_Pipeline]:
-    """The pipeline of entries that are optimised so."""
+def _pipeline(recipe: Recipe | None) -> type[Compiler]:
+    """Numba's pipeline with a library of ours: of entries that are optimised so, else of parts."""
 
-    class Pipeline(_Pipeline):
-        def _library(self, name: str) -> PartLibrary:
-            library = EntryLibrary(self.state.targetctx.codegen(), name)
+    class Pipeline(Compiler):
+        def compile_extra(self, function: Callable[..., Any]) -> Any:
+            kind = PartLibrary if recipe is None else EntryLibrary
+            library = kind(self.state.targetctx.codegen(), function.__qualname__)
             library.recipe = recipe
-            return library
+            library.enable_object_caching()
+            self.state.library = library
+            return super().compile_extra(function)
 
     return Pipeline
 
@@ -274,7 +259,7 @@ class KernelPart(CPUDispatcher):
 
     def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
         super().__init__(function, {}, options)
-        self._compiler = _PartCompiler(function, self.targetdescr, options, {}, _PartPipeline)
+        self._compiler = _PartCompiler(function, self.targetdescr, options, {}, _pipeline(None))
         self._inlined = options.get("forceinline", False)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
