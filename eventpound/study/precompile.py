@@ -2,8 +2,8 @@
 
 A kernel depends on the types of its arguments, not on their values, and these are the same
 for all scenes of one body and for all of several. So a few short runs that meet whatever
-there is (impacts of one contact and of several, rests, locked contacts, kinks, a record, an
-energy ledger) compile all that a solver has.
+there is (impacts of one contact and of several, rests, locked contacts, kinks, friction at the
+edge of a deck, a record, an energy ledger) compile all that a solver has.
 """
 
 from __future__ import annotations
@@ -35,8 +35,10 @@ from eventpound.scene import (
     Contact,
     ContactLaw,
     Dashpot,
+    Deck,
     DegradingBoucWen,
     Force,
+    Joint,
     Linear,
     Point,
     Scene,
@@ -44,9 +46,10 @@ from eventpound.scene import (
     Spring,
     Support,
 )
+from eventpound.scene.contact_law import IMPACT_LAWS
 from eventpound.scene.spring import Law
 from eventpound.simulation import response_of
-from eventpound.solvers import knows_laws, solver_named, takes_loads, takes_points
+from eventpound.solvers import knows_scene, solver_named, takes_loads
 from eventpound.solvers.events.roots import EVENTS
 from eventpound.study.many import simulate_many
 
@@ -152,6 +155,22 @@ def _free() -> Scene:
     )
 
 
+def _rubbing(impact_law: str) -> Scene:
+    """A skew deck that strikes a rough wall, is pressed to it, and slides along it and sticks."""
+    deck = Deck("deck", 1.0, 2.0, 1.0, 0.3)
+    bodies = deck.bodies()
+    return Scene(
+        bodies,
+        [Spring(body.name, (GROUND, body.name), Linear(2.0)) for body in bodies],
+        contacts=Joint("edge", ("deck", BARRIER), 0.02, 0.3, 0.3).contacts({"deck": deck}),
+        motion=Cosine(1.0, 2.0),
+        forces=[Force("deck.x", Constant(0.5))],
+        decks=[deck],
+        across=Ricker(1.0, 1.0, center=2.0),
+        impact_law=impact_law,
+    )
+
+
 def _run(solver: str, scene: Scene, energy: bool = False, events: str | None = None) -> None:
     settings: dict[str, object] = {"time_step": 0.01} if solver in _FIXED_STEP else {}
     if events is not None:
@@ -179,13 +198,16 @@ def _several(solver: str) -> None:
         if takes_loads(solver_named(solver), _moved(motion)):
             _run(solver, _moved(motion), energy=True)
         between = _at_points(_row(motion, 0.0, 0.02))
-        if takes_points(solver_named(solver), between):
+        if knows_scene(solver_named(solver), between):
             _run(solver, between, energy=True)
     _run(solver, _free())
     for gap in (0.0, 0.02):
         elements = _with_laws(_row(_record(), 0.5, gap))
-        if knows_laws(solver_named(solver), elements):
+        if knows_scene(solver_named(solver), elements):
             _run(solver, elements, energy=True)
+    for rubbing in map(_rubbing, IMPACT_LAWS):
+        if knows_scene(solver_named(solver), rubbing):
+            _run(solver, rubbing, energy=True)
 
 
 def _many(scene: Scene) -> None:
