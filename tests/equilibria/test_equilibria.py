@@ -10,7 +10,7 @@ from tests.equilibria.examined import examine
 LOCKED, PUSHED_SLOWLY, TWO_POINTS, NO_LENGTH = 109, 360, 27, 5063
 """A row without room; forces that reach a stiff body through soft ones; contacts at points;
 no length but zero."""
-SEEDS = (LOCKED, PUSHED_SLOWLY, TWO_POINTS, NO_LENGTH, *range(28))
+SEEDS = (LOCKED, PUSHED_SLOWLY, TWO_POINTS, NO_LENGTH, *range(20))
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -19,7 +19,7 @@ def test_random_scenes_stand_where_forces_balance(seed):
     assert not found.wrong, found
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(20))
 def test_random_scenes_with_soil_and_sliders_stand_where_forces_balance(seed):
     found = examine(seed, solvers=(), memory=True)
     assert not found.wrong, found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -97,6 +98,7 @@ def expanded_corner(
     return after + given @ rows / np.array([m, m, J]), compressed + given
 
 
+@cache
 def slid_under(amplitude: float, period: float, most: float, end: float) -> float:
     """Displacement of a mass whose friction accelerates it by at most so much, to some 1e-7 m."""
     h, x, v = 1e-6, 0.0, 0.0

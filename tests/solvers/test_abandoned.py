@@ -25,8 +25,10 @@ time.sleep(0.2)
 """
 
 
-@pytest.mark.parametrize("times", [1, pytest.param(4, marks=pytest.mark.sweep)])
-@pytest.mark.parametrize("solver", ["cvode", "ida"])
+@pytest.mark.parametrize(
+    ("solver", "times"),
+    [("cvode", 1), *(pytest.param(s, 4, marks=pytest.mark.sweep) for s in ("cvode", "ida"))],
+)
 def test_the_end_of_a_process_frees_nothing_in_use(solver, times):
     for _ in range(times):
         done = subprocess.run([sys.executable, "-c", PROGRAM, solver], check=False)
