@@ -139,6 +139,7 @@ def test_progress_on_stderr(capsys):
     pickle.dumps(response)
 
 
+@pytest.mark.pages
 @pytest.mark.parametrize("path", sorted((ROOT / "docs" / "notebooks").glob("*.ipynb")))
 def test_notebooks_of_the_docs_run(path, tmp_path, monkeypatch):
     import matplotlib

@@ -22,16 +22,23 @@ def forget() -> None:
         each.cache_clear()
 
 
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A folder with a module, and the kernel that another process made of it."""
+    folder = tmp_path_factory.mktemp("made")
+    processor = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
+    done = in_a_process(written(folder), "doubled(1.5)", folder / "kept", **processor)
+    assert done.stdout == "3.0\n"
+    return folder
+
+
 @pytest.fixture
-def module(tmp_path, monkeypatch):
+def module(made, tmp_path, monkeypatch):
     """The file of a module whose kernels the installation came with."""
     file = written(tmp_path)
-    processor = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
-    made = in_a_process(file, "doubled(1.5)", tmp_path / "kept", **processor)
-    assert made.stdout == "3.0\n"
     monkeypatch.setattr(shipped, "FOLDER", tmp_path / "kernels")
     monkeypatch.setattr(shipped, "CLASSES", {"generic": ()})
-    assert shipped.ship(tmp_path / "kept", "generic") == 1
+    assert shipped.ship(made / "kept", "generic") == 1
     forget()
     yield file
     forget()
