@@ -42,6 +42,15 @@ def compiles_nothing(request):
 
 
 @pytest.fixture
+def undrawn():
+    """Figures are blank: a test of numbers and words does not wait until they are drawn."""
+    from tests.blank import blank_figures
+
+    with blank_figures():
+        yield
+
+
+@pytest.fixture
 def interpreted():
     """Kernels that no run calls from Python are not compiled for a test: Python runs them.
 

@@ -17,6 +17,7 @@ from eventpound.cli import main
 from tests.models import ROOT
 from tests.plugged import plug_in
 
+pytestmark = pytest.mark.usefixtures("undrawn")
 OTHER = ROOT / "tests" / "accuracy" / "other_program.py"
 COLUMNS = "t=time,u.deck=x,v.deck=speed"
 # The other program's motion, as a solver plugged in.

@@ -182,7 +182,7 @@ def test_synthetic_motions_without_number(key, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, capsys):
+def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, capsys, undrawn):
     results = suite(tmp_path, "records/*", records=8)
     run = ReadyScene.run
     begun = []
@@ -317,7 +317,7 @@ def disk_of(size: int) -> Iterator[None]:
 
 
 @pytest.mark.parametrize("command", ["run", "records", "compare", "export", "synthetic"])
-def test_full_disk_of_other_commands(command, tmp_path, capsys):
+def test_full_disk_of_other_commands(command, tmp_path, capsys, undrawn):
     """One message, and no part of a set."""
     suite(tmp_path, "records/*")
     before = files_below(tmp_path)

@@ -34,7 +34,7 @@ def table(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def test_a_file(folder, capsys):
+def test_a_file(folder, capsys, undrawn):
     path = folder / "at2.txt"
     assert main(["records", str(path)]) == 0
     out = Path("at2-record")
@@ -113,7 +113,7 @@ def test_the_table_of_a_folder_is_a_list(folder, capsys, monkeypatch):
     ]
 
 
-def test_a_list_names_the_files(folder):
+def test_a_list_names_the_files(folder, undrawn):
     (folder / "list.csv").write_text("file,units,time_step\none_column.txt,m/s2,0.01\n")
     arguments = ["records", str(folder), "--list", str(folder / "list.csv"), "--out", "out"]
     assert main([*arguments, "--figures"]) == 0

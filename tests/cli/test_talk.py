@@ -48,7 +48,7 @@ def test_a_terminal_that_is_not_utf_8(case, encoding):
     assert (case / "results" / "summary.json").is_file()
 
 
-@pytest.mark.parametrize("words", [["check", "{case}"], ["solvers"], ["run", "{case}"], ["--help"]])
+@pytest.mark.parametrize("words", [["run", "{case}", "--no-figures"], ["--help"]])
 def test_a_reader_that_stops_reading(case, words):
     reading, writing = os.pipe()
     os.close(reading)
@@ -66,7 +66,7 @@ def test_a_reader_that_stops_reading(case, words):
     assert "BrokenPipe" not in done.stderr
     assert "Traceback" not in done.stderr
     if words[0] == "run":
-        assert (case / "results" / "displacements.png").is_file()
+        assert (case / "results" / "summary.json").is_file()
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")

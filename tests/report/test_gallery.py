@@ -3,7 +3,7 @@
 from eventpound.cli import main
 
 
-def test_page_takes_the_figures_of_suites(tmp_path):
+def test_page_takes_the_figures_of_suites(tmp_path, undrawn):
     case = tmp_path / "scales" / "case.toml"
     case.parent.mkdir()
     case.write_text(

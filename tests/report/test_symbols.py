@@ -1,7 +1,10 @@
 """Every column that a study can draw is called what it is, with its unit."""
 
+from functools import cache
+
 import numpy as np
 import pytest
+from matplotlib.mathtext import MathTextParser
 
 from eventpound.motion import AntisymmetricRicker, Harmonic, MavroeidisPapageorgiou, Record, TypeC
 from eventpound.motion.base import GroundMotion
@@ -32,6 +35,8 @@ MOTIONS: list[GroundMotion] = [
 ]
 
 
+# A key has the same label under every motion, and to parse one takes long.
+parsed = cache(MathTextParser("path").parse)
 NAME = "deck 1.5 _$^{%"
 
 
@@ -53,14 +58,11 @@ def scene(motion: GroundMotion) -> Scene:
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=lambda motion: motion.kind)
 def test_no_column_is_shown_as_its_key(motion):
-    from matplotlib.mathtext import MathTextParser
-
     assert all(dimension_of_number(key) is not None for key in number_places(scene(motion)))
-    parser = MathTextParser("path")
     for key in quantities_of(scene(motion)):
         label = axis_label(key)
         assert key not in label or key in ("impacts", "amplification")
-        parser.parse(label)
+        parsed(label)
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,7 @@ def test_what_is_nothing_is_so_in_every_unit():
         assert Trade(False, ("MN", "m")).number(value / 4.0, unit) == "0"
 
 
-def test_a_yield_force_that_is_small_in_its_unit_is_told(tmp_path):
+def test_a_yield_force_that_is_small_in_its_unit_is_told(tmp_path, undrawn):
     text = (CASES / "pair" / "case.toml").read_text().replace("500 t", "0.5 kg")
     (tmp_path / "case.toml").write_text(
         text.replace("490.3 kN", "0.5 N") + '\n[run]\nunits = ["MN"]\n'
@@ -71,7 +71,7 @@ def test_a_yield_force_that_is_small_in_its_unit_is_told(tmp_path):
     assert ">0.000000549<" in as_html("", sheets).decode()
 
 
-def test_the_report_and_the_screen_are_in_the_units_of_the_case(tmp_path, capsys):
+def test_the_report_and_the_screen_are_in_the_units_of_the_case(tmp_path, capsys, undrawn):
     folder = written(tmp_path, 'units = ["MN", "cm", "m/s^2"]')
     assert main(["report", str(folder)]) == 0
     printed = capsys.readouterr().out

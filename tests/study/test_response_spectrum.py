@@ -1,7 +1,7 @@
 """Response spectra against Chopra's numbers, the piecewise closed form, and limits of a pulse."""
 
 from importlib.util import find_spec
-from itertools import pairwise
+from itertools import accumulate, pairwise, repeat
 from pathlib import Path
 
 import numpy as np
@@ -37,7 +37,8 @@ def largest(record: Record, period: float, ratio: float) -> float:
     matrix = np.array(
         [[0, 1, 0, 0], [-w * w, -2 * ratio * w, -1, 0], [0, 0, 0, 1], [0, 0, 0, 0]], float
     )
-    steps = np.array([expm(matrix * dt * k / parts) for k in range(parts + 1)])
+    part = expm(matrix * dt / parts)
+    steps = np.array(list(accumulate(repeat(part, parts), np.matmul, initial=np.eye(4))))
     # Zero after the last sample, to which it jumps.
     cells = [*pairwise(record.values), *[(0.0, 0.0)] * (int(period / dt) + 2)]
     y, found = np.zeros(2), 0.0
