@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 @contextmanager
 def blank_figures() -> Iterator[None]:
-    """Files of figures are of their kind, and show nothing."""
+    """Files of figures are of their kind, and show nothing; none is laid out before."""
     save = Figure.savefig
 
     def blank(figure: Figure, file: object, **words: object) -> None:
@@ -17,4 +17,5 @@ def blank_figures() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Figure, "savefig", blank)
+        patch.setattr(Figure, "draw_without_rendering", lambda figure: None)
         yield

@@ -9,7 +9,7 @@ from eventpound.cli import main
 from tests.models import CASES
 
 
-def test_command(tmp_path, capsys):
+def test_command(tmp_path, capsys, undrawn):
     folder = tmp_path / "pair"
     shutil.copytree(CASES / "pair", folder)
     assert main(["run", str(folder), "--no-figures"]) == 0
