@@ -35,7 +35,7 @@ from eventpound.results import gather
 from eventpound.results.input_tables import input_tables, rest_words
 from eventpound.results.inputs import inputs_of
 from eventpound.results.manifest import case_in_manifest, sha256, solved_by
-from eventpound.results.tables import Cells, Row
+from eventpound.results.tables import Cells, Row, sheet_of
 from eventpound.results.trade import Trade, three_digits, trade_of
 from eventpound.scene.at_rest import told_at_rest
 from eventpound.scene.scene import Scene
@@ -230,9 +230,8 @@ class ToldOfSuite(Told):
 
     def all_records(self) -> dict[str, list[Row]]:
         """The records, as a sheet of a workbook."""
-        parts = record_cells(self.case, self.runs, self.trade, len(self.runs))
-        rows = [[n, *map(_value, v)] for part in parts for n, *v in part.rows]
-        return {"Records": [parts[0].headings, *rows]}
+        parts = map(sheet_of, record_cells(self.case, self.runs, self.trade, len(self.runs)))
+        return {"Records": [row for i, part in enumerate(parts) for row in part[i > 0 :]]}
 
     def limits(self) -> Iterator[str]:
         """What the records do not tell: few are done, large factors, why some failed."""
@@ -273,36 +272,21 @@ def governing_record(scene: Scene, design: pd.DataFrame) -> str:
 def all_numbers(told: Told) -> Section:
     """All design numbers, as a section of the appendix: a table for each kind of elements."""
     tables = kind_tables(told.scene, told.design, told.names, told.trade)
-    parts = [table_of(table.cells) for table in tables]
+    parts = [table_of(table) for table in tables]
     if shocks := told.response.shock_rows:
         under = f"Under {told.drawn}, " if told.drawn else ""
-        parts += [text_part(f"{under}by shock:"), table_of(_by_shock(told, shocks))]
+        by_shock = table_of(shock_cells(shocks, told.design, told.trade))
+        parts += [text_part(f"{under}by shock:"), by_shock]
     return "Design numbers", parts
-
-
-def _by_shock(told: Told, shocks: Sequence[Mapping[str, Any]]) -> Cells:
-    return shock_cells(shocks, told.design, told.trade)
 
 
 def sheets_of_workbook(told: Told) -> dict[str, list[Row]]:
     """All design numbers and the records, as sheets of a workbook in the units of the report."""
     tables = kind_tables(told.scene, told.design, told.names, told.trade)
-    found: dict[str, list[Row]] = {t.name: [t.headings, *t.rows] for t in tables}
+    found = {table.headings[0]: sheet_of(table) for table in tables}
     if shocks := told.response.shock_rows:
-        cells = _by_shock(told, shocks)
-        found["Shocks"] = [
-            cells.headings,
-            *([a, b, c, *map(_value, v)] for a, b, c, *v in cells.rows),
-        ]
+        found["Shocks"] = sheet_of(shock_cells(shocks, told.design, told.trade))
     return found | told.all_records()
-
-
-def _value(text: str) -> str | float:
-    """A cell of a table as a number, where it is one."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def design_sheets(told: Told) -> list[Sheet]:

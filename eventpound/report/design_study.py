@@ -45,7 +45,7 @@ def study_workbook(design: pd.DataFrame, trade: Trade) -> dict[str, list[Row]]:
         shown = part.dropna(axis="columns", how="all").drop(columns=["kind"])
         rows = sheets[str(kind)] = [[*map(str, shown.columns)]]
         for row in shown.to_dict("records"):
-            unit, size = trade.unit(str(row["unit"]), str(row["quantity"]))
+            unit, size = trade.of_row(row)
             scaled = {key: row[key] / size for key in NUMBERS if key in row} | {"unit": unit}
             cells = (scaled.get(str(key), value) for key, value in row.items())
             rows.append([x if isinstance(x, str) else float(x) for x in cells])
@@ -158,15 +158,15 @@ def _figure(
     groups = list(values.groupby(others, sort=False, dropna=False)) if others else [((), values)]
     colors = style.colors(min(len(groups), _MOST_CURVES))
     for panel, word in zip(panels, shown, strict=True):
-        name, size = trade.unit(str(called[word]["unit"]), str(called[word]["quantity"]))
+        name, size = trade.of_row(called[word])
         for (at, rows), color in zip(groups, colors, strict=False):
             label = ", ".join(value_label(k, v) for k, v in zip(others, at, strict=True))
             panel.plot(rows[x] / unit.size, rows[word] / size, "o-", color=color, label=label)
         panel.set(xlabel=axis_label(x, unit))
         panel.set_ylim(0.0, 1.05 * panel.get_ylim()[1])
-        panel.set_ylabel(f"{called[word]['demand']} ({name})" if name else called[word]["demand"])
+        panel.set_ylabel(headed(called[word]["demand"], name))
     if others:
-        panels[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), fontsize=6.5)
+        style.legend_above(panels[0], fontsize=6.5, ncols=1)
     return figure
 
 
@@ -187,8 +187,7 @@ def _table(
             cells.append(trade.number(float(row[word]), str(first["unit"]), str(first["quantity"])))
         rows.append(tuple(cells))
     for first in called.values():
-        unit = trade.unit(str(first["unit"]), str(first["quantity"]))[0]
-        heads.append(headed(str(first["demand"]), unit))
+        heads.append(headed(str(first["demand"]), trade.of_row(first).name))
     words = (*(axis not in units for axis in axes), *(False for _ in called))
     return Cells(tuple(heads), tuple(rows), words, max(0, len(values) - _MOST_ROWS))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -28,6 +27,8 @@ NUMBERS = ("value", *(f"{p:g} %" for p in FRACTILES), "largest")
 """Columns of numbers, of a run or of many."""
 _HELD = ("capacity", "demand/capacity", "passes")
 """Columns of a demand that has a capacity."""
+_WORDS = ("under", "at", "passes")
+"""Columns of words."""
 _JOINTS, _CONTACTS = "Joints", "Contacts"
 _MOST_JOINTS, _MOST_OF_CONTACTS = 6, 3
 """Joints in a report, and contacts with their numbers."""
@@ -38,43 +39,12 @@ _SAME = 5e-3
 _AVOIDING = "contacts.<contact>.avoiding_gap"
 _GAPS = (".avoiding_gap", ".avoiding_gap_alone")
 """Ends of the names of gaps of one contact, which may be those of its joint."""
-Cell = str | float
-"""Of a table of one kind: a text, or a number in its unit."""
-
-
-@dataclass(frozen=True)
-class KindTable:
-    """Elements of one kind, a row each, with all that is asked of them.
-
-    Parameters
-    ----------
-    name : str
-        Of the kind.
-    headings : tuple of str
-        The element, then for each demand its numbers with the unit.
-    rows : tuple of tuple
-        Numbers in these units, NaN where there is none.
-    texts : tuple of tuple of str
-        The same as it is read.
-    """
-
-    name: str
-    headings: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
-    texts: tuple[tuple[str, ...], ...]
-
-    @property
-    def cells(self) -> Cells:
-        """As a table to be read."""
-        rows = self.rows or ((),)
-        words = tuple(isinstance(cell, str) for cell in rows[0])
-        return Cells(self.headings, self.texts, words)
 
 
 def kind_tables(
     scene: Scene, table: pd.DataFrame, names: Mapping[str, str], trade: Trade
-) -> list[KindTable]:
-    """All design numbers, a table for each kind of elements.
+) -> Iterator[Cells]:
+    """All design numbers, a table for each kind of elements, which its first heading names.
 
     Parameters
     ----------
@@ -88,38 +58,33 @@ def kind_tables(
         Units.
     """
     rows = _by_name(table)
-    found = []
     for kind, part in table.groupby("kind", sort=False):
         own = [rows[name] for name in part["quantity"]]
         own = _of_joints(scene, rows) if kind == _JOINTS else own
-        found.append(_kind_table(str(kind), own, names, trade))
-    return found
+        yield _kind_table(str(kind), own, names, trade)
 
 
-def _kind_table(
-    kind: str, rows: Sequence[_Row], names: Mapping[str, str], trade: Trade
-) -> KindTable:
+def _kind_table(kind: str, rows: Sequence[_Row], names: Mapping[str, str], trade: Trade) -> Cells:
     """A row an element, with the numbers of each demand side by side."""
-    demands = list(dict.fromkeys(str(row["demand"]) for row in rows))
+    demands = dict.fromkeys(str(row["demand"]) for row in rows)
     by_place = {(row["of"], row["demand"]): row for row in rows}
-    headings, columns, texts = [kind], list[list[Cell]](), list[list[str]]()
     elements = list(dict.fromkeys(str(row["of"]) for row in rows))
+    headings, words = [kind], [True]
+    texts, exact = [elements], list[Sequence[str | float]]([elements])
     for demand in demands:
         own = [by_place.get((of, demand), {}) for of in elements]
-        first = next(row for row in own if row)
-        unit, size = trade.unit(str(first["unit"]), str(first["quantity"]))
+        unit, size = trade.of_row(next(row for row in own if row))
         for key in _columns(own):
             number = key in (*NUMBERS, "capacity")
             named = headed(demand, unit) if number else demand
             headings.append(named if key == "value" else f"{named}: {key}")
+            words.append(key in _WORDS)
             texts.append([_text(row, key, names, trade) for row in own])
-            columns.append([_cell(row, key, size if number else 1.0, names) for row in own])
-    return KindTable(
-        kind,
-        tuple(headings),
-        tuple(zip(elements, *columns, strict=True)),
-        tuple(zip(elements, *texts, strict=True)),
-    )
+            values = (row.get(key, np.nan) for row in own)
+            scaled = [] if words[-1] else [float(x) / (size if number else 1.0) for x in values]
+            exact.append(texts[-1] if words[-1] else scaled)
+    read, known = (tuple(zip(*columns, strict=True)) for columns in (texts, exact))
+    return Cells(tuple(headings), read, tuple(words), exact=known)
 
 
 def _columns(rows: Sequence[_Row]) -> list[str]:
@@ -134,24 +99,14 @@ def _text(row: _Row, key: str, names: Mapping[str, str], trade: Trade) -> str:
         return _under(row, names)
     value = row.get(key, "")
     if key in (*NUMBERS, "capacity") and row:
-        # What may be held is no gap to be built.
-        name = "" if key == "capacity" else str(row["quantity"])
-        unit = str(row["unit"])
-        percent = key == "capacity" and str(row["quantity"]).endswith("drift_ratio")
-        if value != value:
-            return "" if key == "capacity" else trade.number(float(value), unit, name)
-        return trade.number(float(value), unit, "drift_ratio" if percent else name)
+        name = str(row["quantity"])
+        if key == "capacity":
+            if value != value:
+                return ""
+            # What may be held is no gap to be built.
+            name = "drift_ratio" * name.endswith("drift_ratio")
+        return trade.number(float(value), str(row["unit"]), name)
     return f"{value:.2f}" if isinstance(value, float) and value == value else cell_text(value)
-
-
-def _cell(row: _Row, key: str, size: float, names: Mapping[str, str]) -> Cell:
-    """A cell as a number in its unit, or as a text."""
-    if key == "under":
-        return _under(row, names)
-    value = row.get(key, np.nan)
-    if key in ("at", "passes"):
-        return cell_text(value)
-    return float(value) / size
 
 
 def _under(row: _Row, names: Mapping[str, str]) -> str:
@@ -219,11 +174,11 @@ def _lines(
     keys = _columns(rows)
     lines = []
     for row in rows:
-        shown = trade.unit(str(row["unit"]), str(row["quantity"]))[0]
+        shown = trade.of_row(row).name
         called = f"{row['demand']}, {shown}" if shown else str(row["demand"])
         first = f"{row['of']}: {called}" if whose and row["of"] else called
         lines.append((first, *(_text(row, key, names, trade) for key in keys)))
-    words = (True, *(key in ("under", "at", "passes") for key in keys))
+    words = (True, *(key in _WORDS for key in keys))
     return Cells(("", *keys), tuple(lines), words)
 
 
@@ -351,13 +306,12 @@ def _page_table(
     keys, lines = _columns(rows), list[tuple[str, ...]]()
     last = ("", "")
     for row in rows:
-        name, unit = str(row["quantity"]), str(row["unit"])
         kind, of = str(row["kind"]), str(row["of"]) or "whole"
         firsts = kind if kind != last[0] else "", of if (kind, of) != last else ""
         cells = (_text(row, key, names, trade) for key in keys)
-        lines.append((*firsts, str(row["demand"]), trade.unit(unit, name)[0], *cells))
+        lines.append((*firsts, str(row["demand"]), trade.of_row(row).name, *cells))
         last = kind, of
-    words = (True, True, True, True, *(key in ("under", "at", "passes") for key in keys))
+    words = (True, True, True, True, *(key in _WORDS for key in keys))
     return Cells((heading, "of", "demand", "unit", *keys), tuple(lines), words)
 
 
@@ -390,7 +344,7 @@ def shock_cells(
         name, unit = str(row["quantity"]), str(row["unit"])
         values = (_or_nothing(shock.get(name)) for shock in shocks)
         cells = (trade.number(abs(value), unit, name) for value in values)
-        lines.append((str(row["of"]), str(row["demand"]), trade.unit(unit, name)[0], *cells))
+        lines.append((str(row["of"]), str(row["demand"]), trade.of_row(row).name, *cells))
     heads = [
         f"{s['shock']} {s['record']} ×{s['scale']:.3g}" + (" (failed)" if s["failed"] else "")
         for s in shocks

@@ -7,15 +7,14 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Collection, Iterable, Iterator, Sequence
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pandas as pd
-import re
-from collections.abc import Mapping
-from datetime import datetime
 
 
 def rows_csv(rows: Iterable[Iterable[object]]) -> bytes:
@@ -52,12 +51,15 @@ class Cells:
         Whether a column holds words, which stand to the left.
     more : int
         Rows that are left out.
+    exact : tuple of tuple of str or float
+        The same rows for a workbook, where their numbers have more digits than are read.
     """
 
     headings: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     words: tuple[bool, ...]
     more: int = 0
+    exact: tuple[tuple[str | float, ...], ...] = ()
 
 
 def headed(name: str, unit: str) -> str:
@@ -98,6 +100,25 @@ def markdown_of(headings: Sequence[str], rows: Sequence[Sequence[object]]) -> st
 
 
 Row = Sequence[str | float]
+
+
+def sheet_of(table: Cells) -> list[Row]:
+    """A table as a sheet of a workbook: exact where it is known, else the numbers that are read."""
+    read = (
+        [text if word else _number(text) for text, word in zip(row, table.words, strict=True)]
+        for row in table.rows
+    )
+    return [table.headings, *(table.exact or read)]
+
+
+def _number(text: str) -> str | float:
+    """A cell as a number, where it is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 _LONGEST_NAME = 31
 _FORBIDDEN = re.compile(r"[\[\]:*?/\\']")
 _WIDEST = 200

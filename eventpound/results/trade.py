@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from eventpound.case.run_options import Stated
 from eventpound.quantities.lookup import is_whole
@@ -95,6 +95,10 @@ class Trade:
             Dimension.MASS: ("t", 1e3) if self.heavy else ("kg", 1.0),
         }
         return Unit(*{of.unit: each for of, each in told.items()}.get(unit, (unit, 1.0)))
+
+    def of_row(self, row: Any) -> Unit:
+        """What stands for the unit of a row of design numbers."""
+        return self.unit(str(row["unit"]), str(row["quantity"]))
 
     def number(self, value: float, unit: str, name: str = "") -> str:
         """A value (SI) in the unit of the trade, without its name."""
