@@ -19,7 +19,7 @@ from pathlib import Path
 
 from eventpound.accuracy.foreign_history import judge_history, read_foreign
 from eventpound.accuracy.quantities import errors_of
-from eventpound.accuracy.reference import Reference, reference_of, stated_bounds
+from eventpound.accuracy.reference import Reference, certified_bounds, reference_of
 from eventpound.accuracy.work_precision import Judged, SolverChoice, is_stepped, judge
 from eventpound.case.case import Case
 from eventpound.case.run_options import RunOptions, Way, warn_left_out
@@ -220,7 +220,7 @@ def judge_entries(
         entry.task(case)
     histories = [read_foreign(case, path, columns or {}) for path in against]
     progress("reference")
-    reference = reference_of(case, case.run, stated_bounds(case))
+    reference = reference_of(case, case.run, certified_bounds(case))
     reference = _with_rigid(case, case.run, reference, restitution)
     laws = _error_of_laws(case, reference)
     runs: list[Judged] = []

@@ -157,7 +157,7 @@ def rests_of_both(
     return [_Rests(*numbers) for numbers in zip(*counts, *times, strict=True)]
 
 
-def impacts_apart(
+def speed_differences(
     ours: Sequence[Event], theirs: Sequence[Event], contacts: int, of_scene: float
 ) -> Floats:
     """How far the impacts of two runs differ at each contact, shape (K,).
@@ -233,7 +233,7 @@ def _doubts(response: Response, others: Sequence[Event], paired: Paired, by: str
                 f"by {by} for {found.their_time:.6g} s"
             )
     speed = scales_of_task(task).speed
-    for j, part in enumerate(impacts_apart(ours, others, len(names), speed)):
+    for j, part in enumerate(speed_differences(ours, others, len(names), speed)):
         if part > allowed and j not in partings:
             yield (
                 f"impacts at {names[j]} have other speeds than by {by}, "

@@ -38,7 +38,7 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class StatedBounds:
+class CertifiedBounds:
     """Certified quantities of a case.
 
     Parameters
@@ -76,7 +76,7 @@ class StatedBounds:
         return found
 
 
-def stated_bounds(case: Case) -> StatedBounds | None:
+def certified_bounds(case: Case) -> CertifiedBounds | None:
     """What the certificate in a case's directory or its results says; None without one.
 
     Raises
@@ -92,7 +92,7 @@ def stated_bounds(case: Case) -> StatedBounds | None:
         content = read_json(file)
     except InputError as error:
         raise InputError(f"{error}; run eventpound verify again") from error
-    return StatedBounds(file, _certified(file, content))
+    return CertifiedBounds(file, _certified(file, content))
 
 
 def _certified(file: Path, content: Any) -> dict[str, tuple[float, float]]:
@@ -133,7 +133,7 @@ class Reference:
         The checking run held against the reference; None where it failed.
     words : str
         What the reference is, in a sentence.
-    stated : StatedBounds or None
+    stated : CertifiedBounds or None
         The certificate that values and bounds are from, as far as it goes.
     rigid : Reference or None
         Where contacts have laws, that of the scene under Newton's
@@ -147,7 +147,7 @@ class Reference:
     recording: Recording
     check: Difference | None
     words: str
-    stated: StatedBounds | None
+    stated: CertifiedBounds | None
     rigid: Reference | None = None
     rigid_words: str = ""
     _rows: dict[bytes, History] = field(default_factory=dict)
@@ -161,7 +161,7 @@ class Reference:
         return self._rows[key]
 
 
-def reference_of(case: Case, options: RunOptions, stated: StatedBounds | None) -> Reference:
+def reference_of(case: Case, options: RunOptions, stated: CertifiedBounds | None) -> Reference:
     """Run the reference of a case and its check.
 
     Parameters
@@ -170,7 +170,7 @@ def reference_of(case: Case, options: RunOptions, stated: StatedBounds | None) -
         The case.
     options : RunOptions
         The stretch of time.
-    stated : StatedBounds or None
+    stated : CertifiedBounds or None
         What a certificate says of this case over this stretch.
 
     Raises

@@ -84,13 +84,15 @@ def _zoom(out: Path) -> dict[str, bytes]:
     from eventpound.case.run_options import Stated
     from eventpound.report.run_figures import view_of_run
     from eventpound.report.zoom import ZOOM_PAGE, zoom_page
-    from eventpound.results.trade import Trade, trade_of
+    from eventpound.results.shown_units import Units, units_of_scene
 
     view = view_of_run(out)
     title = str((view.results.manifest.get("case") or {}).get("title", "")) or out.name
     stated = (view.results.manifest.get("case") or {}).get("run", {}).get("units", ())
-    trade = Trade() if view.scene is None else trade_of(view.scene, Stated(units=tuple(stated)))
-    return {ZOOM_PAGE: zoom_page(view, title, trade)}
+    units = Units()
+    if view.scene is not None:
+        units = units_of_scene(view.scene, Stated(units=tuple(stated)))
+    return {ZOOM_PAGE: zoom_page(view, title, units)}
 
 
 def _beside(options: Options, out: Path) -> tuple[Path | Response, str] | None:

@@ -126,7 +126,7 @@ def _pages_of(
     files = _pages(case.title, report.design_sheets(told), sections, tables)
     title = ": ".join(filter(None, [case.title, told.governs]))
     view = View(gather(told.response, case), told.response.scene)
-    return files | {ZOOM_PAGE: zoom_page(view, title, told.trade)}
+    return files | {ZOOM_PAGE: zoom_page(view, title, told.units)}
 
 
 def _of_run(options: Options, out: Path, case: Case) -> _Made:
@@ -179,8 +179,8 @@ def _of_study(options: Options, out: Path, case: StudyCase) -> _Made:
     from eventpound.report.design_study import study_cells, study_sheets, study_workbook
     from eventpound.report.design_tables import capacity_words
     from eventpound.report.many_appendix import study_sections
+    from eventpound.results.shown_units import units_of_scene
     from eventpound.results.tables import lines_of
-    from eventpound.results.trade import trade_of
     from eventpound.study.design import made_of_study, plan_asking
     from eventpound.study.table import manifest_there
 
@@ -194,27 +194,27 @@ def _of_study(options: Options, out: Path, case: StudyCase) -> _Made:
     if failed := int((~made["success"]).sum()):
         complain(f"{failed} of {len(made)} runs failed, and are left out")
     first = case.study.bases[0].at_first().case
-    trade = trade_of(first.scene, first.run.stated)
+    units = units_of_scene(first.scene, first.run.stated)
     if len(table):
         print("\n".join(capacity_words(table, first.run.stated.fractile)))
-        print("\n".join(lines_of(study_cells(plan, table, trade))))
+        print("\n".join(lines_of(study_cells(plan, table, units))))
     if options.no_pages:
         return plan.title, table, {}
-    sheets = study_sheets(plan, table, trade, case.warnings) if len(table) else []
+    sheets = study_sheets(plan, table, units, case.warnings) if len(table) else []
     sections = study_sections(case, made, manifest_there(runs) or {})
-    return plan.title, table, _pages(plan.title, sheets, sections, study_workbook(table, trade))
+    return plan.title, table, _pages(plan.title, sheets, sections, study_workbook(table, units))
 
 
 def _lines(case: Case, table: pd.DataFrame, names: Mapping[str, str]) -> Iterator[str]:
     """What an engineer asks, to be read: a table a part, in units of the trade."""
     from eventpound.report.design_tables import capacity_words, screen_tables
     from eventpound.report.record_tables import scaling_words
+    from eventpound.results.shown_units import units_of_scene
     from eventpound.results.tables import lines_of
-    from eventpound.results.trade import trade_of
 
-    trade = trade_of(case.scene, case.run.stated)
-    if scaling := scaling_words(case, trade):
+    units = units_of_scene(case.scene, case.run.stated)
+    if scaling := scaling_words(case, units):
         yield f"scaling   {scaling}"
     yield from capacity_words(table, case.run.stated.fractile)
-    for heading, cells in screen_tables(case.scene, table, names, trade) if len(table) else ():
+    for heading, cells in screen_tables(case.scene, table, names, units) if len(table) else ():
         yield from ("", heading, *lines_of(cells))

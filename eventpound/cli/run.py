@@ -240,16 +240,16 @@ def _summary(response: Response) -> Iterator[str]:
 
 def _demands(response: Response) -> Iterator[str]:
     """What contacts and yielding springs need, a line each, in units of the trade."""
-    from eventpound.results.trade import trade_of
+    from eventpound.results.shown_units import units_of_scene
 
-    trade, numbers = trade_of(response.scene, response.stated), response.numbers()
+    units, numbers = units_of_scene(response.scene, response.stated), response.numbers()
     parts: dict[str, list[str]] = {}
     for path, (word, unit) in _DEMANDS.items():
         kind, _, quantity = path.partition(".<>.")
         for name, value in numbers.items():
             owner = name.removeprefix(f"{kind}.").removesuffix(f".{quantity}")
             if name == f"{kind}.{owner}.{quantity}" and value is not None:
-                parts.setdefault(owner, []).append(f"{word} {trade.words(abs(value), unit, name)}")
+                parts.setdefault(owner, []).append(f"{word} {units.words(abs(value), unit, name)}")
     shown = list(parts.items())[:_MOST_DEMANDS]
     yield from (f"{owner:<16} {', '.join(texts)}" for owner, texts in shown)
     if len(parts) > len(shown):

@@ -16,8 +16,8 @@ from eventpound.report import style
 from eventpound.report.design_tables import joint_names
 from eventpound.report.markers import draw_circles, draw_ground, draw_shocks
 from eventpound.report.view import View
+from eventpound.results.shown_units import Units
 from eventpound.results.tables import headed
-from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact
 from eventpound.scene.ends import End, label_of, weights_of
 from eventpound.scene.plan_point import PlanPoint
@@ -45,7 +45,7 @@ def demand_figure(
     scene: Scene,
     runs: pd.DataFrame,
     panels: Sequence[Sequence[Named]],
-    trade: Trade,
+    units: Units,
     size: tuple[str, float] | None = None,
 ) -> Figure:
     """Draw demands over the numbers of the records.
@@ -58,7 +58,7 @@ def demand_figure(
         Table of the suite, a row a record.
     panels : sequence of sequence of Named
         Demands of one kind each, of several owners.
-    trade : Trade
+    units : Units
         Units.
     size : tuple of str and float, optional
         What the size of the records is called, in a panel of its own, and what it was to be
@@ -69,10 +69,10 @@ def demand_figure(
     shown = runs.where(runs[FAILED] == "")
     every = list(np.atleast_1d(figure.subplots(1, len(panels) + (size is not None))))
     if size is not None:
-        _draw_sizes(every.pop(0), runs, size, trade)
+        _draw_sizes(every.pop(0), runs, size, units)
     for axes, demands in zip(every, panels, strict=True):
         quantity = demands[0].quantity
-        name, of = trade.unit(quantity.dimension.unit, quantity.path)
+        name, of = units.unit(quantity.dimension.unit, quantity.path)
         drawn = _largest(shown, demands)
         # Lines of all are told apart by nobody.
         governs = shown[[named.name for named in drawn]].abs().quantile(FRACTILES[-1] / 100.0)
@@ -100,10 +100,10 @@ def _name_axes(axes: Axes, runs: pd.DataFrame, name: str) -> None:
     axes.set_ylim(0.0, 1.05 * axes.get_ylim()[1])
 
 
-def _draw_sizes(axes: Axes, runs: pd.DataFrame, size: tuple[str, float], trade: Trade) -> None:
+def _draw_sizes(axes: Axes, runs: pd.DataFrame, size: tuple[str, float], units: Units) -> None:
     """Draw Sa of each record, and what it was to be."""
     called, wanted = size
-    unit, of = trade.unit(Dimension.ACCELERATION.unit)
+    unit, of = units.unit(Dimension.ACCELERATION.unit)
     values = runs[SA].to_numpy(float) / of
     axes.plot(np.arange(1, len(runs) + 1), values, "o", markersize=3.0, color="#444444")
     if wanted == wanted:
@@ -120,7 +120,7 @@ def _largest(runs: pd.DataFrame, demands: Sequence[Named]) -> list[Named]:
 
 
 @style.styled()
-def governing_figure(view: View, contact: Contact | None, body: str, trade: Trade) -> Figure:
+def governing_figure(view: View, contact: Contact | None, body: str, units: Units) -> Figure:
     """Draw the ground, what moves at a contact, and its gap.
 
     Parameters
@@ -131,7 +131,7 @@ def governing_figure(view: View, contact: Contact | None, body: str, trade: Trad
         Which; without one only the body is drawn.
     body : str
         What is drawn without a contact.
-    trade : Trade
+    units : Units
         Units.
     """
     ends: list[End] = [body] if contact is None else _drawn_ends(contact, view)
@@ -141,11 +141,11 @@ def governing_figure(view: View, contact: Contact | None, body: str, trade: Trad
     ground, motion, *gaps = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
     for axes in (ground, motion, *gaps):
         style.zero_lines(axes)
-    unit, size = trade.unit(Dimension.ACCELERATION.unit)
+    unit, size = units.unit(Dimension.ACCELERATION.unit)
     draw_ground(ground, view, size)
     ground.set_ylabel(f"ground ({unit})")
     draw_shocks(ground, view)
-    unit, size = trade.unit(Dimension.LENGTH.unit)
+    unit, size = units.unit(Dimension.LENGTH.unit)
     for name, color in zip(ends, style.colors(len(ends)), strict=True):
         line = view.displacement(name) / size
         where = " normal to the edge" * isinstance(name, PlanPoint)
@@ -157,7 +157,7 @@ def governing_figure(view: View, contact: Contact | None, body: str, trade: Trad
     motion.legend(**_ABOVE)
     for axes in gaps:
         assert contact is not None
-        _draw_gap(axes, view, contact, trade)
+        _draw_gap(axes, view, contact, units)
     (gaps or [motion])[-1].set_xlabel("time (s)")
     motion.set_xlim(view.t[0], view.t[-1])
     figure.align_ylabels()
@@ -173,8 +173,8 @@ def _drawn_ends(contact: Contact, view: View) -> list[End]:
     return found
 
 
-def _draw_gap(axes: Axes, view: View, contact: Contact, trade: Trade) -> None:
-    unit, size = trade.unit(Dimension.LENGTH.unit)
+def _draw_gap(axes: Axes, view: View, contact: Contact, units: Units) -> None:
+    unit, size = units.unit(Dimension.LENGTH.unit)
     gap, name = view.column(f"gap.{contact.name}") / size, style.literal(contact.name)
     axes.plot(view.t, gap, color=style.PALETTE[2], label=name)
     axes.axhline(contact.gap / size, color=style.PALETTE[2], **style.DASHED)

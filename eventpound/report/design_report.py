@@ -35,9 +35,9 @@ from eventpound.results import gather
 from eventpound.results.input_tables import input_tables, rest_words
 from eventpound.results.inputs import inputs_of
 from eventpound.results.manifest import case_in_manifest, sha256, solved_by
+from eventpound.results.shown_units import Units, three_digits, units_of_scene
 from eventpound.results.tables import Cells, Row, sheet_of
-from eventpound.results.trade import Trade, three_digits, trade_of
-from eventpound.scene.at_rest import told_at_rest
+from eventpound.scene.at_rest import springs_at_rest
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Backfill, Slider
 from eventpound.simulation import response_of
@@ -117,9 +117,9 @@ class Told:
         return self.case.scene
 
     @property
-    def trade(self) -> Trade:
+    def units(self) -> Units:
         """Units in which it is told."""
-        return trade_of(self.scene, self.case.run.stated)
+        return units_of_scene(self.scene, self.case.run.stated)
 
     @property
     def names(self) -> Mapping[str, str]:
@@ -142,12 +142,12 @@ class Told:
         if isinstance(motion, Record):
             said = (record.event, record.date, record.station, record.component) if record else ()
             name = ", ".join(text for text in said if text) or "a record"
-            peak = self.trade.words(motion.peak, Dimension.ACCELERATION.unit)
+            peak = self.units.words(motion.peak, Dimension.ACCELERATION.unit)
             return f"{name}, times {three_digits(abs(motion.factor))}, peak {peak}"
         scales = motion.scales()
         if scales is None:
             return "no ground motion" if motion.kind == "none" else f"a motion, {motion.kind}"
-        peak = self.trade.words(scales.a_g, Dimension.ACCELERATION.unit)
+        peak = self.units.words(scales.a_g, Dimension.ACCELERATION.unit)
         return f"a pulse, {motion.kind}, {peak}, period {three_digits(scales.period)} s"
 
     def numbers(self, cells: Sequence[Cells]) -> Sequence[Block]:
@@ -205,7 +205,7 @@ class ToldOfSuite(Told):
 
     def under(self) -> str:
         """Under how many records, of which size."""
-        scaling = scaling_words(self.case, self.trade).partition(" (")[0] or "every record as it is"
+        scaling = scaling_words(self.case, self.units).partition(" (")[0] or "every record as it is"
         done = int((self.runs[FAILED] == "").sum())
         failed = f" of {len(self.runs)}" if done < len(self.runs) else ""
         return f"{done}{failed} records; {scaling}"
@@ -217,9 +217,9 @@ class ToldOfSuite(Told):
     def records(self) -> list[Block]:
         """Demands over the records, and the records."""
         panels, (low, high) = _panels(self), FRACTILES
-        figure = demand_figure(self.scene, self.runs, panels, self.trade, _sizes(self))
+        figure = demand_figure(self.scene, self.runs, panels, self.units, _sizes(self))
         lines = f"Dotted lines: {low:g} %, dashed: {high:g} % of them, of several the largest."
-        tables = record_cells(self.case, self.runs, self.trade)
+        tables = record_cells(self.case, self.runs, self.units)
         return [
             Head("Demand over the records"),
             Picture(figure, _DEMAND),
@@ -230,7 +230,7 @@ class ToldOfSuite(Told):
 
     def all_records(self) -> dict[str, list[Row]]:
         """The records, as a sheet of a workbook."""
-        parts = map(sheet_of, record_cells(self.case, self.runs, self.trade, len(self.runs)))
+        parts = map(sheet_of, record_cells(self.case, self.runs, self.units, len(self.runs)))
         return {"Records": [row for i, part in enumerate(parts) for row in part[i > 0 :]]}
 
     def limits(self) -> Iterator[str]:
@@ -271,21 +271,21 @@ def governing_record(scene: Scene, design: pd.DataFrame) -> str:
 
 def all_numbers(told: Told) -> Section:
     """All design numbers, as a section of the appendix: a table for each kind of elements."""
-    tables = kind_tables(told.scene, told.design, told.names, told.trade)
+    tables = kind_tables(told.scene, told.design, told.names, told.units)
     parts = [table_of(table) for table in tables]
     if shocks := told.response.shock_rows:
         under = f"Under {told.drawn}, " if told.drawn else ""
-        by_shock = table_of(shock_cells(shocks, told.design, told.trade))
+        by_shock = table_of(shock_cells(shocks, told.design, told.units))
         parts += [text_part(f"{under}by shock:"), by_shock]
     return "Design numbers", parts
 
 
 def sheets_of_workbook(told: Told) -> dict[str, list[Row]]:
     """All design numbers and the records, as sheets of a workbook in the units of the report."""
-    tables = kind_tables(told.scene, told.design, told.names, told.trade)
+    tables = kind_tables(told.scene, told.design, told.names, told.units)
     found = {table.headings[0]: sheet_of(table) for table in tables}
     if shocks := told.response.shock_rows:
-        found["Shocks"] = sheet_of(shock_cells(shocks, told.design, told.trade))
+        found["Shocks"] = sheet_of(shock_cells(shocks, told.design, told.units))
     return found | told.all_records()
 
 
@@ -308,12 +308,12 @@ def _first(told: Told, most: int) -> Iterator[Block]:
     yield Head(told.case.title, title=True)
     yield Words(tuple(_asked(told)))
     yield Head("Design numbers")
-    yield from told.numbers(page_cells(told.scene, told.design, told.names, told.trade, most))
+    yield from told.numbers(page_cells(told.scene, told.design, told.names, told.units, most))
 
 
 def _sketch(case: Case, high: float = _HIGH) -> Picture:
-    trade = trade_of(case.scene, case.run.stated)
-    figure = model_figure(case.scene, trade=trade, within=(WIDTH / 25.4, high))
+    units = units_of_scene(case.scene, case.run.stated)
+    figure = model_figure(case.scene, units=units, within=(WIDTH / 25.4, high))
     return Picture(figure, high * 25.4)
 
 
@@ -325,9 +325,9 @@ def model_blocks(case: Case, high: float = _HIGH, parts: int = _PARTS[-1]) -> It
 def _model(case: Case, sketch: Picture, parts: int, structures: int) -> Iterator[Block]:
     """The sketch and the tables of the parts; a tall sketch stands beside tables."""
     yield Head("Model")
-    trade = trade_of(case.scene, case.run.stated)
-    given = input_tables(_inputs(case, structures), trade.chosen)
-    nothing = min(trade.nothing(dimension.unit) for dimension in TOLD)
+    units = units_of_scene(case.scene, case.run.stated)
+    given = input_tables(_inputs(case, structures), units.chosen)
+    nothing = min(units.nothing(dimension.unit) for dimension in TOLD)
     tables = [_short(table, nothing, parts) for table in given]
     narrow = [table for table in tables if len(table.headings) <= _WIDE]
     wide, high = sketch.figure.get_size_inches()
@@ -361,14 +361,14 @@ def _second(told: Told) -> Iterator[Block]:
     worst = scene.contacts[lacking_contacts(scene, told.design)[0]] if scene.contacts else None
     view = View(gather(told.response, told.case), told.response.scene)
     yield Head(" under ".join(filter(None, ["Motion", told.governs])))
-    motion = governing_figure(view, worst, str(peaks.idxmax()), told.trade)
+    motion = governing_figure(view, worst, str(peaks.idxmax()), told.units)
     yield Picture(motion, _MOTION)
     if (plan := worst_plan_figure(view)) is not None:
         wide, high = plan.get_size_inches()
         yield Picture(plan, min(_MOTION, WIDTH * high / wide))
     if shocks := told.response.shock_rows:
         yield Head("Demands by shock")
-        yield shock_cells(shocks, told.design, told.trade, most=_MOST_OF_SHOCKS)
+        yield shock_cells(shocks, told.design, told.units, most=_MOST_OF_SHOCKS)
     yield from told.records()
     yield Head("Limits and warnings")
     yield Words(tuple(f"• {text}" for text in limits(told.case, told.case.warnings, told.limits())))
@@ -389,7 +389,7 @@ def _asked(told: Told) -> Iterator[str]:
     yield f"Under {told.under()}."
     for i in lacking_contacts(told.scene, told.design)[:_MOST_LISTED]:
         contact = told.scene.contacts[i]
-        yield f"Contact {contact_words(contact, told.design, told.trade)}."
+        yield f"Contact {contact_words(contact, told.design, told.units)}."
     yield from capacity_words(told.design, told.case.run.stated.fractile)
 
 
@@ -425,7 +425,7 @@ def limits(case: Case, warnings: Sequence[str], of_records: Iterable[str] = ()) 
     yield from LIMITS
     laws = {type(spring.law) for spring in case.scene.springs}
     yield from (text for law, text in _OF_LAWS.items() if law in laws)
-    resting = told_at_rest(case.scene, case.run.start_time)
+    resting = springs_at_rest(case.scene, case.run.start_time)
     if resting["not"] or resting["at_kink"] or resting["at_yield"]:
         yield f"At rest: {rest_words(resting)}."
     yield from of_records

@@ -15,8 +15,8 @@ from eventpound.report.design_tables import NUMBERS, capacity_words
 from eventpound.report.sheets import Block, Head, Picture, Sheet, Words
 from eventpound.report.symbols import axis_label, display_unit, value_label
 from eventpound.results.manifest import solved_by
+from eventpound.results.shown_units import Units
 from eventpound.results.tables import Cells, Row, headed
-from eventpound.results.trade import Trade
 from eventpound.study.base import RECORD
 from eventpound.study.design import FRACTILES, MOST_CLOSE
 from eventpound.study.large_scales import large_scales_of
@@ -32,20 +32,20 @@ _WIDE, _HIGH, _TALL = 7.4, 2.6, 66.0
 """Inches of the figure, and its height on the sheet (mm)."""
 
 
-def study_cells(study: Plan, design: pd.DataFrame, trade: Trade) -> Cells:
+def study_cells(study: Plan, design: pd.DataFrame, units: Units) -> Cells:
     """The largest demands of all elements of a kind, a row a point of the study."""
     values, called = _largest(study, design)
-    return _table(values, _axes(study), called, trade)
+    return _table(values, _axes(study), called, units)
 
 
-def study_workbook(design: pd.DataFrame, trade: Trade) -> dict[str, list[Row]]:
+def study_workbook(design: pd.DataFrame, units: Units) -> dict[str, list[Row]]:
     """All design numbers of a study as sheets of a workbook, one a kind of elements."""
     sheets: dict[str, list[Row]] = {}
     for kind, part in design.groupby("kind", sort=False) if len(design) else ():
         shown = part.dropna(axis="columns", how="all").drop(columns=["kind"])
         rows = sheets[str(kind)] = [[*map(str, shown.columns)]]
         for row in shown.to_dict("records"):
-            unit, size = trade.of_row(row)
+            unit, size = units.of_row(row)
             scaled = {key: row[key] / size for key in NUMBERS if key in row} | {"unit": unit}
             cells = (scaled.get(str(key), value) for key, value in row.items())
             rows.append([x if isinstance(x, str) else float(x) for x in cells])
@@ -53,7 +53,7 @@ def study_workbook(design: pd.DataFrame, trade: Trade) -> dict[str, list[Row]]:
 
 
 def study_sheets(
-    study: Plan, design: pd.DataFrame, trade: Trade, warnings: Sequence[str]
+    study: Plan, design: pd.DataFrame, units: Units, warnings: Sequence[str]
 ) -> list[Sheet]:
     """The two sheets of a study: its numbers; its model, limits and origin.
 
@@ -63,12 +63,12 @@ def study_sheets(
         What was run.
     design : DataFrame
         Its design numbers, a row a demand at each combination of the axes.
-    trade : Trade
+    units : Units
         Units.
     warnings : sequence of str
         Of its case.
     """
-    return [list(_first(study, design, trade)), list(_second(study, design, warnings))]
+    return [list(_first(study, design, units)), list(_second(study, design, warnings))]
 
 
 def _axes(study: Plan) -> list[str]:
@@ -97,7 +97,7 @@ def _largest(study: Plan, design: pd.DataFrame) -> tuple[pd.DataFrame, dict[str,
     return pd.DataFrame(values).reset_index(), {word: rows.iloc[0] for word, rows in found.items()}
 
 
-def _first(study: Plan, design: pd.DataFrame, trade: Trade) -> Iterator[Block]:
+def _first(study: Plan, design: pd.DataFrame, units: Units) -> Iterator[Block]:
     axes = _axes(study)
     yield Head(study.title, title=True)
     stated = study.bases[0].case.run.stated
@@ -114,9 +114,9 @@ def _first(study: Plan, design: pd.DataFrame, trade: Trade) -> Iterator[Block]:
     numeric = [axis for axis in axes if values[axis].dtype.kind == "f"]
     if numeric:
         yield Head("Demand over the axes")
-        yield Picture(_figure(study, values, numeric, called, trade), _TALL)
+        yield Picture(_figure(study, values, numeric, called, units), _TALL)
     yield Head("Design numbers")
-    yield _table(values, axes, called, trade)
+    yield _table(values, axes, called, units)
 
 
 def _second(study: Plan, design: pd.DataFrame, warnings: Sequence[str]) -> Iterator[Block]:
@@ -145,7 +145,7 @@ def _figure(
     values: pd.DataFrame,
     numeric: list[str],
     called: dict[str, pd.Series],
-    trade: Trade,
+    units: Units,
 ) -> Figure:
     """Demands over the axis of most values, a curve for each combination of the others."""
     x = max(numeric, key=lambda axis: values[axis].nunique())
@@ -158,7 +158,7 @@ def _figure(
     groups = list(values.groupby(others, sort=False, dropna=False)) if others else [((), values)]
     colors = style.colors(min(len(groups), _MOST_CURVES))
     for panel, word in zip(panels, shown, strict=True):
-        name, size = trade.of_row(called[word])
+        name, size = units.of_row(called[word])
         for (at, rows), color in zip(groups, colors, strict=False):
             label = ", ".join(value_label(k, v) for k, v in zip(others, at, strict=True))
             panel.plot(rows[x] / unit.size, rows[word] / size, "o-", color=color, label=label)
@@ -171,24 +171,24 @@ def _figure(
 
 
 def _table(
-    values: pd.DataFrame, axes: list[str], called: dict[str, pd.Series], trade: Trade
+    values: pd.DataFrame, axes: list[str], called: dict[str, pd.Series], units: Units
 ) -> Cells:
     """A row for each combination of the axes."""
-    units = {
+    of_axes = {
         axis: display_unit(axis, float(values[axis].abs().max()))
         for axis in axes
         if values[axis].dtype.kind == "f"
     }
-    heads = [headed(axis, units[axis].name) if axis in units else axis for axis in axes]
+    heads = [headed(axis, of_axes[axis].name) if axis in of_axes else axis for axis in axes]
     rows = []
     for row in values.head(_MOST_ROWS).to_dict("records"):
-        cells = [_plain(row[a] / units[a].size) if a in units else str(row[a]) for a in axes]
+        cells = [_plain(row[a] / of_axes[a].size) if a in of_axes else str(row[a]) for a in axes]
         for word, first in called.items():
-            cells.append(trade.number(float(row[word]), str(first["unit"]), str(first["quantity"])))
+            cells.append(units.number(float(row[word]), str(first["unit"]), str(first["quantity"])))
         rows.append(tuple(cells))
     for first in called.values():
-        heads.append(headed(str(first["demand"]), trade.of_row(first).name))
-    words = (*(axis not in units for axis in axes), *(False for _ in called))
+        heads.append(headed(str(first["demand"]), units.of_row(first).name))
+    words = (*(axis not in of_axes for axis in axes), *(False for _ in called))
     return Cells(tuple(heads), tuple(rows), words, max(0, len(values) - _MOST_ROWS))
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from eventpound.quantities.base import least_governs
+from eventpound.results.shown_units import Units
 from eventpound.results.tables import Cells, cell_text, headed
-from eventpound.results.trade import Trade
 from eventpound.scene.contact import Contact
 from eventpound.scene.ends import weights_of
 from eventpound.scene.joints import joints_of
@@ -42,7 +42,7 @@ _GAPS = (".avoiding_gap", ".avoiding_gap_alone")
 
 
 def kind_tables(
-    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], trade: Trade
+    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], units: Units
 ) -> Iterator[Cells]:
     """All design numbers, a table for each kind of elements, which its first heading names.
 
@@ -54,17 +54,17 @@ def kind_tables(
         As `eventpound.design_numbers` gives it.
     names : mapping of str to str
         What records are called, by their names in the table.
-    trade : Trade
+    units : Units
         Units.
     """
     rows = _by_name(table)
     for kind, part in table.groupby("kind", sort=False):
         own = [rows[name] for name in part["quantity"]]
         own = _of_joints(scene, rows) if kind == _JOINTS else own
-        yield _kind_table(str(kind), own, names, trade)
+        yield _kind_table(str(kind), own, names, units)
 
 
-def _kind_table(kind: str, rows: Sequence[_Row], names: Mapping[str, str], trade: Trade) -> Cells:
+def _kind_table(kind: str, rows: Sequence[_Row], names: Mapping[str, str], units: Units) -> Cells:
     """A row an element, with the numbers of each demand side by side."""
     demands = dict.fromkeys(str(row["demand"]) for row in rows)
     by_place = {(row["of"], row["demand"]): row for row in rows}
@@ -73,13 +73,13 @@ def _kind_table(kind: str, rows: Sequence[_Row], names: Mapping[str, str], trade
     texts, exact = [elements], list[Sequence[str | float]]([elements])
     for demand in demands:
         own = [by_place.get((of, demand), {}) for of in elements]
-        unit, size = trade.of_row(next(row for row in own if row))
+        unit, size = units.of_row(next(row for row in own if row))
         for key in _columns(own):
             number = key in (*NUMBERS, "capacity")
             named = headed(demand, unit) if number else demand
             headings.append(named if key == "value" else f"{named}: {key}")
             words.append(key in _WORDS)
-            texts.append([_text(row, key, names, trade) for row in own])
+            texts.append([_text(row, key, names, units) for row in own])
             values = (row.get(key, np.nan) for row in own)
             scaled = [] if words[-1] else [float(x) / (size if number else 1.0) for x in values]
             exact.append(texts[-1] if words[-1] else scaled)
@@ -93,7 +93,7 @@ def _columns(rows: Sequence[_Row]) -> list[str]:
     return [key for key in keys if any(cell_text(row.get(key, "")) for row in rows)]
 
 
-def _text(row: _Row, key: str, names: Mapping[str, str], trade: Trade) -> str:
+def _text(row: _Row, key: str, names: Mapping[str, str], units: Units) -> str:
     """A cell as it is read."""
     if key == "under":
         return _under(row, names)
@@ -105,7 +105,7 @@ def _text(row: _Row, key: str, names: Mapping[str, str], trade: Trade) -> str:
                 return ""
             # What may be held is no gap to be built.
             name = "drift_ratio" * name.endswith("drift_ratio")
-        return trade.number(float(value), str(row["unit"]), name)
+        return units.number(float(value), str(row["unit"]), name)
     return f"{value:.2f}" if isinstance(value, float) and value == value else cell_text(value)
 
 
@@ -117,13 +117,13 @@ def _under(row: _Row, names: Mapping[str, str]) -> str:
     return names.get(record, record) + factor
 
 
-def contact_words(contact: Contact, rows: pd.DataFrame, trade: Trade) -> str:
+def contact_words(contact: Contact, rows: pd.DataFrame, units: Units) -> str:
     """A contact, its ends and gap, and how often it is struck, by the table of its numbers."""
     names = " | ".join(
         end.label if isinstance(end, PlanPoint) else " + ".join(name for name, _ in weights_of(end))
         for end in contact.sides
     )
-    text = f"{contact.name}: {names}, gap {trade.words(contact.gap, 'm')}"
+    text = f"{contact.name}: {names}, gap {units.words(contact.gap, 'm')}"
     rows = rows[(rows["kind"] == _CONTACTS) & (rows["of"] == contact.name)]
     if rows.empty:
         return text
@@ -131,11 +131,11 @@ def contact_words(contact: Contact, rows: pd.DataFrame, trade: Trade) -> str:
         return f"{text}, struck under {rows['pounding'].iloc[0]} of {rows['records'].max()} records"
     name = f"contacts.{contact.name}.impacts"
     count = float(rows.loc[rows["quantity"] == name, "value"].iloc[0])
-    return f"{text}, struck {trade.number(count, '', name)} times"
+    return f"{text}, struck {units.number(count, '', name)} times"
 
 
 def screen_tables(
-    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], trade: Trade
+    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], units: Units
 ) -> Iterator[tuple[str, Cells]]:
     """Headings and tables of the design numbers of a run or a suite, a line a demand.
 
@@ -147,43 +147,43 @@ def screen_tables(
         As `eventpound.design_numbers` gives it.
     names : mapping of str to str
         What records are called, by their names in the table.
-    trade : Trade
+    units : Units
         Units.
     """
     for kind, part in table.groupby("kind", sort=False):
         if kind == _JOINTS:
             yield (
                 "Joints, opened until nothing touches anywhere",
-                _lines(_of_joints(scene, _by_name(table)), names, trade),
+                _lines(_of_joints(scene, _by_name(table)), names, units),
             )
         elif kind == _CONTACTS:
             for contact in scene.contacts:
                 rows = part[part["of"] == contact.name]
                 yield (
-                    f"Contact {contact_words(contact, table, trade)}",
-                    _lines(rows.to_dict("records"), names, trade, whose=False),
+                    f"Contact {contact_words(contact, table, units)}",
+                    _lines(rows.to_dict("records"), names, units, whose=False),
                 )
         else:
-            yield str(kind), _lines(part.to_dict("records"), names, trade)
+            yield str(kind), _lines(part.to_dict("records"), names, units)
 
 
 def _lines(
-    rows: Sequence[_Row], names: Mapping[str, str], trade: Trade, whose: bool = True
+    rows: Sequence[_Row], names: Mapping[str, str], units: Units, whose: bool = True
 ) -> Cells:
     """A table, a line a demand with its unit."""
     keys = _columns(rows)
     lines = []
     for row in rows:
-        shown = trade.of_row(row).name
+        shown = units.of_row(row).name
         called = f"{row['demand']}, {shown}" if shown else str(row["demand"])
         first = f"{row['of']}: {called}" if whose and row["of"] else called
-        lines.append((first, *(_text(row, key, names, trade) for key in keys)))
+        lines.append((first, *(_text(row, key, names, units) for key in keys)))
     words = (True, *(key in _WORDS for key in keys))
     return Cells(("", *keys), tuple(lines), words)
 
 
 def page_cells(
-    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], trade: Trade, most: int
+    scene: Scene, table: pd.DataFrame, names: Mapping[str, str], units: Units, most: int
 ) -> list[Cells]:
     """The design numbers that two pages have room for: at joints, and what governs of each kind.
 
@@ -195,7 +195,7 @@ def page_cells(
         As `eventpound.design_numbers` gives it.
     names : mapping of str to str
         What records are called, by their names in the table.
-    trade : Trade
+    units : Units
         Units.
     most : int
         Elements of one kind that are shown.
@@ -208,7 +208,7 @@ def page_cells(
             shown = [r for r in part.to_dict("records") if not _left_out(str(r["quantity"]))]
             others += _governing(str(kind), shown, most)
     groups = ((_JOINTS, at_joints), ("Elements that govern", others))
-    return [_page_table(name, group, names, trade) for name, group in groups if group]
+    return [_page_table(name, group, names, units) for name, group in groups if group]
 
 
 def _left_out(quantity: str) -> bool:
@@ -300,7 +300,7 @@ def _is_told(name: str, row: _Row, joint: _Row) -> bool:
 
 
 def _page_table(
-    heading: str, rows: Sequence[_Row], names: Mapping[str, str], trade: Trade
+    heading: str, rows: Sequence[_Row], names: Mapping[str, str], units: Units
 ) -> Cells:
     """A table of rows of several kinds."""
     keys, lines = _columns(rows), list[tuple[str, ...]]()
@@ -308,15 +308,15 @@ def _page_table(
     for row in rows:
         kind, of = str(row["kind"]), str(row["of"]) or "whole"
         firsts = kind if kind != last[0] else "", of if (kind, of) != last else ""
-        cells = (_text(row, key, names, trade) for key in keys)
-        lines.append((*firsts, str(row["demand"]), trade.of_row(row).name, *cells))
+        cells = (_text(row, key, names, units) for key in keys)
+        lines.append((*firsts, str(row["demand"]), units.of_row(row).name, *cells))
         last = kind, of
     words = (True, True, True, True, *(key in _WORDS for key in keys))
     return Cells((heading, "of", "demand", "unit", *keys), tuple(lines), words)
 
 
 def shock_cells(
-    shocks: Sequence[Mapping[str, Any]], table: pd.DataFrame, trade: Trade, most: int | None = None
+    shocks: Sequence[Mapping[str, Any]], table: pd.DataFrame, units: Units, most: int | None = None
 ) -> Cells:
     """Demands of each shock of a sequence by itself, all of them or the largest of each kind.
 
@@ -326,7 +326,7 @@ def shock_cells(
         Rows of `eventpound.Response.shocks`.
     table : DataFrame
         As `eventpound.design_numbers` gives it.
-    trade : Trade
+    units : Units
         Units.
     most : int, optional
         Rows that there is room for, the largest of each demand.
@@ -343,8 +343,8 @@ def shock_cells(
     for row in shown:
         name, unit = str(row["quantity"]), str(row["unit"])
         values = (_or_nothing(shock.get(name)) for shock in shocks)
-        cells = (trade.number(abs(value), unit, name) for value in values)
-        lines.append((str(row["of"]), str(row["demand"]), trade.of_row(row).name, *cells))
+        cells = (units.number(abs(value), unit, name) for value in values)
+        lines.append((str(row["of"]), str(row["demand"]), units.of_row(row).name, *cells))
     heads = [
         f"{s['shock']} {s['record']} ×{s['scale']:.3g}" + (" (failed)" if s["failed"] else "")
         for s in shocks

@@ -24,9 +24,9 @@ from eventpound.report.markers import (
     event_legend,
 )
 from eventpound.report.towers import storeys_of
-from eventpound.report.view import Beside, Traces, View, traces_of, view_of
+from eventpound.report.view import OtherRun, Traces, View, traces_of, view_of
 from eventpound.results import StoredResults
-from eventpound.results.trade import Unit
+from eventpound.results.shown_units import Unit
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.ends import End
 from eventpound.scene.plan_point import PlanPoint
@@ -121,7 +121,7 @@ _MRAD = Unit("mrad", 1e-3)
 
 
 @style.styled()
-def displacement_figure(results: StoredResults | View, beside: Beside | None = None) -> Figure:
+def displacement_figure(results: StoredResults | View, beside: OtherRun | None = None) -> Figure:
     """Draw the motion of a run.
 
     Panels share the time: ground acceleration (where there is one), the
@@ -134,7 +134,7 @@ def displacement_figure(results: StoredResults | View, beside: Beside | None = N
     ----------
     results : StoredResults or View
         Results of a run.
-    beside : Beside, optional
+    beside : OtherRun, optional
         Another run, whose displacements are drawn pale.
     """
     view = view_of(results)
@@ -190,7 +190,7 @@ def _draw_ground(axes: Axes, view: View) -> None:
     axes.set_ylabel(f"ground\nacceleration ({unit.name})")
 
 
-def _draw_displacements(axes: Axes, view: View, own: Traces, beside: Beside | None) -> None:
+def _draw_displacements(axes: Axes, view: View, own: Traces, beside: OtherRun | None) -> None:
     """Draw u(t) of bodies with their barriers and the events of their contacts."""
     u = {name: values for name, (_, values) in own.curves.items()}
     largest = style.largest_size(*u.values())

@@ -12,7 +12,7 @@ from eventpound.mechanics.link_law import link_law
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.loops import z_by_x
 from eventpound.report.style import PALETTE, literal, say, zero_lines
-from eventpound.results.trade import unit_by_size
+from eventpound.results.shown_units import unit_by_size
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.spring import BoucWen, Hysteretic, Law, Linear, Spring
 from eventpound.units import Dimension

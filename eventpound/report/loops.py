@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from eventpound.report.style import PALETTE, largest_size, new_figure, styled, zero_lines
-from eventpound.report.view import Beside, DrawnSpring, View, view_of
+from eventpound.report.view import DrawnSpring, OtherRun, View, view_of
 from eventpound.results import StoredResults
 from eventpound.scene.spring import LawName
 
@@ -24,14 +24,14 @@ def nonlinear_springs(results: StoredResults | View) -> list[DrawnSpring]:
 
 
 @styled()
-def loop_figure(results: StoredResults | View, beside: Beside | None = None) -> Figure:
+def loop_figure(results: StoredResults | View, beside: OtherRun | None = None) -> Figure:
     """Draw the loops of a run, a panel for each spring that is not linear.
 
     Parameters
     ----------
     results : StoredResults or View
         Results of a run with at least one such spring.
-    beside : Beside, optional
+    beside : OtherRun, optional
         Another run of the same springs, drawn in grey.
     """
     view = view_of(results)

@@ -24,8 +24,8 @@ from eventpound.report.record_tables import all_records, record_names
 from eventpound.report.study_files import figures_of
 from eventpound.report.suite_plot import suite_spectrum_figure
 from eventpound.report.symbols import dimension_of
+from eventpound.results.shown_units import units_of_scene
 from eventpound.results.tables import Cells, cell_text, headed
-from eventpound.results.trade import trade_of
 from eventpound.study.forms import MESSAGE, SUCCESS
 from eventpound.study.reading import StudyCase
 from eventpound.study.records import SA, sa_of_suite
@@ -175,8 +175,8 @@ def suite_sections(
         for name in done.select_dtypes("number").columns
         if name.partition(".")[0] in listed and not name.rpartition(".")[2].startswith("t_")
     ]
-    names, trade = record_names(table), trade_of(case.scene, case.run.stated)
-    records = all_records(case, table, trade)
+    names, units = record_names(table), units_of_scene(case.scene, case.run.stated)
+    records = all_records(case, table, units)
     return [
         ("Model", html.model_of(case) if case.scene.bodies else ()),
         ("Ground motions", _motions(case, done)),

@@ -32,7 +32,7 @@ from eventpound.report.model_layout import (
 from eventpound.report.model_links import WALL, LinkPath, links_drawn
 from eventpound.report.plan_view import plan_figure
 from eventpound.report.style import PALETTE, arrow, literal, new_figure, say, styled
-from eventpound.results.trade import Trade
+from eventpound.results.shown_units import Units
 from eventpound.scene.body import Body
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.dashpot import Dashpot
@@ -72,20 +72,20 @@ _SMALLEST, _LINE = 4.5, 1.2
 """Points, and from line to line in letters."""
 _LARGEST = 14.0, 1e3
 """Inches of a figure that is looked at by itself: as high as it has to be."""
-_USUAL = Trade()
+_USUAL = Units()
 
 
 @dataclass(frozen=True)
 class _Names:
     """What names have room: `points` of a unit of the picture, `floor` the least height of one.
 
-    `shown`: whether parts are named; `trade`: units of gaps.
+    `shown`: whether parts are named; `units`: units of gaps.
     """
 
     points: float
     floor: float
     shown: bool
-    trade: Trade
+    units: Units
 
     def fitted(self, text: str, room: float) -> float:
         """Size of letters (points) with which a text has at most this length, if it can."""
@@ -112,7 +112,7 @@ def model_figure(
     title: str = "",
     *,
     with_laws: bool = False,
-    trade: Trade = _USUAL,
+    units: Units = _USUAL,
     within: tuple[float, float] = _LARGEST,
 ) -> Figure:
     """Draw a scene.
@@ -125,13 +125,13 @@ def model_figure(
         Above it.
     with_laws : bool
         Whether the laws of its springs are drawn below it.
-    trade : Trade
+    units : Units
         Units of the gaps.
     within : tuple of float
         Width and height that the scene has at most (in).
     """
     if scene.decks:
-        return plan_figure(scene, title, trade=trade, within=within)
+        return plan_figure(scene, title, units=units, within=within)
     standing = without_couplings(grounded(scene))
     layout = layout_of(standing)
     routes = links_drawn(standing, layout)
@@ -144,7 +144,7 @@ def model_figure(
     scale = max(min(within[0] / (right - left), within[1] / top), least)
     scale = min(0.75, _LARGEST[0] / (right - left), scale)
     few = len(scene.springs) + len(scene.contacts) <= _MOST_NAMES
-    names = _Names(72.0 * scale, _least_floor(layout), few, trade)
+    names = _Names(72.0 * scale, _least_floor(layout), few, units)
     low = -0.8 if scene.supports else -0.5
     tops = [box.top + 0.3 for box in boxes]
     labels = [_label_of(layout, joint, names) for joint in _joints(standing)]
@@ -347,7 +347,7 @@ def _contact(
 
 def _label_of(layout: Layout, joint: Sequence[Contact], names: _Names) -> tuple[str, float]:
     """What is said of a joint, and how high: between its bodies where there is room for it."""
-    lines, (unit, size) = list[str](), names.trade.unit(Dimension.LENGTH.unit)
+    lines, (unit, size) = list[str](), names.units.unit(Dimension.LENGTH.unit)
     for contact in joint:
         law = f"$\\epsilon$ = {contact.restitution:g}" if contact.law is None else contact.law.kind
         gap = f"{contact.gap / size:.4g} {unit}"

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from eventpound.numerics.arrays import Floats
 from eventpound.report.style import PALETTE, literal, new_figure, styled
 from eventpound.report.view import View
-from eventpound.results.trade import Trade
+from eventpound.results.shown_units import Units
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.deck import Deck
 from eventpound.scene.plan_point import DIRECTIONS, PlanPoint, coordinate_of
@@ -32,7 +32,7 @@ _MOST_TIMES = 100.0
 _MARGIN = 0.09
 """Beside the bridge, as part of its length."""
 _WALL = 0.02
-_USUAL = Trade()
+_USUAL = Units()
 _State = Mapping[str, float]
 """Displacements of the bodies (m), by their names."""
 
@@ -42,7 +42,7 @@ def plan_figure(
     scene: Scene,
     title: str = "",
     *,
-    trade: Trade = _USUAL,
+    units: Units = _USUAL,
     within: tuple[float, float] = (14.0, 8.0),
     state: _State | None = None,
 ) -> Figure:
@@ -54,7 +54,7 @@ def plan_figure(
         With decks.
     title : str
         Above it.
-    trade : Trade
+    units : Units
         Units of the gaps.
     within : tuple of float
         Width and height at most (in).
@@ -77,7 +77,7 @@ def plan_figure(
         _draw_deck(axes, deck, PALETTE[i % 2], state, times)
     for contact in scene.contacts:
         if _places(contact):
-            _draw_contact(axes, scene, contact, state, times, trade)
+            _draw_contact(axes, scene, contact, state, times, units)
     axes.set(xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
     said = f"displacements and gaps drawn {times:.3g} times larger" if times != 1.0 else ""
     axes.set_title(literal(", ".join(filter(None, (title, said)))))
@@ -177,7 +177,7 @@ def _places(contact: Contact) -> Sequence[PlanPoint]:
 
 
 def _draw_contact(
-    axes: Axes, scene: Scene, contact: Contact, state: _State | None, times: float, trade: Trade
+    axes: Axes, scene: Scene, contact: Contact, state: _State | None, times: float, units: Units
 ) -> None:
     """A contact: a mark at its place, the wall beside it, and how wide its gap is."""
     decks = {deck.name: deck for deck in scene.decks}
@@ -195,7 +195,7 @@ def _draw_contact(
         back = front[::-1] + way * _WALL * deck.length * np.array([n_x, n_y])
         axes.fill(*np.concatenate([front, back]).T, **hatch)
     axes.plot(*now, "o", color=PALETTE[2], markersize=3.0)
-    unit, size = trade.unit(Dimension.LENGTH.unit)
+    unit, size = units.unit(Dimension.LENGTH.unit)
     opening = contact.gap
     if state is not None:
         opening += sum(part * state.get(name, 0.0) for name, part in contact.direction)

@@ -14,7 +14,7 @@ from eventpound.motion.scales import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, fourie
 from eventpound.motion.scaling import Target
 from eventpound.numerics.arrays import Floats
 from eventpound.report import style
-from eventpound.results.trade import Unit, unit_by_size
+from eventpound.results.shown_units import Unit, unit_by_size
 from eventpound.units import STANDARD_GRAVITY, Dimension
 
 _LINE = "#444444"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from eventpound.results.shown_units import Units
 from eventpound.results.tables import Cells, cell_text, headed
-from eventpound.results.trade import Trade
 from eventpound.scene.plan_point import TURN
 from eventpound.study.records import FAILED, SA, sa_of_suite
 from eventpound.units import Dimension
@@ -28,9 +28,9 @@ _SIZES = (
 """Numbers of a record: columns of a suite, what they are called and units (SI)."""
 
 
-def scaling_words(case: Case, trade: Trade) -> str:
+def scaling_words(case: Case, units: Units) -> str:
     """What a case does to the size of every record of its suite; empty where that is nothing."""
-    return case.size.words(lambda value: trade.words(value, Dimension.ACCELERATION.unit))
+    return case.size.words(lambda value: units.words(value, Dimension.ACCELERATION.unit))
 
 
 def record_names(runs: pd.DataFrame) -> dict[str, str]:
@@ -45,10 +45,10 @@ def record_names(runs: pd.DataFrame) -> dict[str, str]:
 
 
 def record_cells(
-    case: Case, runs: pd.DataFrame, trade: Trade, most: int = _MOST_RECORDS
+    case: Case, runs: pd.DataFrame, units: Units, most: int = _MOST_RECORDS
 ) -> list[Cells]:
     """Name and size of each record, as one table, or two where they are many."""
-    heads, rows = _sizes_of(case, runs, trade, _SIZES)
+    heads, rows = _sizes_of(case, runs, units, _SIZES)
     failed = runs[FAILED].astype(bool)
     named = [
         (f"{row[0]} (failed)", *row[1:]) if not_done else row
@@ -62,7 +62,7 @@ def record_cells(
     return [Cells(heads, tuple(p), words, more * (i == last)) for i, p in enumerate(parts)]
 
 
-def all_records(case: Case, runs: pd.DataFrame, trade: Trade) -> Cells:
+def all_records(case: Case, runs: pd.DataFrame, units: Units) -> Cells:
     """A line a record: its size, the peaks of the first bodies, or why it has none; its file."""
     peaks = [
         (f"peaks.{body.name}.abs_max", f"|u| of {body.name}", Dimension.LENGTH.unit)
@@ -71,7 +71,7 @@ def all_records(case: Case, runs: pd.DataFrame, trade: Trade) -> Cells:
     ]
     length = "L_e", "L_e", Dimension.LENGTH.unit
     heads, rows = _sizes_of(
-        case, runs, trade, (*_SIZES, length, *peaks, ("impacts", "impacts", ""))
+        case, runs, units, (*_SIZES, length, *peaks, ("impacts", "impacts", ""))
     )
     ends = zip(runs["file"].astype(str), runs[FAILED].astype(str), strict=True)
     lines = tuple((*row, *end) for row, end in zip(rows, ends, strict=True))
@@ -80,15 +80,15 @@ def all_records(case: Case, runs: pd.DataFrame, trade: Trade) -> Cells:
 
 
 def _sizes_of(
-    case: Case, runs: pd.DataFrame, trade: Trade, columns: Sequence[tuple[str, str, str]]
+    case: Case, runs: pd.DataFrame, units: Units, columns: Sequence[tuple[str, str, str]]
 ) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Headings and a line a record, of those columns that the table has."""
     called = {SA: f"Sa({sa_of_suite(case)[0]:.3g} s)"}
     there = [column for column in columns if column[0] in runs]
-    heads = (headed(called.get(key, name), trade.unit(unit)[0]) for key, name, unit in there)
+    heads = (headed(called.get(key, name), units.unit(unit)[0]) for key, name, unit in there)
     names, rows = record_names(runs), []
     for row in runs.to_dict("records"):
         values = ((float(row[key]), unit) for key, _, unit in there)
-        cells = ("" if value != value else trade.number(value, unit) for value, unit in values)
+        cells = ("" if value != value else units.number(value, unit) for value, unit in values)
         rows.append((names[str(row["record"])], *cells))
     return ("record", *heads), rows

@@ -23,10 +23,10 @@ from eventpound.report.loops import loop_figure, nonlinear_springs
 from eventpound.report.plan_view import worst_plan_figure
 from eventpound.report.style import Paper, on_paper
 from eventpound.report.towers import Tower, towers_of
-from eventpound.report.view import Beside, View
+from eventpound.report.view import OtherRun, View
 from eventpound.response import Response
 from eventpound.results import StoredResults, gather, read, write_together
-from eventpound.results.trade import PERCENT, Unit
+from eventpound.results.shown_units import PERCENT, Unit
 from eventpound.scene.scene import Scene
 
 Source = StoredResults | Response | str | os.PathLike[str]
@@ -69,7 +69,7 @@ def figures(
         own = replace(view_of_run(beside[0]), units_of=view)
         if set(own.bodies).isdisjoint(view.bodies):
             raise InputError(f"{beside[1]}: none of its bodies is called as one of this run")
-        other = Beside(own.within(xlim), beside[1])
+        other = OtherRun(own.within(xlim), beside[1])
     drawn = {"displacements.png": displacement_figure(view, other)}
     if nonlinear_springs(view):
         drawn["loops.png"] = loop_figure(view, other)
@@ -148,14 +148,14 @@ def _scene(results: StoredResults) -> Scene | None:
 
 
 @style.styled()
-def profile_figure(view: View, beside: Beside | None = None) -> Figure:
+def profile_figure(view: View, beside: OtherRun | None = None) -> Figure:
     """Draw the profiles of a run, with both extremes of every number.
 
     Parameters
     ----------
     view : View
         Results of a run with `towers_of` it.
-    beside : Beside, optional
+    beside : OtherRun, optional
         Another run of the same structures, drawn pale.
     """
     towers = towers_of(view)

@@ -25,7 +25,7 @@ from eventpound.report.notes import LETTER, LINE, letters, wrapped, write_below
 from eventpound.report.style import colors, largest_size, plain_logarithms, show_as_written, styled
 from eventpound.report.symbols import axis_label, display_unit, plain_value, symbol, value_label
 from eventpound.report.view import stretches
-from eventpound.results.trade import Unit
+from eventpound.results.shown_units import Unit
 from eventpound.study.figure import FigurePlan
 from eventpound.study.plan import Plan
 from eventpound.study.reading import StudyCase

@@ -15,8 +15,8 @@ from eventpound.quantities.base import parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.report.style import literal
 from eventpound.results.files import plain_name
+from eventpound.results.shown_units import GRAVITY, Unit, unit_by_size
 from eventpound.results.tables import headed
-from eventpound.results.trade import GRAVITY, Unit, unit_by_size
 from eventpound.scene.parameters import dimension_of_number
 from eventpound.units import Dimension
 

@@ -14,7 +14,7 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.quantities.loops import loop_of
 from eventpound.results import StoredResults
-from eventpound.results.trade import GRAVITY, Unit, unit_by_size
+from eventpound.results.shown_units import GRAVITY, Unit, unit_by_size
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.ends import End, Joining, direction_of, point_of
@@ -262,7 +262,7 @@ def stretches(borders: Floats, inside: Bools) -> list[tuple[float, float]]:
 
 
 @dataclass(frozen=True)
-class Beside:
+class OtherRun:
     """Another run that is drawn beside one, pale.
 
     Parameters

@@ -21,7 +21,7 @@ from eventpound.report.plan_view import moving_plan
 from eventpound.report.style import PALETTE
 from eventpound.report.view import View, traces_of
 from eventpound.results.jsontext import canonical
-from eventpound.results.trade import Trade
+from eventpound.results.shown_units import Units
 from eventpound.units import Dimension
 
 ZOOM_PAGE = "motion.html"
@@ -56,7 +56,7 @@ _PLAN = """\
 """
 
 
-def zoom_page(view: View, title: str, trade: Trade) -> bytes:
+def zoom_page(view: View, title: str, units: Units) -> bytes:
     """The page, HTML.
 
     Parameters
@@ -65,31 +65,31 @@ def zoom_page(view: View, title: str, trade: Trade) -> bytes:
         Results of a run.
     title : str
         Of the page.
-    trade : Trade
+    units : Units
         Units.
     """
-    kept, events = _rows_kept(view), list(_events(view, trade))
+    kept, events = _rows_kept(view), list(_events(view, units))
     shown = events[:_MOST_EVENTS]
     data = {
         "t": _short(view.column("t")[kept]),
-        "panels": list(_panels(view, kept, trade)),
-        "loops": list(_loops(view, kept, trade)),
+        "panels": list(_panels(view, kept, units)),
+        "loops": list(_loops(view, kept, units)),
         "events": shown,
         "shocks": view.shocks,
         "colors": PALETTE,
-        "force": trade.unit(Dimension.FORCE.unit)[0],
-        "length": trade.unit(Dimension.LENGTH.unit)[0],
+        "force": units.unit(Dimension.FORCE.unit)[0],
+        "length": units.unit(Dimension.LENGTH.unit)[0],
     }
     scripts = ["zoom.js"]
     if (plan := moving_plan(view)) is not None:
-        data["plan"] = plan | {"size": trade.unit(Dimension.LENGTH.unit)[1]}
+        data["plan"] = plan | {"size": units.unit(Dimension.LENGTH.unit)[1]}
         scripts.append("zoom_plan.js")
     left_out = len(view.column("t")) - kept.size
     more = [f"{left_out} rows of the history are left out, none at an event."] * bool(left_out)
     more += [f"and {len(events) - len(shown)} more events"] * (len(events) > len(shown))
     body = _BODY.format(
         title=escape(title),
-        impulse=escape(trade.unit(Dimension.IMPULSE.unit)[0]),
+        impulse=escape(units.unit(Dimension.IMPULSE.unit)[0]),
         rows="".join(map(_row, range(len(shown)), shown)),
         more="".join(f"<p>{text}</p>\n" for text in more),
         # What ends a script in a text would end it here.
@@ -115,7 +115,7 @@ def _short(values: Floats) -> list[float | None]:
     return [float(f"{v:.{_DIGITS}g}") if np.isfinite(v) else None for v in values.tolist()]
 
 
-def _panels(view: View, kept: Ints, trade: Trade) -> Iterator[dict[str, Any]]:
+def _panels(view: View, kept: Ints, units: Units) -> Iterator[dict[str, Any]]:
     """The ground, the bodies and the gaps over time."""
     contacts = [contact.name for contact in view.contacts]
     # What moves along, across and turns has one colour.
@@ -129,7 +129,7 @@ def _panels(view: View, kept: Ints, trade: Trade) -> Iterator[dict[str, Any]]:
         *traces,
         ("gap", Dimension.LENGTH, [(name, view.column(f"gap.{name}")) for name in contacts], {}),
     ):
-        unit, size = trade.unit(dimension.unit)
+        unit, size = units.unit(dimension.unit)
         lines = [
             {"name": own, "y": _short(values[kept] / size), "hue": hues.setdefault(own, len(hues))}
             for own, values in curves
@@ -138,22 +138,22 @@ def _panels(view: View, kept: Ints, trade: Trade) -> Iterator[dict[str, Any]]:
             yield {"name": name, "unit": unit, "lines": lines, "marks": name == "gap"}
 
 
-def _loops(view: View, kept: Ints, trade: Trade) -> Iterator[dict[str, Any]]:
+def _loops(view: View, kept: Ints, units: Units) -> Iterator[dict[str, Any]]:
     """Force over deformation of every spring that is not linear."""
-    (_, force), (_, length) = (trade.unit(d.unit) for d in (Dimension.FORCE, Dimension.LENGTH))
+    (_, force), (_, length) = (units.unit(d.unit) for d in (Dimension.FORCE, Dimension.LENGTH))
     for spring in nonlinear_springs(view)[:_MOST_LOOPS]:
         x = view.elongation(spring)[kept] / length
         y = view.column(f"force.{spring.name}")[kept] / force
         yield {"name": spring.name, "x": _short(x), "y": _short(y)}
 
 
-def _events(view: View, trade: Trade) -> Iterator[dict[str, Any]]:
+def _events(view: View, units: Units) -> Iterator[dict[str, Any]]:
     """What a click tells of each event."""
     columns = view.results.event_columns
     names = ("t", "kind", "contact", "gap_velocity_before", "impulse")
     for t, kind, contact, before, impulse in zip(*(columns[n] for n in names), strict=True):
-        closing, size = -float(before), trade.number(float(impulse), Dimension.IMPULSE.unit)
-        unit = trade.unit(Dimension.IMPULSE.unit)[0]
+        closing, size = -float(before), units.number(float(impulse), Dimension.IMPULSE.unit)
+        unit = units.unit(Dimension.IMPULSE.unit)[0]
         said = f"{kind} of {contact} at {float(t):.6f} s"
         if struck := kind in STRIKES:
             said += f", closing at {closing:.3g} m/s, impulse {size} {unit}"

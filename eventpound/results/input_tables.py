@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from eventpound.results.shown_units import HEAVY, PERCENT, Unit, Units
 from eventpound.results.tables import Cells, headed
-from eventpound.results.trade import HEAVY, PERCENT, Trade, Unit
 from eventpound.scene.point import Point
 from eventpound.units import Dimension
 
@@ -85,11 +85,11 @@ def input_tables(inputs: Mapping[str, Any], chosen: tuple[str, ...] = ()) -> Ite
     inputs : mapping
         As `eventpound.results.inputs.inputs_of` gives them.
     chosen : tuple of str
-        Units of a `Trade`.
+        Units of a `Units`.
     """
     massive = [*inputs["bodies"], *inputs.get("decks", [])]
     heavy = max((row["mass"] for row in massive), default=0.0) >= HEAVY
-    units = _units(Trade(heavy, chosen))
+    units = _units(Units(heavy, chosen))
     for kind, columns in _TABLES.items():
         given = inputs.get(kind, [])
         if kind == "springs":
@@ -107,20 +107,16 @@ def input_tables(inputs: Mapping[str, Any], chosen: tuple[str, ...] = ()) -> Ite
             yield _modes(structure)
 
 
-def _units(trade: Trade) -> dict[str, Unit]:
+def _units(shown: Units) -> dict[str, Unit]:
     """Units by their kinds; where none is chosen, lengths of what is light are in m."""
-    units = {
-        "mass": trade.unit(Dimension.MASS.unit),
-        "force": trade.unit(Dimension.FORCE.unit),
-        "stiffness": trade.unit(Dimension.STIFFNESS.unit),
-        "damping": trade.unit(Dimension.DAMPING.unit),
-        "length": Unit("m", 1.0),
-    }
-    if trade.heavy or trade.chosen:
-        units["length"] = trade.unit(Dimension.LENGTH.unit)
-    if trade.chosen:
-        units["m/s^2"] = trade.unit(Dimension.ACCELERATION.unit)
-    return units
+    kinds = {"mass": Dimension.MASS, "force": Dimension.FORCE, "stiffness": Dimension.STIFFNESS}
+    kinds |= {"damping": Dimension.DAMPING}
+    if shown.heavy or shown.chosen:
+        kinds["length"] = Dimension.LENGTH
+    if shown.chosen:
+        kinds["m/s^2"] = Dimension.ACCELERATION
+    found = {kind: shown.unit(dimension.unit) for kind, dimension in kinds.items()}
+    return {"length": Unit("m", 1.0), "%": PERCENT} | found
 
 
 def _cells(
@@ -131,8 +127,7 @@ def _cells(
 ) -> Cells:
     """A table without the columns that no row has."""
     there = [column for column in columns if any(row.get(column[0]) is not None for row in rows)]
-    known = {**units, "%": PERCENT}
-    shown = [known.get(unit, Unit(unit, 1.0)) for _, _, unit in there]
+    shown = [units.get(unit, Unit(unit, 1.0)) for _, _, unit in there]
     heads = [headed(head, unit.name) for (_, head, _), unit in zip(there, shown, strict=True)]
     cells = tuple(
         tuple(_cell(row.get(key), of.size) for (key, *_), of in zip(there, shown, strict=True))
@@ -180,7 +175,7 @@ def _modes(structure: Mapping[str, Any]) -> Cells:
             (f"share_across{suffix}", "mass across", "%"),
             (f"damping{suffix}", "damping", "%"),
         ]
-    cells = _cells(rows, columns, {})
+    cells = _cells(rows, columns, {"%": PERCENT})
     return Cells(cells.headings, cells.rows, cells.words, max(0, len(initial) - _MOST_MODES))
 
 
@@ -206,7 +201,7 @@ def input_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def rest_words(told: Mapping[str, Sequence[str]]) -> str:
-    """What is said of springs at rest (`eventpound.scene.at_rest.told_at_rest`)."""
+    """What is said of springs at rest (`eventpound.scene.at_rest.springs_at_rest`)."""
     listed = {key: _some(names) for key, names in told.items() if names}
     return "; ".join(_AT_REST[key].format(names) for key, names in listed.items())
 

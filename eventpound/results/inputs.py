@@ -23,7 +23,7 @@ from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
 from eventpound.motion.base import GroundMotion, moves
 from eventpound.motion.record import Record
-from eventpound.scene.at_rest import at_rest, stiffness_of, theta_at_rest, told_at_rest
+from eventpound.scene.at_rest import at_rest, springs_at_rest, stiffness_of, theta_at_rest
 from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import Element
 from eventpound.scene.deck import Deck
@@ -61,7 +61,7 @@ def inputs_of(case: Case) -> dict[str, Any]:
     -------
     dict
         ``title``, ``bodies``, ``springs``, ``dashpots``, ``contacts`` (a row each), ``at_rest``
-        (names of springs, as `eventpound.scene.at_rest.told_at_rest`), ``decks``, ``frames``,
+        (names of springs, as `eventpound.scene.at_rest.springs_at_rest`), ``decks``, ``frames``,
         ``supports`` and ``forces`` where there are some, ``structures``
         with their ``initial`` and ``post_yield`` modes, ``motion``, ``run``, ``solver`` and
         ``pi``. What a part does not have is left out of its row.
@@ -83,7 +83,7 @@ def inputs_of(case: Case) -> dict[str, Any]:
             if spring.frame is None
         ],
         **_frames(scene),
-        "at_rest": told_at_rest(scene, case.run.start_time),
+        "at_rest": springs_at_rest(scene, case.run.start_time),
         "dashpots": _dashpots(resting, carried),
         "contacts": [_contact(scene, contact) for contact in scene.contacts],
         **_driven(case),

@@ -117,7 +117,7 @@ def stiffest(scene: Scene) -> Scene:
     return replace(scene, springs=tuple(replace(s, law=of(s.law)) for s in scene.springs))
 
 
-def told_at_rest(scene: Scene, start: float = 0.0) -> dict[str, list[str]]:
+def springs_at_rest(scene: Scene, start: float = 0.0) -> dict[str, list[str]]:
     """Names of the springs that count at rest, of those that do not, and of those of two tangents.
 
     Of ``at_kink`` the smaller counts, of ``at_yield`` that of unloading.

@@ -21,7 +21,7 @@ from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.ends import direction_of
 from eventpound.scene.spring import GROUND, Linear, Spring
-from eventpound.scene.stability import motion_of_links, told
+from eventpound.scene.stability import motion_of_links, words_of_moves
 from eventpound.units import Dimension, quantity
 
 MOST_BODIES = 200
@@ -159,7 +159,8 @@ def _check_matrix(key: str, matrix: Floats, ends: Sequence[str]) -> None:
     moves = motion_of_links(ends, links)
     if moves is not None:
         raise InputError(
-            f"{key}: found a matrix that is not positive semidefinite: {told(ends, moves)}; "
+            f"{key}: found a matrix that is not positive semidefinite: "
+            f"{words_of_moves(ends, moves)}; "
             "accepted: one that no motion makes negative (rounded numbers? give all digits)"
         )
 

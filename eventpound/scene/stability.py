@@ -62,7 +62,7 @@ def unstable(scene: Scene, start: float = 0.0) -> Unstable | None:
         if moves is not None:
             u = dict(zip(group, moves.tolist(), strict=True))
             work = [_work(u, *link) for link in links]
-            return Unstable(own[int(np.argmin(work))], told(group, moves))
+            return Unstable(own[int(np.argmin(work))], words_of_moves(group, moves))
     return None
 
 
@@ -82,7 +82,7 @@ def motion_of_links(
     return gives_way(joined(bodies, links), sizes)
 
 
-def told(bodies: Sequence[str], moves: Floats) -> str:
+def words_of_moves(bodies: Sequence[str], moves: Floats) -> str:
     """A motion in words, of the bodies that take much part in it."""
     parts = [(name, u) for name, u in zip(bodies, moves.tolist(), strict=True) if abs(u) >= TOLD]
     return "it gives way as " + ", ".join(f"{name} {u:.2g}" for name, u in parts[:8])

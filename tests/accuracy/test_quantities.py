@@ -15,7 +15,7 @@ from eventpound.accuracy.quantities import (
     scales_of_task,
     truth_of,
 )
-from eventpound.accuracy.reference import StatedBounds, reference_of
+from eventpound.accuracy.reference import CertifiedBounds, reference_of
 from eventpound.score.difference import ScaledValue
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
@@ -110,7 +110,7 @@ def test_loose_runs_have_larger_errors(pair):
 def test_a_certificate_that_contradicts_the_case(pair, tmp_path):
     case, truth = pair
     (value,) = (q.value for q in truth.truth.quantities if q.name == "final.stiff.u")
-    stated = StatedBounds(tmp_path / "c.json", {"final.stiff.u": (value + 1e-3, 1e-6)})
+    stated = CertifiedBounds(tmp_path / "c.json", {"final.stiff.u": (value + 1e-3, 1e-6)})
     with pytest.raises(InputError, match=r"c\.json: final\.stiff\.u = .* run eventpound verify"):
         reference_of(case, case.run, stated)
 
@@ -118,7 +118,7 @@ def test_a_certificate_that_contradicts_the_case(pair, tmp_path):
 @pytest.mark.parametrize(("off", "taken"), [(1e-5, True), (1e-3, False)])
 def test_a_certificate_beside_a_run_that_nothing_checked(tmp_path, off, taken):
     own = ScaledValue("final.stiff.u", 0.02, 0.05, "m", np.nan)
-    stated = StatedBounds(tmp_path / "c.json", {own.name: (own.value + off, 1e-6)})
+    stated = CertifiedBounds(tmp_path / "c.json", {own.name: (own.value + off, 1e-6)})
     if taken:
         assert stated.instead_of([own])[0].value == own.value + off
     else:

@@ -20,7 +20,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from eventpound.accuracy.estimate import estimate_of, impacts_apart, rests_of_both
+from eventpound.accuracy.estimate import estimate_of, rests_of_both, speed_differences
 from eventpound.accuracy.quantities import scales_of_task
 from eventpound.accuracy.sequences import KINDS, weights_for
 from eventpound.errors import ComputationError
@@ -118,7 +118,7 @@ def differing(one: Response, other: Response, times: float) -> set[int]:
     """
     events = one.recording.events, other.recording.events
     allowed = times * UNSAID
-    apart = impacts_apart(*events, len(one.scene.contacts), scales_of_task(one.task).speed)
+    apart = speed_differences(*events, len(one.scene.contacts), scales_of_task(one.task).speed)
     found = {int(j) for j in np.flatnonzero(apart > allowed)}
     unit = UNIT_OF_TIME * (one.task.end - one.task.start)
     paired = pair_events(*events, unit, KINDS, weights=weights_for(allowed))

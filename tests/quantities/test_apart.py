@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from eventpound import Record, Response, Ricker, design_numbers, load_case, simulate, simulate_many
-from eventpound.results.trade import Trade
+from eventpound.results.shown_units import Units
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -292,10 +292,10 @@ def test_what_leans_on_its_contact_stands_without_it(tmp_path):
 
 
 def test_gaps_to_be_built_are_rounded_up():
-    trade, name = Trade(), "contacts.joint.separation_needed"
-    shown = [trade.number(x, "m", name) for x in (0.10401, 0.09996, 0.0123401, 0.0)]
+    units, name = Units(), "contacts.joint.separation_needed"
+    shown = [units.number(x, "m", name) for x in (0.10401, 0.09996, 0.0123401, 0.0)]
     assert shown == ["105", "100", "12.4", "0"]
-    assert trade.number(0.10401, "m", "contacts.joint.seat_used") == "104"
+    assert units.number(0.10401, "m", "contacts.joint.seat_used") == "104"
 
 
 def test_a_pulse_and_one_contact_have_the_motion_without_it():

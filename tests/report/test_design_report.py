@@ -21,8 +21,8 @@ from eventpound.report.model_layout import layout_of
 from eventpound.report.record_tables import scaling_words
 from eventpound.report.sheets import Columns
 from eventpound.results.inputs import inputs_of
+from eventpound.results.shown_units import units_of_scene
 from eventpound.results.tables import Cells
-from eventpound.results.trade import trade_of
 from tests.blank import blank_figures
 from tests.report.test_html import CHROMIUM, Balanced
 from tests.results.test_workbook import read as read_workbook
@@ -198,7 +198,7 @@ def test_scaling_is_said_in_the_chosen_unit(tmp_path):
     (tmp_path / "a.txt").write_text(time_series(0.3))
     (tmp_path / "case.toml").write_text(bridge() + '[run]\nunits = ["m/s^2"]\n')
     case = load_case(tmp_path)
-    said = scaling_words(case, trade_of(case.scene, case.run.stated))
+    said = scaling_words(case, units_of_scene(case.scene, case.run.stated))
     assert said.startswith("every record to a PSA of 4.90 m/s² at T1 of deck 2 = ")
 
 

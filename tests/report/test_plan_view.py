@@ -11,7 +11,7 @@ from eventpound.report.plan_view import moving_plan, plan_figure
 from eventpound.report.run_appendix import _CAPTIONS
 from eventpound.report.run_figures import figures, view_of_run
 from eventpound.report.zoom import zoom_page
-from eventpound.results.trade import Trade
+from eventpound.results.shown_units import Units
 from eventpound.scene import BARRIER, Deck, Joint, Scene
 from eventpound.scene.deck import place_in_a_row
 
@@ -100,7 +100,7 @@ def test_the_page_that_zooms_shows_the_bridge_move():
         for a, b in first.corners
     )
     assert 1.0 <= plan["times"] <= 0.06 * 80.0 / far
-    page = zoom_page(view, "two spans", Trade()).decode()
+    page = zoom_page(view, "two spans", Units()).decode()
     assert '<canvas id="plan">' in page
     assert '"rotation"' in page
     assert "drawPlan" in page

@@ -9,7 +9,7 @@ from matplotlib.mathtext import MathTextParser
 from eventpound.motion import AntisymmetricRicker, Harmonic, MavroeidisPapageorgiou, Record, TypeC
 from eventpound.motion.base import GroundMotion
 from eventpound.report.symbols import axis_label, display_unit, symbol, value_label
-from eventpound.results.trade import Unit
+from eventpound.results.shown_units import Unit
 from eventpound.scene import (
     GROUND,
     BilinearElastic,

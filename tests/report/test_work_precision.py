@@ -9,7 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from eventpound import load_case
 from eventpound.accuracy.compare import entries, judge_entries
 from eventpound.accuracy.comparison_tables import run_table
-from eventpound.accuracy.reference import StatedBounds
+from eventpound.accuracy.reference import CertifiedBounds
 from eventpound.report.work_precision import graph_measure, peak_measure, work_precision_figure
 from tests.models import CASES
 
@@ -63,7 +63,7 @@ def test_ends_are_named_and_nothing_is_cut_off(comparison):
 
 
 def test_a_certificate_is_named(comparison, tmp_path):
-    stated = StatedBounds(tmp_path / "certificate.json", {})
+    stated = CertifiedBounds(tmp_path / "certificate.json", {})
     certified = replace(comparison, reference=replace(comparison.reference, stated=stated))
     peaks, graph = work_precision_figure(certified).axes
     assert any(text.get_text().startswith("certified to") for text in peaks.texts)

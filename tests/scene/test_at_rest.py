@@ -26,7 +26,7 @@ from eventpound.scene import (
     Slider,
     Spring,
 )
-from eventpound.scene.at_rest import at_rest, stiffness_of, told_at_rest
+from eventpound.scene.at_rest import at_rest, springs_at_rest, stiffness_of
 from eventpound.scene.modes import modes_of
 from eventpound.scene.periods import longest_period, period_called
 from eventpound.scene.spring import Law
@@ -100,12 +100,12 @@ def test_at_a_kink_the_smaller_counts_whatever_rounding_says():
     assert u == pytest.approx(0.3, rel=1e-9)
     for place in (u, np.nextafter(0.3, 0.0), 0.3, np.nextafter(0.3, 1.0), 0.3 + 1e-11):
         scene = deck(law, float(place), force)
-        assert told_at_rest(scene)["at_kink"] == ["other"]
+        assert springs_at_rest(scene)["at_kink"] == ["other"]
         assert longest_period(scene) == pytest.approx(2 * math.pi * math.sqrt(M / 2 / K), rel=1e-9)
     for place in (0.299, 0.301):
         k = K if place < 0.3 else CABLE
         scene = deck(law, place, place * K + k * (place - 0.3))
-        assert told_at_rest(scene)["at_kink"] == []
+        assert springs_at_rest(scene)["at_kink"] == []
         assert beside(law, place, place * K + k * (place - 0.3)) == pytest.approx(k, rel=1e-9)
 
 
@@ -114,13 +114,13 @@ def test_offsets_in_series_that_cancel_but_for_rounding_are_a_kink():
     assert sum(offsets) != 0.0
     for order in (offsets, offsets[::-1]):
         law = Series(tuple(BilinearElastic(3.0 * K, 6.0 * K, each) for each in order))
-        assert told_at_rest(deck(law))["at_kink"] == ["other"]
+        assert springs_at_rest(deck(law))["at_kink"] == ["other"]
         assert beside(law) == pytest.approx(K, rel=1e-12)
 
 
 def test_a_spring_that_has_yielded_counts_as_it_unloads():
     standing = in_equilibrium(deck(BoucWen(1e6, 5e5, 0.01), force=2e6))
-    told = told_at_rest(standing)
+    told = springs_at_rest(standing)
     assert told == {"counts": ["pier", "other"], "not": [], "at_kink": [], "at_yield": ["other"]}
     assert longest_period(standing) == pytest.approx(2 * math.pi * math.sqrt(M / (K + 51e6)))
 
@@ -153,7 +153,7 @@ def test_random_scenes_in_equilibrium_have_the_tangents_of_their_forces(seeds):
             scene = in_equilibrium(Drawn(seed).scene())
         except InputError:
             continue
-        told, resting = told_at_rest(scene), at_rest(scene)
+        told, resting = springs_at_rest(scene), at_rest(scene)
         u = np.array([body.displacement for body in scene.bodies])
         B = linkage(scene).B
         for i, spring in enumerate(scene.springs):
@@ -257,7 +257,7 @@ def test_a_record_is_scaled_and_a_run_ends_by_the_period_at_rest(tmp_path, slack
 
 def test_a_shipped_restrainer_counts_as_it_hangs():
     case = load_case(CASES / "restrained-decks")
-    told = told_at_rest(case.scene)
+    told = springs_at_rest(case.scene)
     for spring, still in zip(case.scene.springs, at_rest(case.scene).springs, strict=True):
         assert (spring.name in told["counts"]) is (stiffness_of(still) > 0.0)
     assert told["not"]

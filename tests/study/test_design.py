@@ -9,7 +9,7 @@ from eventpound.case.case import member_case
 from eventpound.cli import main
 from eventpound.motion import Record, Ricker
 from eventpound.quantities.lookup import find
-from eventpound.results.trade import Trade, three_digits
+from eventpound.results.shown_units import Units, three_digits
 from eventpound.scene import (
     GROUND,
     Backfill,
@@ -191,7 +191,7 @@ def test_the_command_takes_a_run_and_a_study(suite, capsys, undrawn):
     needed = table[table["quantity"] == JOINT + "max_impulse"]["84 %"]
     for gap, impulse in zip(("1", "2"), needed, strict=True):
         row = page.partition(f">{gap}</td>")[2].partition("</tr>")[0]
-        assert f">{Trade().number(impulse, 'N s')}</td>" in row
+        assert f">{Units().number(impulse, 'N s')}</td>" in row
     assert (suite / "results" / "report" / "report.pdf").read_bytes().startswith(b"%PDF")
     assert main(["report", str(suite), "--suite", "d.txt"]) == 2
     assert "--suite: is for a case without a [study]" in capsys.readouterr().err

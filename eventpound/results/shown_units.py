@@ -56,7 +56,7 @@ def unit_by_size(dimension: Dimension, largest: float) -> Unit:
 
 
 @dataclass(frozen=True, slots=True)
-class Trade:
+class Units:
     """Units in which numbers of a scene are told.
 
     Parameters
@@ -110,7 +110,7 @@ class Trade:
 
     def nothing(self, unit: str, name: str = "") -> float:
         """What rounding leaves of nothing, in the unit that is told; the same whatever that is."""
-        return _NOTHING * Trade(self.heavy).unit(unit, name).size / self.unit(unit, name).size
+        return _NOTHING * Units(self.heavy).unit(unit, name).size / self.unit(unit, name).size
 
     def words(self, value: float, unit: str, name: str = "") -> str:
         """A value (SI) with its unit of the trade."""
@@ -122,10 +122,10 @@ def _is_count(name: str, value: float) -> bool:
     return is_whole(name) and 0.0 <= value < 10**_DIGITS - 1
 
 
-def trade_of(scene: Scene, stated: Stated) -> Trade:
+def units_of_scene(scene: Scene, stated: Stated) -> Units:
     """Units in which numbers of a scene are told, as its case chooses."""
     heaviest = max((body.mass for body in scene.bodies), default=0.0)
-    return Trade(heaviest >= HEAVY, stated.units)
+    return Units(heaviest >= HEAVY, stated.units)
 
 
 def three_digits(

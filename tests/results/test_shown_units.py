@@ -12,7 +12,7 @@ from eventpound.case.loading import read_case
 from eventpound.cli import main
 from eventpound.report.design_report import Told, design_sheets
 from eventpound.report.sheets import as_html
-from eventpound.results.trade import Trade
+from eventpound.results.shown_units import Units
 from tests.models import CASES
 from tests.study.test_suite import CASE, time_series
 
@@ -47,16 +47,16 @@ def written(folder: Path, units: str) -> Path:
     ],
 )
 def test_a_chosen_unit_stands_for_its_dimension_and_those_that_follow(chosen, value, unit, words):
-    assert Trade(heavy=True, chosen=chosen).words(value, unit) == words
+    assert Units(heavy=True, chosen=chosen).words(value, unit) == words
 
 
 def test_what_is_nothing_is_so_in_every_unit():
     """A millionth of N and of mm is what rounding leaves; in MN and m it is no other."""
     for value, unit in ((2e-6, "N"), (2e-9, "m")):
-        usual, large = (Trade(False, chosen).number(value, unit) for chosen in ((), ("MN", "m")))
+        usual, large = (Units(False, chosen).number(value, unit) for chosen in ((), ("MN", "m")))
         assert float(usual) == pytest.approx(2e-6)
         assert float(large) == pytest.approx(value / {"N": 1e6, "m": 1.0}[unit])
-        assert Trade(False, ("MN", "m")).number(value / 4.0, unit) == "0"
+        assert Units(False, ("MN", "m")).number(value / 4.0, unit) == "0"
 
 
 def test_a_yield_force_that_is_small_in_its_unit_is_told(tmp_path, undrawn):
@@ -126,8 +126,8 @@ def test_other_words_are_refused_in_one_message(tmp_path, units):
 
 def test_customary_units_are_told():
     """1 kip is 1000 lbf of 4.4482216152605 N, an inch 25.4 mm."""
-    trade = Trade(True, ("kip", "in"))
-    assert trade.words(4448.2216152605, "N") == "1.00 kip"
-    assert trade.words(0.0254, "m") == "1.00 in"
-    assert trade.words(4448.2216152605, "N s") == "1.00 kip s"
-    assert trade.words(4448.2216152605 * 0.0254, "J") == "1.00 kip in"
+    units = Units(True, ("kip", "in"))
+    assert units.words(4448.2216152605, "N") == "1.00 kip"
+    assert units.words(0.0254, "m") == "1.00 in"
+    assert units.words(4448.2216152605, "N s") == "1.00 kip s"
+    assert units.words(4448.2216152605 * 0.0254, "J") == "1.00 kip in"
