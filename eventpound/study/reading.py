@@ -25,7 +25,7 @@ from eventpound.case.run_options import Way, without_effect, without_part
 from eventpound.case.solver_options import default_solver, read_solver
 from eventpound.case.suite import RECORDS, with_suite
 from eventpound.case.table import CaseProblem, Table
-from eventpound.errors import InputError
+from eventpound.errors import InputError, told_of
 from eventpound.scene.periods import T_1
 from eventpound.study.axes import OF_PLAN, PI, NumberAxis, WordAxis, read_axes
 from eventpound.study.base import PART, RECORD, Base
@@ -209,11 +209,12 @@ def _bases(
     whole = {**document, **whole}
     for values in product(*(axis.values for axis in words)):
         labels = dict(zip((axis.key for axis in words), values, strict=True))
-        worded = _with_first_values(_with_words(whole, labels), numbers)
+        with told_of(f"{file}: "):
+            worded = _with_first_values(_with_words(whole, labels), numbers)
+            _refuse_shocks(worded, numbers)
         run = worded.get("run")
         own = isinstance(run, dict) and "duration" in run
         case = read_case(worded, file, source_hash)
-        _refuse_shocks(worded, numbers)
         labels = {PART: part.name} | labels if named else labels
         yield Base(replace(case, suite=None), labels, numbers, own, case.members)
 

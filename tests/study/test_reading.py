@@ -6,14 +6,13 @@ from eventpound.errors import InputError
 from eventpound.study.reading import load_study
 from tests.study.conftest import ELASTOPLASTIC
 
-PAIR = """
-body = [{ name = "left", mass = "500 t" }, { name = "right", mass = "500 t" }]
-contact = [{ between = ["left", "right"], name = "joint", gap = "1 cm", restitution = 0.6 }]
+SINE = 'kind = "sine"\namplitude = "0.4 g"\nperiod = "1 s"\n'
+SHOCKS = 'kind = "record"\nfile = ["a.AT2", "b.AT2"]\npsa = ["1 g", "1 g"]\npsa_period = "T1"\n'
+PAIR = f"""
+body = [{{ name = "left", mass = "500 t" }}, {{ name = "right", mass = "500 t" }}]
+contact = [{{ between = ["left", "right"], name = "joint", gap = "1 cm", restitution = 0.6 }}]
 [excitation]
-kind = "sine"
-amplitude = "0.4 g"
-period = "1 s"
-[[spring]]
+{SINE}[[spring]]
 between = ["ground", "left"]
 name = "l"
 law = "bouc-wen"
@@ -102,6 +101,9 @@ def axis(lines: str) -> str:
         (ELASTOPLASTIC + '[figure]\nx = "pi.Q"', ["[figure]: y: missing"]),
         (ELASTOPLASTIC + '[solver]\nname = "fats"', ["fats"]),
         (ELASTOPLASTIC + '[[study.part]]\nname = "a"\n' * 2, ["name: found 'a'"]),
+        (axis('key = "deck.C.skew"\nvalues = [0.1]'), ["(deck.C.skew): found no [[deck]] of that"]),
+        (PAIR.replace(SINE, SHOCKS) + '[study]\n[[study.axis]]\nkey = "spring.r.stiffness"\n'
+              'values = [1e6]', ["[excitation]: psa_period: found a period of the scene"]),
         (PAIR, ["[study]: missing"]),
         (PAIR + "[study]", ["axis: missing"]),
     ],
@@ -111,6 +113,8 @@ def test_problems_are_named_before_anything_runs(make_study, text, words):
         make_study(text)
     for word in words:
         assert word in str(caught.value), str(caught.value)
+    for problem in caught.value.problems:
+        assert problem.split(": ")[0].endswith("case.toml"), problem
 
 
 @pytest.mark.parametrize(
