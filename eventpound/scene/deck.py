@@ -102,8 +102,9 @@ class Deck:
 
     @property
     def radius(self) -> float:
-        """Radius of gyration r (m)."""
-        return math.sqrt(self.inertia_about_centre / self.mass)
+        """Radius of gyration r (m); 1 where a scene refuses the mass or the moment."""
+        inertia = self.inertia_about_centre
+        return math.sqrt(inertia / self.mass) if self.mass > 0.0 and inertia > 0.0 else 1.0
 
     def normal(self, side: Side) -> tuple[float, float]:
         """Of an end edge, outwards."""

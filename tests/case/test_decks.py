@@ -14,6 +14,7 @@ from eventpound.case.case import member_case
 from eventpound.errors import InputError
 from eventpound.scene.parameters import number_places, with_values
 from eventpound.scene.scene import Scene
+from tests.models import CASES
 
 DECKS = """
 [[deck]]
@@ -316,3 +317,11 @@ def test_a_contact_at_a_place_of_a_deck(tmp_path: Path) -> None:
     wrong = contact.replace("[0.0, 1.0]", "[0.0, 2.0]")
     assert "a normal of length one" in problems(tmp_path, PULSE + DECKS + wrong)
     assert "of the decks A, B" in problems(tmp_path, PULSE + DECKS + contact.replace('"A"', '"C"'))
+
+
+@pytest.mark.parametrize("mass", ['mass = "0 t"', 'mass = "-1 t"', 'mass = "1 t"\ninertia = -1.0'])
+def test_a_deck_without_mass_or_moment_is_refused(tmp_path, mass):
+    text = (CASES / "skew-deck" / "case.toml").read_text()
+    (tmp_path / "case.toml").write_text(text.replace('mass = "900 t"', mass))
+    with pytest.raises(InputError, match=r"case\.toml: \[\[deck\]\].*a positive (mass|moment)"):
+        load_case(tmp_path)
